@@ -262,7 +262,7 @@ def markdown(rows: list[tuple[str, ...]], reactions: list[tuple[str, ...]], comm
         "",
         "## Every reaction",
         "",
-        "All force and couple components of all joints and ties as functions of q, u and the accelerations, from the",
+        "All force and couple components of all joints and constraints as functions of q, u, accelerations, from the",
         "frozen Model on, M and F included. Operations: one evaluation from (t, x, p), accelerations included. No peer",
         "gives them by default.",
         "",

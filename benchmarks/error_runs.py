@@ -111,7 +111,7 @@ class Server:
         self, run: Run, cache: Path, error: tuple[str, str] | None = None, *, cpu: float = 0
     ) -> planted.Outcome:
         """What a run says, with an error (file, its text) or without."""
-        found = _forked(_told, self, run, cache, error, max(LONGEST, SLOWER * cpu))
+        found = _forked(_reported, self, run, cache, error, max(LONGEST, SLOWER * cpu))
         return found if isinstance(found, planted.Outcome) else planted.Outcome(139, str(found))
 
     def calls(self, run: Run, cache: Path) -> Calls:
@@ -187,11 +187,11 @@ def _forked(work: Any, *args: Any) -> Any:
 
 def _watched(server: Server, run: Run, cache: Path) -> Calls:
     start, calls = time.process_time(), server.watched()
-    found = _told(server, run, cache, None, SHORT)
+    found = _reported(server, run, cache, None, SHORT)
     return Calls(frozenset(calls), found.code, found.why, time.process_time() - start)
 
 
-def _told(server: Server, run: Run, cache: Path, error: tuple[str, str] | None, cpu: float) -> planted.Outcome:
+def _reported(server: Server, run: Run, cache: Path, error: tuple[str, str] | None, cpu: float) -> planted.Outcome:
     """What a run says, in this process, which is for nothing else."""
     at = int(time.process_time() + cpu) + 1
     resource.setrlimit(resource.RLIMIT_CPU, (at, at + 2))

@@ -29,17 +29,19 @@ Error = tuple[str, str]  # file, its text
 
 def first_failing(errors: Sequence[Error], kept: Path) -> list[str]:
     """Of each error the test that sees it; "" of what none sees."""
-    asked = kept / "errors.json"
+    requested = kept / "errors.json"
     chosen = [[*islice(near(file), NEAREST)] for file, _ in errors]
     every = sorted({name for mine in chosen for name in mine})
     if not every:
         return ["" for _ in errors]
-    asked.write_text(json.dumps([(*error, mine) for error, mine in zip(errors, chosen, strict=True)]), encoding="utf-8")
-    environment = {**os.environ, ERRORS: str(asked), "PYTHONPATH": f"{ROOT}{os.pathsep}{Path(__file__).parent}"}
+    requested.write_text(
+        json.dumps([(*error, mine) for error, mine in zip(errors, chosen, strict=True)]), encoding="utf-8"
+    )
+    environment = {**os.environ, ERRORS: str(requested), "PYTHONPATH": f"{ROOT}{os.pathsep}{Path(__file__).parent}"}
     environment |= {"EOMGEN_FRESH": "1", "XDG_CACHE_HOME": str(kept / "cache")}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "error_tests", "-p", "no:cacheprovider", "-n", "0"]
     subprocess.run([*command, "-m", "not slow", *every], cwd=ROOT, env=environment, check=False, capture_output=True)
-    found: list[str] = json.loads(asked.with_suffix(".found").read_text(encoding="utf-8"))
+    found: list[str] = json.loads(requested.with_suffix(".found").read_text(encoding="utf-8"))
     return found
 
 
@@ -55,19 +57,19 @@ def near(file: str) -> Iterator[str]:
         rf"\beomgen\.{room}\b|\b{room.rstrip('s')}",
     ]
     texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / "tests").rglob("test_*.py"))}
-    told = set()
+    reported = set()
     for word in words:
         for path, text in texts.items():
-            if path not in told and re.search(word, text):
-                told.add(path)
+            if path not in reported and re.search(word, text):
+                reported.add(path)
                 yield str(path.relative_to(ROOT))
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    config.pluginmanager.register(Asked())
+    config.pluginmanager.register(Requested())
 
 
-class Asked:
+class Requested:
     """Errors, each in a fork of a process that has collected all tests."""
 
     def __init__(self) -> None:
@@ -94,7 +96,7 @@ class Asked:
         return True
 
 
-def _in_a_fork(asked: Asked, server: Any, error: tuple[str, str] | None, tests: Sequence[pytest.Item]) -> str:
+def _in_a_fork(requested: Requested, server: Any, error: tuple[str, str] | None, tests: Sequence[pytest.Item]) -> str:
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
 
@@ -104,9 +106,9 @@ def _in_a_fork(asked: Asked, server: Any, error: tuple[str, str] | None, tests: 
         start = time.process_time()
         for item in tests:
             item.ihook.pytest_runtest_protocol(item=item, nextitem=None)
-            if asked.failed or time.process_time() - start > LONGEST:
+            if requested.failed or time.process_time() - start > LONGEST:
                 break
-        there.send(asked.failed)
+        there.send(requested.failed)
 
     child = context.Process(target=sent)
     child.start()

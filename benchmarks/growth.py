@@ -162,8 +162,8 @@ def table(quick: bool) -> Iterator[str]:
             yield f"| {what} | {name} | | missing here | |"
             continue
         found = [work(n) for n in sizes]
-        told = ", ".join(f"{x:.3g} {unit}".strip() if unit else f"{x:.0f}" for x in found)
-        yield f"| {what} | {name} | {', '.join(map(str, sizes))} | {told} | {exponent(sizes, found):.2f} |"
+        reported = ", ".join(f"{x:.3g} {unit}".strip() if unit else f"{x:.0f}" for x in found)
+        yield f"| {what} | {name} | {', '.join(map(str, sizes))} | {reported} | {exponent(sizes, found):.2f} |"
 
 
 def main() -> None:

@@ -84,9 +84,9 @@ def beam_model(spans: int) -> eomgen.Model:
     bodies = {
         f"b{i}": {"points": {"A": [f"{i}*a", 0], "B": [f"{i + 1}*a", 0], "S": [at, 0]}} for i, at in enumerate(stands)
     }
-    ties: dict[str, Any] = {"A": {"kind": "pin", "points": ["b0.A"]}}
-    ties |= {f"S{i}": {"kind": "support", "point": f"b{i}.S", "normal": [0, 1]} for i in range(spans)}
-    ties |= {f"H{i}": {"kind": "pin", "points": [f"b{i - 1}.B", f"b{i}.A"]} for i in range(1, spans)}
+    constraints: dict[str, Any] = {"A": {"kind": "pin", "points": ["b0.A"]}}
+    constraints |= {f"S{i}": {"kind": "support", "point": f"b{i}.S", "normal": [0, 1]} for i in range(spans)}
+    constraints |= {f"H{i}": {"kind": "pin", "points": [f"b{i - 1}.B", f"b{i}.A"]} for i in range(1, spans)}
     loads = {
         f"q{i}": {"kind": "distributed", "body": f"b{i}", "between": ["A", "B"], "intensity": [0, "-p"]}
         for i in range(spans)
@@ -95,7 +95,7 @@ def beam_model(spans: int) -> eomgen.Model:
         space="plane",
         parameters={"a": {"positive": True}, "p": {}},
         bodies=bodies,
-        constraints=ties,
+        constraints=constraints,
         forces=loads,
         outputs={f"R{i}": f"reaction_n(S{i})" for i in range(spans)},
     )

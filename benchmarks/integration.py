@@ -178,9 +178,9 @@ def many_by_eomgen(tolerance, runs, **how):
     values = np.array(starts(runs))
 
     def run():
-        asked = {"rtol": 10 * tolerance, "atol": 10 * tolerance, "samples": SAMPLES, **how}
+        requested = {"rtol": 10 * tolerance, "atol": 10 * tolerance, "samples": SAMPLES, **how}
         start = {"theta1": values[:, 0], "theta2": values[:, 1]}
-        return eomgen.simulate_many(MODELS / "double_pendulum.toml", time=TIME, start=start, **asked).x[:, -1]
+        return eomgen.simulate_many(MODELS / "double_pendulum.toml", time=TIME, start=start, **requested).x[:, -1]
 
     return run
 
@@ -324,7 +324,7 @@ push = { kind = "force", point = "block.center", force = ["11.772*sin(2*pi*t)", 
 
 def own_rows() -> Iterator[str]:
     """Motions in C against the loop in Python that they replace."""
-    yield "| motion, rtol 1e-9 | steps | in C [s] | Python loop [s] | times | drift | ties open by |"
+    yield "| motion, rtol 1e-9 | steps | in C [s] | Python loop [s] | times | drift | constraints open by |"
     yield "|---|---|---|---|---|---|---|"
     motions = {
         "arm of 7 axes, 10 s": (MODELS / "arm7.toml", 10.0, 1.0),
@@ -406,23 +406,25 @@ def main() -> None:
     words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     words.add_argument("-o", "--output", type=Path)
     words.add_argument("--reference", action="store_true")
-    asked = words.parse_args()
-    if asked.reference:
+    requested = words.parse_args()
+    if requested.reference:
         import mpmath as mp
 
         for steps in (1000, 2000):
             print(steps, [mp.nstr(x, 32) for x in reference(steps)])
         return
-    told = f"`python benchmarks/integration.py`; Python {platform.python_version()}, {platform.machine()}; {peers()}."
-    lines = ["# Integration against peers", "", f"{told} CPU time, all in one run; trust the ratios.", ""]
+    reported = (
+        f"`python benchmarks/integration.py`; Python {platform.python_version()}, {platform.machine()}; {peers()}."
+    )
+    lines = ["# Integration against peers", "", f"{reported} CPU time, all in one run; trust the ratios.", ""]
     for rows in (single_rows, own_rows, many_rows, long_rows, command_rows):
         lines += [" ".join((rows.__doc__ or "").split()), ""]
         for row in rows():
             lines.append(row)
             print(row, flush=True)
         lines.append("")
-    if asked.output:
-        asked.output.write_text("\n".join(lines))
+    if requested.output:
+        requested.output.write_text("\n".join(lines))
 
 
 if __name__ == "__main__":

@@ -79,13 +79,13 @@ def _counted(program: Program, role: Role, flags: Sequence[str], calls: int) -> 
         source, made = Path(place) / "run.c", Path(place) / "run"
         source.write_text(text)
         subprocess.run(["cc", *flags, "-o", str(made), str(source), "-lm"], check=True)
-        told = subprocess.run(
+        reported = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={place}/out", str(made)],
             capture_output=True,
             text=True,
             check=True,
         )
-    return int(next(line for line in told.stderr.splitlines() if "Collected" in line).split()[-1])
+    return int(next(line for line in reported.stderr.splitlines() if "Collected" in line).split()[-1])
 
 
 def row(name: str, actuated: tuple[str, ...]) -> str:
@@ -96,8 +96,8 @@ def row(name: str, actuated: tuple[str, ...]) -> str:
     inverse = equations.inverse_dynamics(act if equations.graph.J or actuated else ()).program
     own, other = inverse.count.total, equations.program.count.total
     counted = [instructions(inverse, INVERSE), instructions(equations.program, RHS)]
-    told = " | ".join("-" if n is None else str(n) for n in counted)
-    return f"| {name} | {len(equations.speeds)} | {own} | {other} | {own / other:.2f} | {told} |"
+    reported = " | ".join("-" if n is None else str(n) for n in counted)
+    return f"| {name} | {len(equations.speeds)} | {own} | {other} | {own / other:.2f} | {reported} |"
 
 
 def main() -> None:

@@ -115,16 +115,16 @@ def main() -> None:
     parser.add_argument("-o", "--output")
     parser.add_argument("--only", action="append", default=[], help="a language beside C; repeatable")
     parser.add_argument("--states", type=int, default=STATES)
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     lines = [
         "# Every language beside C",
         "",
         f"Python {platform.python_version()}, {platform.machine()}, one core; load {os.getloadavg()[0]:.1f} at first.",
         "",
     ]
-    for model in asked.models:
+    for model in requested.models:
         lines += [f"## {model}", "", "| language | ns a state | times C | apart | |", "|---|---|---|---|---|"]
-        table = rows(model, asked.only, asked.states)
+        table = rows(model, requested.only, requested.states)
         c = table[0][1]
         for name, nanoseconds, apart, said in table:
             known = nanoseconds == nanoseconds
@@ -132,8 +132,8 @@ def main() -> None:
             lines.append(f"| {name} | {numbers} | {said} |")
         lines.append("")
         print("\n".join(lines[-len(table) - 5 :]), flush=True)
-    if asked.output:
-        Path(asked.output).write_text("\n".join(lines), encoding="utf-8")
+    if requested.output:
+        Path(requested.output).write_text("\n".join(lines), encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -91,10 +91,10 @@ def keep(folder: Path, models: list[Path], shard: tuple[int, int]) -> None:
                 if path.exists():
                     continue
                 first, *options = verb.split()
-                asked = [first, str(model.relative_to(ROOT)), *options, "--format", form, "--patience", "none"]
-                code, out, err = outcome(asked, cache)
+                requested = [first, str(model.relative_to(ROOT)), *options, "--format", form, "--patience", "none"]
+                code, out, err = outcome(requested, cache)
                 if code == 2 and "no such option" in err.lower():
-                    code, out, err = outcome(asked[:-2], cache)
+                    code, out, err = outcome(requested[:-2], cache)
                 path.parent.mkdir(parents=True, exist_ok=True)
                 path.write_text(f"exit {code}\n{out}\n--- messages\n{err}", encoding="utf-8")
         print(f"{model.stem}", flush=True)

@@ -8,8 +8,8 @@ copy of the module in memory (no file changes), and the verb and model that use 
     tests       the verb says nothing; the tests named for the room fail
     nobody      neither
     harmless    every number that is printed is right all the same: another way was taken, an exact form is missing
-    no effect   what is printed is the same as without the patch: the entry does not reach what it should, and is mended
-    text gone   the old text stands no more in its file, or more than once: nothing is planted, and the entry is mended
+    no effect   what is printed is the same as without the patch: the entry does not reach what it should, and is fixed
+    text gone   the old text stands no more in its file, or more than once: nothing is planted, and the entry is fixed
 
     python benchmarks/planted_errors.py                         # all, by the product; a table
     python benchmarks/planted_errors.py --tests                 # what the product did not see also by the tests
@@ -409,8 +409,8 @@ def main() -> int:
     print(table(rows))
     if given.write:
         each = [f"| {p.room} | {p.name} | `{p.run}` | {seen} |" for p, seen, _ in rows]
-        asked = " --tests" if given.tests else ""
-        made = f"Made by `python benchmarks/planted_errors.py{asked} --write FILE`; what the columns mean stands there."
+        requested = " --tests" if given.tests else ""
+        made = f"Made by `python benchmarks/planted_errors.py{requested} --write FILE`; it says what the columns mean."
         head = ["# Planted errors", "", made, ""]
         listed = ["", "| room | error | verb and model | seen by |", "|---|---|---|---|", *each, ""]
         Path(given.write).write_text("\n".join([*head, table(rows), *listed]), encoding="utf-8")

@@ -1,7 +1,8 @@
 """How long a page takes for a whole rerun, by its own performance.now(): what one waits for when a slider is moved.
 
 python benchmarks/player.py [MODEL ...]: of each model the smallest and the median of 60 reruns of 10 s in a headless
-browser, at rtol 1e-6 and at the 1e-8 that pages ask for: the numbers alone (start, run, kept ties), and all of it with
+browser, at rtol 1e-6 and at the 1e-8 that pages ask for: the numbers alone (start, run, kept constraints), and all of
+it with
 picture, plots and energy. No test: machines differ.
 """
 
@@ -30,7 +31,7 @@ SCRIPT = """
 """
 
 
-ASKED = f'"rtol":{CARRIED}'  # as a page says it
+REQUESTED = f'"rtol":{CARRIED}'  # as a page says it
 
 
 def main(names: tuple[str, ...]) -> None:
@@ -38,11 +39,11 @@ def main(names: tuple[str, ...]) -> None:
     print(f"{'model':<24}{'rtol':>7}{'numbers: smallest, median [ms]':>32}{'all: smallest, median [ms]':>29}")
     for name in names:
         page = eomgen.play(ROOT / "models" / f"{name}.toml", time=10).html
-        assert page.count(ASKED) == 1
+        assert page.count(REQUESTED) == 1
         for rtol in (1e-6, CARRIED):
-            columns = visited(page.replace(ASKED, f'"rtol":{rtol}'), SCRIPT).found
-            told = "".join(f"{took[0]:>{16}.1f}{took[len(took) // 2]:>14.1f}" for took in columns)
-            print(f"{name:<24}{rtol:>7g}{told}")
+            columns = visited(page.replace(REQUESTED, f'"rtol":{rtol}'), SCRIPT).found
+            reported = "".join(f"{took[0]:>{16}.1f}{took[len(took) // 2]:>14.1f}" for took in columns)
+            print(f"{name:<24}{rtol:>7g}{reported}")
 
 
 if __name__ == "__main__":

@@ -54,7 +54,7 @@ APART = (
     "templates",
 )
 LEFT_OUT = (
-    *("proof/", "certificate.py", "records.py", "files.py", "kept.py", "errors.py", "version.py", "edge.py"),
+    *("proof/", "certificate.py", "frozen.py", "files.py", "disk_cache.py", "errors.py", "version.py", "cli_errors.py"),
     "__init__.py",
 )
 MOST = 3  # runs of one error
@@ -203,11 +203,11 @@ class _Product:
             run, right = self.runs[each], self.kept.right(self.server, self.runs[each])
             error = place.file, place.patched()
             wrong = self.server.outcome(run, self.kept.compiled, error, cpu=self.cpu.get(each, 0))
-            now, told = judged(wrong, right, seen)
+            now, reported = judged(wrong, right, seen)
             if now == "open" and self.server.outcome(run, self.kept.compiled) != right:
                 continue  # it says another thing each time
             if now != seen:
-                seen, words, said = now, each, told
+                seen, words, said = now, each, reported
             if seen not in ("harmless", "no effect"):
                 break
         return seen, words, said
@@ -229,7 +229,7 @@ def _drawn(product: _Product, options: argparse.Namespace) -> list[Drawn]:
             called[function].append(words)
     names: dict[str, set[str]] = defaultdict(set)
     for file, name in sorted(called):
-        if _asked(file, options):
+        if _requested(file, options):
             names[file].add(name)
     every = [(x, called[file, x.function]) for file, mine in names.items() for x in places(file, mine)]
     print(f"{len(every)} places in {len(names)} files, {len(known)} runs", flush=True)
@@ -251,7 +251,7 @@ def _again(options: argparse.Namespace) -> Iterator[Drawn]:
             yield from ((place, [row["run"]]) for place in mine[:1])
 
 
-def _asked(file: str, options: argparse.Namespace) -> bool:
+def _requested(file: str, options: argparse.Namespace) -> bool:
     room, rooms = room_of(file), set(filter(None, options.rooms.split(",")))
     if rooms:
         return room in rooms

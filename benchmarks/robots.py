@@ -5,7 +5,8 @@
     python benchmarks/robots.py --within FOLDER     # every URDF and MJCF file below a folder: of a wheel unpacked
 
 needs, beside eomgen, an environment with the wheels: pip install mujoco pin example-robot-data dm_control gymnasium.
-A row is a file: its freedoms, the time of the import and of the derivation, and the largest difference of M and of
+A row is a file: its degrees of freedom, the time of the import and of the derivation, and the largest difference of M
+and of
 M a + c - Q at random states, over the largest entry: against each oracle. Exit code 1 where one is above 1e-10.
 """
 
@@ -37,7 +38,7 @@ PICTURES = ("visual", "collision", "material", "gazebo", "transmission", "sensor
 @dataclass
 class Row:
     name: str
-    freedoms: int = 0
+    degrees_of_freedom: int = 0
     seconds: tuple[float, ...] = ()
     differences: dict[str, float | str] | None = None
 
@@ -46,7 +47,7 @@ class Row:
             f"{key} {x:.1e}" if isinstance(x, float) else f"{key}: {x}" for key, x in (self.differences or {}).items()
         ]
         spent = " ".join(f"{x:5.2f}" for x in self.seconds)
-        return f"{self.name:34.34} {self.freedoms:4d} {spent:12} {'; '.join(said)}"
+        return f"{self.name:34.34} {self.degrees_of_freedom:4d} {spent:12} {'; '.join(said)}"
 
     @property
     def wrong(self) -> bool:
@@ -187,13 +188,13 @@ def against_mujoco(text_or_path: str | Path, ours: Ours, rng: Any) -> float:
         w = {}
         for k in range(model.nactuator):
             push, raw = 0.3 * rng.uniform(-1, 1), model.actuator(k).name or f"motor{k}"
-            told = [x for x, part in ours.model.inputs.items() if x == raw or part.about == f"motor {raw}"]
-            if not told:
+            reported = [x for x, part in ours.model.inputs.items() if x == raw or part.about == f"motor {raw}"]
+            if not reported:
                 continue
             filtered = model.actuator_actadr[k] >= 0
             where = data.act if filtered else data.ctrl
             where[model.actuator_actadr[k] if filtered else model.actuator_ctrladr[k]] = push
-            w[told[0]] = push
+            w[reported[0]] = push
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CLAMPCTRL
         mujoco.mj_forward(model, data)
         full = np.zeros((model.nv, model.nv))
@@ -239,7 +240,7 @@ def looked_at(path: Path, rng: Any, floating: bool, certify: bool) -> Row:
         return row
     read = time.perf_counter()
     ours = Ours(robot.model)
-    row.freedoms, row.differences = len(ours.symbols.u), {}
+    row.degrees_of_freedom, row.differences = len(ours.symbols.u), {}
     row.seconds = (read - began, time.perf_counter() - read)
     oracles = {"pinocchio": lambda: against_pinocchio(path, ours, rng, floating)} if path.suffix == ".urdf" else {}
     if not floating:
@@ -257,13 +258,13 @@ def looked_at(path: Path, rng: Any, floating: bool, certify: bool) -> Row:
 
 
 def main() -> int:
-    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("--only", default="", help="files whose path holds this text")
-    asked.add_argument("--within", default="", help="a folder, instead of the wheels that are installed")
-    asked.add_argument("--floating", action="store_true", help="URDF with a free base")
-    asked.add_argument("--certify", action="store_true", help="the proof too")
-    asked.add_argument("--seed", type=int, default=1)
-    given = asked.parse_args()
+    requested = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    requested.add_argument("--only", default="", help="files whose path holds this text")
+    requested.add_argument("--within", default="", help="a folder, instead of the wheels that are installed")
+    requested.add_argument("--floating", action="store_true", help="URDF with a free base")
+    requested.add_argument("--certify", action="store_true", help="the proof too")
+    requested.add_argument("--seed", type=int, default=1)
+    given = requested.parse_args()
     warnings.simplefilter("ignore")
     rng, bad = np.random.default_rng(given.seed), 0
     print(f"{'file':34} free import derive  largest difference, over the largest entry")

@@ -130,13 +130,13 @@ def main() -> None:
     words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     words.add_argument("--quick", action="store_true", help="smaller sizes: some minutes")
     words.add_argument("-o", "--output", type=Path, help="write the page there, too")
-    asked = words.parse_args()
+    requested = words.parse_args()
     lines = []
-    for line in page(asked.quick):
+    for line in page(requested.quick):
         print(line, flush=True)
         lines.append(line)
-    if asked.output is not None:
-        asked.output.write_text("\n".join(lines) + "\n")
+    if requested.output is not None:
+        requested.output.write_text("\n".join(lines) + "\n")
 
 
 if __name__ == "__main__":

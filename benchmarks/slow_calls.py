@@ -88,5 +88,5 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("verbs", nargs="*", choices=[*VERBS, []], metavar="verb")
     parser.add_argument("--resume", type=Path)
-    asked = parser.parse_args()
-    main(asked.verbs or list(VERBS), asked.resume)
+    requested = parser.parse_args()
+    main(requested.verbs or list(VERBS), requested.resume)

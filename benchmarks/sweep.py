@@ -20,7 +20,7 @@ import eomgen
 from eomgen.sweeps import workers as kernel
 
 MODEL = Path(__file__).parent.parent / "models" / "cart_pole.toml"
-ASKED = ("last(x)", "max(theta)", "last(theta')")
+REQUESTED = ("last(x)", "max(theta)", "last(theta')")
 
 
 def nothing(self: kernel.SweepKernel, set_: dict[str, float]) -> tuple[str, str, list[float]]:
@@ -36,7 +36,7 @@ def measured(runs: int, workers: int, design: str) -> tuple[float, float, float,
 
 def _measured(runs: int, workers: int, design: str) -> tuple[float, float, float, float]:
     multiprocessing.current_process()._config["daemon"] = False  # it has children of its own
-    kernel.SweepKernel.asked = nothing
+    kernel.SweepKernel.requested = nothing
     before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     with tempfile.TemporaryDirectory() as folder:
         begun, cpu = time.perf_counter(), _cpu()
@@ -46,7 +46,7 @@ def _measured(runs: int, workers: int, design: str) -> tuple[float, float, float
             random={"l": "uniform(0.5, 1)"},
             runs=runs // 10,
             design=design,
-            ask=ASKED,
+            ask=REQUESTED,
             workers=workers,
             out=folder,
         )
@@ -67,24 +67,27 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--runs", type=int, default=100_000)
     parser.add_argument("-o", "--output")
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     lines = [
         "# Sweeps",
         "",
-        f"Made by `python benchmarks/sweep.py --runs {asked.runs}` on Python {platform.python_version()}, "
+        f"Made by `python benchmarks/sweep.py --runs {requested.runs}` on Python {platform.python_version()}, "
         f"{platform.machine()}: what a sweep",
         "costs beside its runs, plan to table, CPU time of parent and workers together.",
         "",
         "| runs | design | workers | CPU us a run | wall us a run | MiB of the parent | MiB of the ledger |",
         "| --- | --- | --- | --- | --- | --- | --- |",
     ]
-    cases = [(asked.runs // 10, 1, "random"), *((asked.runs, k, d) for d in ("random", "sobol", "lhs") for k in (1, 2))]
-    for runs, workers, design in [*cases, (10 * asked.runs, 1, "random")]:
+    cases = [
+        (requested.runs // 10, 1, "random"),
+        *((requested.runs, k, d) for d in ("random", "sobol", "lhs") for k in (1, 2)),
+    ]
+    for runs, workers, design in [*cases, (10 * requested.runs, 1, "random")]:
         cpu, wall, memory, size = measured(runs, workers, design)
         lines.append(f"| {runs} | {design} | {workers} | {cpu:.1f} | {wall:.1f} | {memory:.0f} | {size:.1f} |")
         print(lines[-1], flush=True)
-    if asked.output:
-        Path(asked.output).write_text("\n".join(lines) + "\n", encoding="utf-8")
+    if requested.output:
+        Path(requested.output).write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -24,12 +24,12 @@
     eomgen.verify(model, "T = m*v^2/2")       # Verdict: is an equation of somebody right, up to what, and if not, why
     eomgen.regressor(model)                   # Regressor: tau = Y pi + y0, .parameters, .base: what motions tell apart
     eomgen.identify(model, data)              # Identified: parameters from measured motions, of bodies that can be
-    eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
+    eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant constraints
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
 Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`
 and `forces` (eomgen.joints.Revolute). Mistakes are exceptions of the family EomgenError: ModelError holds every problem
-of a model, each with its place and its mend. docs/reference is the reference of the fields.
+of a model, each with its place and its fix. docs/reference is the reference of the fields.
 
 All names are imported on first use, so that `import eomgen` costs nothing.
 """
@@ -93,7 +93,7 @@ _HOMES = {
     "documents.linearize.result": ("Linearization", "linearize"),
     "scene.making": ("scene_of",),
     "scene.scene": ("Scene",),
-    "documents.rest_picture": ("rest_picture",),
+    "documents.equilibrium_picture": ("rest_picture",),
     "documents.figures": ("run_picture",),
     "documents.statics.result": ("Statics", "statics"),
     "simulation.result": ("Trajectory",),

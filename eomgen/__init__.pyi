@@ -1,13 +1,13 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
 from eomgen.codegen.programs import InverseDynamics as InverseDynamics
+from eomgen.documents.equilibrium_picture import rest_picture as rest_picture
 from eomgen.documents.figures import run_picture as run_picture
 from eomgen.documents.inertia.result import Inertia as Inertia
 from eomgen.documents.inertia.result import inertia as inertia
 from eomgen.documents.kinematics.result import Kinematics as Kinematics
 from eomgen.documents.linearize.result import Linearization as Linearization
 from eomgen.documents.linearize.result import linearize as linearize
-from eomgen.documents.rest_picture import rest_picture as rest_picture
 from eomgen.documents.statics.result import Statics as Statics
 from eomgen.documents.statics.result import statics as statics
 from eomgen.equations import Equations as Equations

@@ -62,7 +62,7 @@ def certify(
         *trials.tensors(),
         *trials.contacts(),
         *trials.threads(),
-        *trials.kept_ties(),
+        *trials.kept_constraints(),
         *trials.slack_springs(),
         *trials.elements(),
         *trials.declared(),
@@ -79,5 +79,5 @@ def certify(
 def certify_standing(equations: EquationsOfMotion) -> Certificate:
     """Check what no coordinate moves: where it stands, what is applied to it, the balance of every body."""
     trials = Trials(equations)
-    checks = (trials.places(), *trials.kept_ties(), *trials.elements(), *trials.declared(), *trials.balance())
+    checks = (trials.places(), *trials.kept_constraints(), *trials.elements(), *trials.declared(), *trials.balance())
     return Certificate((*checks, *other_data(equations.system.motion)))

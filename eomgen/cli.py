@@ -11,12 +11,12 @@ import click
 from eomgen.cli_common import (
     Delivery,
     Verbs,
-    asked_document,
     deliver,
     deliver_several,
     delivery_of,
     reading,
-    write_asked,
+    requested_document,
+    write_requested,
     write_result,
 )
 from eomgen.cli_options import (
@@ -27,7 +27,7 @@ from eomgen.cli_options import (
     MODEL,
     OF_PLOT,
     OUTPUT,
-    form_asked,
+    form_requested,
     refuse_idle,
     time_typed,
     with_form,
@@ -63,7 +63,7 @@ def new_command(name: str, example: str | None, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
     from eomgen.verbs.new import new_document as made
 
-    return deliver(made(name, example), form_asked(wants_json, None))
+    return deliver(made(name, example), form_requested(wants_json, None))
 
 
 @main.command("examples")
@@ -73,7 +73,7 @@ def examples_command(wants_json: bool, output: str | None) -> int:
     """List the models that ship."""
     from eomgen.verbs.examples import examples_document as shipped
 
-    return deliver(shipped(), form_asked(wants_json, None, output), output)
+    return deliver(shipped(), form_requested(wants_json, None, output), output)
 
 
 @main.command("import")
@@ -92,7 +92,7 @@ def import_command(file: str, wants_json: bool, output: str | None, floating: bo
 
     refuse_other_endings(output)
     document = import_document(file, output=output, floating=floating, model=model)
-    return deliver(document, form_asked(wants_json, None))
+    return deliver(document, form_requested(wants_json, None))
 
 
 @main.command("export")
@@ -110,8 +110,8 @@ def export_command(model: str, wants_json: bool, output: str, strict: bool, **op
 
     refuse_strange_endings(output)
     with reading(model) as source:
-        document = asked_document(export_document, source, options, output=output)
-    return deliver(document, form_asked(wants_json, None), strict=strict)
+        document = requested_document(export_document, source, options, output=output)
+    return deliver(document, form_requested(wants_json, None), strict=strict)
 
 
 @main.command("check")
@@ -125,19 +125,20 @@ def check_command(
 ) -> int:
     """Validate models; count their degrees of freedom.
 
-    By rank and by formula; which ties close and which only react, what is redundant, which velocity ties are
+    By rank and by formula; which constraints close and which only react, what is redundant, which velocity constraints
+    are
     integrable; how the loops close at the start, and in which other ways they could.
     """
     from eomgen.verbs.check import check_document
 
     if len(models) == 1:
         options |= {"wants_json": wants_json, "output": output, "format_": format_}
-        return write_asked(check_document, model=models[0], strict=strict, **options)
-    form = form_asked(wants_json, format_, output)
+        return write_requested(check_document, model=models[0], strict=strict, **options)
+    form = form_requested(wants_json, format_, output)
     if form == "latex":
         raise click.UsageError("several models make no LaTeX document; take one, or another --format")
     return deliver_several(
-        models, lambda source: asked_document(check_document, source, options), form, output, strict=strict
+        models, lambda source: requested_document(check_document, source, options), form, output, strict=strict
     )
 
 
@@ -165,38 +166,38 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
 
     What was derived and proven before is told again, if its equations, derived anew, are the same.
     """
-    told = options["diff"] is None, "is of one model, and --diff tells what differs between two"
-    refuse_idle(units=told, full=told)
+    reported = options["diff"] is None, "is of one model, and --diff tells what differs between two"
+    refuse_idle(units=reported, full=reported)
     if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
-        wants = form_asked(options["wants_json"], options["format_"], options["output"])
-        return write_asked(partial(_derived, data=wants == "json"), **options)
-    return _kept_derivation(**options)
+        wants = form_requested(options["wants_json"], options["format_"], options["output"])
+        return write_requested(partial(_derived, data=wants == "json"), **options)
+    return _cached_derivation(**options)
 
 
-def _derived(model: Model, **asked: Any) -> Document:
+def _derived(model: Model, **requested: Any) -> Document:
     from eomgen.verbs.derive import derive_document
 
-    return derive_document(model, **asked)
+    return derive_document(model, **requested)
 
 
-def _kept_derivation(
+def _cached_derivation(
     *, model: str, wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
 ) -> int:
     """The derivation as it was told before, else made, and kept where its proof holds."""
-    from eomgen.verbs.kept_derivation import kept_derivation
+    from eomgen.verbs.cached_derivation import cached_derivation
 
-    form = form_asked(wants_json, format_, output)
+    form = form_requested(wants_json, format_, output)
     with reading(model) as source:
         declared = source.model
         if options["set_"] or options["start"]:
             from eomgen.verbs.assignments import typed
 
             declared = typed(source.model, options)[0].model
-        before = kept_derivation(source.data, source.name, declared, {**options, "form": form, "strict": strict})
+        before = cached_derivation(source.data, source.name, declared, {**options, "form": form, "strict": strict})
         if before is not None and (known := before.found()) is not None:
             found = Delivery(*known)
         else:
-            document = asked_document(partial(_derived, data=form == "json"), source, options)
+            document = requested_document(partial(_derived, data=form == "json"), source, options)
             found = delivery_of(document, form, strict=strict)
             if before is not None and found.code == 0 and document.certificate is not None and document.certificate.ok:
                 before.keep(found.text, found.lines, found.code)
@@ -211,7 +212,7 @@ def solve_command(**options: Any) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs.solve import solve_document
 
-    return write_asked(solve_document, **options)
+    return write_requested(solve_document, **options)
 
 
 @main.command("reactions")
@@ -243,7 +244,7 @@ def reactions_command(**options: Any) -> int:
 
     drawn = (options["plot"] is not None, OF_PLOT)
     refuse_idle(view=drawn, time=(drawn[0], "says how much --plot draws: give both"))
-    return write_asked(reactions_document, **options)
+    return write_requested(reactions_document, **options)
 
 
 @main.command("statics")
@@ -251,7 +252,7 @@ def reactions_command(**options: Any) -> int:
 @click.option("--reaction", metavar="NAME", help='By virtual work only this one: "reaction_y(A)".')
 @click.option("--influence", metavar="NAME", help='Its influence line too; also of "bending_moment(beam, L)".')
 def statics_command(**options: Any) -> int:
-    """Give reactions at rest by virtual work, or the places of rest.
+    """Give reactions at rest by virtual work, or the equilibria.
 
     Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
     mechanism that is left when it is released, and by equilibrium; members of trusses; N, V and M along its beams. Of a
@@ -278,9 +279,9 @@ def kinematics_command(**options: Any) -> int:
     Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
     rotation with the lines on which they are found, spins, velocities and accelerations of points, kinds of motion.
     """
-    from eomgen.verbs.kinematics import kinematics_asked
+    from eomgen.verbs.kinematics import kinematics_requested
 
-    return write_result(kinematics_asked, at_start=True, **options)
+    return write_result(kinematics_requested, at_start=True, **options)
 
 
 @main.command("inertia")
@@ -329,10 +330,10 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     if (over is not None) != (view == "locus"):
         raise click.UsageError('--view locus and --over "k=1:10:50" go together')
 
-    in_full = form_asked(options["wants_json"], options["format_"], options["output"]) == "json"
+    in_full = form_requested(options["wants_json"], options["format_"], options["output"]) == "json"
 
-    def found(model: Model, **asked: Any) -> Result:
-        wanted, made = None if over is None else range_of(model, over), linearize(model, **asked)
+    def found(model: Model, **requested: Any) -> Result:
+        wanted, made = None if over is None else range_of(model, over), linearize(model, **requested)
         return replace(made, modes=replace(made.modes, in_full=in_full), drawn=view, over=wanted)
 
     return write_result(found, at_start=options["about"] == "start", **options)
@@ -380,11 +381,11 @@ def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
 
     placed = tuple(each for each in from_rest if each != REST)
 
-    def judged(declared: Model, **asked: Any) -> Document:
-        rest = asked.pop("from_rest", None) or ({} if from_rest else None)
-        return verify_document(declared, from_rest=rest, **asked)
+    def judged(declared: Model, **requested: Any) -> Document:
+        rest = requested.pop("from_rest", None) or ({} if from_rest else None)
+        return verify_document(declared, from_rest=rest, **requested)
 
-    return write_asked(judged, from_rest=placed, **options)
+    return write_requested(judged, from_rest=placed, **options)
 
 
 for verb in RUNS:

@@ -18,10 +18,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eomgen import files
-from eomgen.cli_options import form_asked
-from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
-from eomgen.errors import DerivationError, EomgenError, ModelError, OpenTies, RunFailed, UsageError
-from eomgen.records import dataclass
+from eomgen.cli_errors import INTERRUPTED, Placed, failure, guarded, problems_of, say
+from eomgen.cli_options import form_requested
+from eomgen.errors import DerivationError, EomgenError, ModelError, OpenConstraints, RunFailed, UsageError
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.text import other_words
 from eomgen.symbolic.numeric.work import doing, growing, patience, seldom
 from eomgen.version import SCHEMA_VERSION
@@ -237,13 +237,13 @@ def reading(path: str) -> Iterator[Source]:
     from eomgen.proof.declared_numbers import numbers_otherwise
 
     if path == "-" and sys.stdin is None:
-        raise UsageError("there is no model on stdin: it is closed", mend="name a file")
+        raise UsageError("there is no model on stdin: it is closed", fix="name a file")
     data = bytes_at(path)
     name, title = ("<stdin>", "model") if path == "-" else (path, Path(path).stem)
     try:
         model = loads(data, name, title)
         if wrong := numbers_otherwise(data, model):
-            raise DerivationError(wrong, mend="this is a mistake of eomgen, not of your model")
+            raise DerivationError(wrong, fix="this is a mistake of eomgen, not of your model")
         yield Source(model, data, name)
     except EomgenError as error:  # the edge: whatever is wrong is told at its place in the file
         of_model = isinstance(error, (ModelError, DerivationError, RunFailed))  # no option, file or tool
@@ -258,7 +258,7 @@ def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     return following(declared, follow) if follow else declared
 
 
-def write_asked(
+def write_requested(
     made: Callable[..., Document],
     *,
     model: str,
@@ -270,13 +270,13 @@ def write_asked(
     **options: Any,
 ) -> int:
     """The document of a verb, in the form that is asked."""
-    form = form_asked(wants_json, format_, output)
+    form = form_requested(wants_json, format_, output)
     with reading(model) as source:
-        document = asked_document(made, source, options, follow)
+        document = requested_document(made, source, options, follow)
     return deliver(document, form, output, strict=strict)
 
 
-def asked_document(
+def requested_document(
     made: Callable[..., Document],
     source: Source,
     options: dict[str, Any],
@@ -289,7 +289,7 @@ def asked_document(
     valued, rest = typed(_followed(source.model, follow), options)
     try:
         document = made(valued.model, **rest, **more)
-    except OpenTies as error:
+    except OpenConstraints as error:
         from eomgen.verbs.outcome import named_open
 
         raise named_open(valued.model, error) from error
@@ -301,12 +301,12 @@ def write_result(
     found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
 ) -> int:
     """What a verb finds, at the start or elsewhere, drawn and proven where that is asked."""
-    from eomgen.verbs.outcome import shown, with_start_told
+    from eomgen.verbs.outcome import shown, with_start_reported
 
-    def made(declared: Model, **asked: Any) -> Document:
+    def made(declared: Model, **requested: Any) -> Document:
         with growing():
-            document = shown(found(declared, **asked), plot=plot, certify=certify)
-        told = with_start_told(document, declared)
-        return told if at_start else replace(document, cautions=told.cautions)
+            document = shown(found(declared, **requested), plot=plot, certify=certify)
+        reported = with_start_reported(document, declared)
+        return reported if at_start else replace(document, cautions=reported.cautions)
 
-    return write_asked(made, **options)
+    return write_requested(made, **options)

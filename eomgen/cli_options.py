@@ -74,7 +74,7 @@ def time_typed(typed: object) -> float:
     try:
         return seconds(typed)
     except UsageError as error:
-        raise click.BadParameter(f"{error.what}; {error.mend}") from None
+        raise click.BadParameter(f"{error.what}; {error.fix}") from None
 
 
 def refuse_idle(**heeded: tuple[bool, str]) -> None:
@@ -150,16 +150,16 @@ def with_picture(function: Callable[..., int]) -> Callable[..., int]:
     return with_form(PLOT(CERTIFY(function)))
 
 
-def form_asked(wants_json: bool, format_: str | None, output: str | None = None) -> str:
+def form_requested(wants_json: bool, format_: str | None, output: str | None = None) -> str:
     """The form that is asked, else that of the ending of the file.
 
     Raises:
         UsageError: no form has that ending.
     """
     ending = Path(output or "").suffix.lower()
-    asked = "json" if wants_json else format_
-    if ending in OTHERS or (ending not in FORMATS and not asked):
+    requested = "json" if wants_json else format_
+    if ending in OTHERS or (ending not in FORMATS and not requested):
         known = ", ".join(filter(None, FORMATS))
         other = "" if ending in OTHERS else "; or say --format"
         raise click.UsageError(f"'{output}' ends in no form that is known here: {known}{other}")
-    return asked or FORMATS[ending]
+    return requested or FORMATS[ending]

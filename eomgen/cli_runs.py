@@ -10,10 +10,10 @@ import click
 
 from eomgen.cli_common import (
     Verb,
-    asked_document,
     deliver,
     reading,
-    write_asked,
+    requested_document,
+    write_requested,
 )
 from eomgen.cli_options import (
     CERTIFY,
@@ -28,7 +28,7 @@ from eomgen.cli_options import (
     PLOT,
     TIME,
     folder,
-    form_asked,
+    form_requested,
     refuse_beside,
     refuse_idle,
     with_form,
@@ -64,13 +64,13 @@ VERB = partial(click.command, cls=Verb)
     type=click.Choice(["projection", "energy", "baumgarte", "none"]),
     default="projection",
     show_default=True,
-    help="What keeps ties closed.",
+    help="What keeps constraints closed.",
 )
 @click.option(
     "--project-every",
     type=click.IntRange(min=1),
     metavar="STEPS",
-    help="Project at each so many steps.  [default: where a tie opens by atol/10]",
+    help="Project at each so many steps.  [default: where a constraint opens by atol/10]",
 )
 @click.option(
     "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA", help="Rates of Baumgarte's rows [1/s].  [default: 10 10]"
@@ -105,7 +105,7 @@ def simulate_command(
     """Integrate the motion from the start values.
 
     It goes on through every change of contact: what opens, closes, slides or sticks. Reactions and outputs are
-    columns. Ties are kept closed, and how well, and how well energy is kept, is said.
+    columns. Constraints are kept closed, and how well, and how well energy is kept, is said.
     """
     from eomgen.simulation.integrator import RATES, Stepping
     from eomgen.verbs.simulate import simulate_document as simulated
@@ -119,9 +119,11 @@ def simulate_command(
     rates = baumgarte or RATES
     options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
     with reading(model) as source:
-        document = asked_document(simulated, source, options, follow, output=output)
-    asked = wants_json or format_ is not None
-    return deliver(document, form_asked(wants_json, format_), on_stderr=output is not None and not asked, strict=strict)
+        document = requested_document(simulated, source, options, follow, output=output)
+    requested = wants_json or format_ is not None
+    return deliver(
+        document, form_requested(wants_json, format_), on_stderr=output is not None and not requested, strict=strict
+    )
 
 
 @VERB("sweep")
@@ -170,9 +172,9 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     one run once more.
     """
     from eomgen.sweeps.design import Stepped
-    from eomgen.verbs.sweep import SweepAsked, replay_document, sweep_document
+    from eomgen.verbs.sweep import SweepRequested, replay_document, sweep_document
 
-    form, drawn = form_asked(wants_json, None), bool(options["random"])
+    form, drawn = form_requested(wants_json, None), bool(options["random"])
     refuse_idle(
         view=(options["plot"] is not None, OF_PLOT),
         units=(output is not None, OF_TABLE),
@@ -193,9 +195,9 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     how = Stepped(**{name: options.pop(name) for name in ("time", "rtol", "atol", "method")})
     with reading(where) as source:
         title = "model" if where == "-" else Path(where).stem
-        asked = SweepAsked(how=how, **options)
+        requested = SweepRequested(how=how, **options)
         text = source.data.decode()
-        document = sweep_document(source.model, asked, text=text, title=title, output=output, **shown)
+        document = sweep_document(source.model, requested, text=text, title=title, output=output, **shown)
         document = source.warned(document, source.model)
     return deliver(document, form, strict=strict)
 
@@ -216,7 +218,7 @@ def identify_command(**options: Any) -> int:
     """
     from eomgen.verbs.identify import identify_document
 
-    return write_asked(identify_document, **options)
+    return write_requested(identify_document, **options)
 
 
 @VERB("animate")
@@ -251,9 +253,9 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
     shown = {name: options.pop(name) for name in ("fps", "speed", "trail", "forces", "frames")}
     options["showing"] = Showing(**shown)
     with reading(model) as source:
-        document = asked_document(animate_document, source, options, output=output)
+        document = requested_document(animate_document, source, options, output=output)
     return deliver(
-        document, form_asked(wants_json, format_), on_stderr=not wants_json and format_ is None, strict=strict
+        document, form_requested(wants_json, format_), on_stderr=not wants_json and format_ is None, strict=strict
     )
 
 
@@ -309,13 +311,13 @@ def codegen_command(
 
     if wants_list:
         refuse_beside("--list", ("wants_list", "wants_json", "strict"))
-        return deliver(languages(), form_asked(wants_json, None))
+        return deliver(languages(), form_requested(wants_json, None))
     if model is None or output is None:
         raise click.UsageError(f"Missing {'argument MODEL' if model is None else 'option -o DIR'}.")
     stem = "model" if model == "-" else Path(model).stem
     names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
     with reading(model) as source:
-        document = asked_document(
+        document = requested_document(
             generated,
             source,
             options,
@@ -333,7 +335,7 @@ def codegen_command(
             baumgarte=baumgarte,
             certify=certify,
         )
-    return deliver(document, form_asked(wants_json, None), strict=strict)
+    return deliver(document, form_requested(wants_json, None), strict=strict)
 
 
 @VERB("play")
@@ -363,8 +365,8 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
 
     refuse_other_endings(output)
     with reading(model) as source:
-        document = asked_document(play_document, source, options, output=output)
-    return deliver(document, form_asked(wants_json, None), strict=strict)
+        document = requested_document(play_document, source, options, output=output)
+    return deliver(document, form_requested(wants_json, None), strict=strict)
 
 
 @VERB("report")
@@ -394,8 +396,8 @@ def report_command(model: str, wants_json: bool, output: str, strict: bool, **op
     with reading(model) as source:
         name = "" if model == "-" else Path(model).name
         text = source.data.decode()
-        document = asked_document(report_document, source, options, output=output, origin=name, text=text)
-    return deliver(document, form_asked(wants_json, None), strict=strict)
+        document = requested_document(report_document, source, options, output=output, origin=name, text=text)
+    return deliver(document, form_requested(wants_json, None), strict=strict)
 
 
 @VERB("schema")
@@ -405,8 +407,8 @@ def schema_command(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
     from eomgen.verbs.schema import schema_document as written
 
-    form_asked(wants_json, None, output)  # refuses other endings; of .json the text is one already
-    return deliver(written(), form_asked(wants_json, None), output)
+    form_requested(wants_json, None, output)  # refuses other endings; of .json the text is one already
+    return deliver(written(), form_requested(wants_json, None), output)
 
 
 @VERB("doctor")
@@ -416,7 +418,7 @@ def doctor_command(wants_json: bool, output: str | None) -> int:
     """Tell what this machine can do."""
     from eomgen.verbs.doctor import doctor_document as examined
 
-    return deliver(examined(), form_asked(wants_json, None, output), output)
+    return deliver(examined(), form_requested(wants_json, None, output), output)
 
 
 RUNS = (

@@ -12,10 +12,10 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.programs import (
-    AskedOutputs,
     InverseDynamics,
     RateSlopes,
     ReactionFunction,
+    RequestedOutputs,
     determinate,
     outputs_of_state,
     reactions_program,
@@ -31,6 +31,7 @@ from eomgen.documents.proven import proven
 from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
 from eomgen.errors import DerivationError, MissingValues, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.dynamics.formulations import derived_by
 from eomgen.mechanics.dynamics.matrices import coriolis_of, gravity_of, jacobian_of_point
@@ -40,11 +41,10 @@ from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_rest
 from eomgen.mechanics.reactions.inverse import inverse_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.start.state import start_state
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.printed import Printed
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.text import as_expression
@@ -89,7 +89,7 @@ class Equations(Result):
 
     @property
     def system(self) -> System:
-        """Motion, loads and ties."""
+        """Motion, loads and constraints."""
         return self.graph.system
 
     @property
@@ -169,7 +169,7 @@ class Equations(Result):
         Args:
             x, p: None: the model's start and values.
             inputs: None: the model's own.
-            single: nan where a change opens ties that follow from others: no acceleration then closes them all.
+            single: nan where a change opens constraints that follow from others: no acceleration then closes them all.
         Raises:
             MissingValues: parameters without values.
         """
@@ -191,7 +191,8 @@ class Equations(Result):
     def to_sympy_system(self) -> Any:
         """A SymbolicSystem of sympy.physics.mechanics: q' by q and u, M and forcing; theta' is theta_dot(t).
 
-        Where ties close, their multipliers are the derivatives of further speeds, the impulses of the ties.
+        Where constraints close, their multipliers are the derivatives of further speeds, the impulses of the
+        constraints.
 
         Raises:
             DerivationError: friction that hangs on the reactions.
@@ -212,8 +213,8 @@ class Equations(Result):
 
     def _named(self, key: Any) -> Any:
         if str(key) not in self.symbols:
-            mend = nearest(str(key), self.symbols) or f"one of {', '.join(self.symbols)}"
-            raise UsageError(f"nothing is called '{key}' in the equations", mend=mend)
+            fix = nearest(str(key), self.symbols) or f"one of {', '.join(self.symbols)}"
+            raise UsageError(f"nothing is called '{key}' in the equations", fix=fix)
         return self.symbols[str(key)]
 
     def _value(self, given: Any) -> Any:
@@ -244,7 +245,7 @@ class Equations(Result):
 
     @cached_property
     def reactions(self) -> Reactions:
-        """Every reaction of joints and ties, in q, u and the accelerations.
+        """Every reaction of joints and constraints, in q, u and the accelerations.
 
         Raises:
             DerivationError: a body is held by nothing; a force acts at no place.
@@ -264,7 +265,7 @@ class Equations(Result):
         return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
 
     @cached_property
-    def asked_outputs(self) -> AskedOutputs:
+    def requested_outputs(self) -> RequestedOutputs:
         """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
         found = outputs_of_state(self.system)
         values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
@@ -274,7 +275,7 @@ class Equations(Result):
     def outputs_program(self) -> Program:
         """The outputs that are functions of the state; accelerations as in the right-hand side."""
         refuse_massless(self.graph)
-        return reactions_program(self.asked_outputs.values, self._explicit)[1]
+        return reactions_program(self.requested_outputs.values, self._explicit)[1]
 
     @cached_property
     def slopes(self) -> RateSlopes:
@@ -360,7 +361,7 @@ class Equations(Result):
 
         Args:
             actuated: coordinates, speeds, inputs, or bodies in their joint, one for each degree of freedom; () for all
-                speeds of a system without closing ties.
+                speeds of a system without closing constraints.
         Raises:
             UsageError: an unknown name; too few or too many actuators.
             DerivationError: Coulomb friction; an input that does not act linearly.
@@ -371,12 +372,14 @@ class Equations(Result):
     def in_print(self) -> EquationsOfMotion:
         """The equations in which long rates and accelerations of what is driven stand by their names, psi' and psi''.
 
-        The same as `graph` where there are none, or where it takes their laws to see that a tie holds.
+        The same as `graph` where there are none, or where it takes their laws to see that a constraint holds.
         """
         if not any(part.driven for part in self.model.coordinates.values()):
             return self.graph
         system = system_of(self.model, self.system.modes, with_laws=True)
-        alike = len(system.ties.closing) == len(self.system.ties.closing) and len(system.symbols.u) == len(self.speeds)
+        alike = len(system.constraints.closing) == len(self.system.constraints.closing) and len(
+            system.symbols.u
+        ) == len(self.speeds)
         return equations_of_motion(system) if system.scope.laws and alike else self.graph
 
     @cached_property
@@ -410,17 +413,18 @@ class Equations(Result):
     def start(
         self, parameters: Mapping[str, float] | None = None, start: Mapping[str, float] | None = None
     ) -> np.ndarray:
-        """x at the start, q then u, from the model's start values and those that replace them; the ties hold there.
+        """x at the start, q then u, from the model's start values and those that replace them; the constraints hold
+        there.
 
         Raises:
             UsageError: a name in `start` that is no coordinate and no speed.
             MissingValues: a start value needs a parameter without a value.
-            DerivationError: a tie that does not close at the start.
+            DerivationError: a constraint that does not close at the start.
         """
         return np.array(list(start_state(self.system, parameters, start).values()), dtype=float)
 
     def _known_values(self) -> tuple[np.ndarray | None, np.ndarray | None]:
-        """(p0, x0) of the model, None where a value is missing, or the ties do not close at the start."""
+        """(p0, x0) of the model, None where a value is missing, or the constraints do not close at the start."""
         try:
             p = parameter_vector(self.model)
         except MissingValues:

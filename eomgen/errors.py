@@ -1,4 +1,4 @@
-"""What can go wrong, said so that it can be mended: what is wrong, where, and how to mend it."""
+"""What can go wrong, said so that it can be fixed: what is wrong, where, and how to fix it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from typing import Any
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 HIDDEN = re.compile(  # controls, marks that turn the direction of writing, what has no width, halves of characters
     "[\x00-\x08\x0b-\x1f\x7f-\x9f\xad\u061c\u180e\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff\ufff9-\ufffb"
@@ -26,18 +26,18 @@ class EomgenError(Exception):
     Args:
         what: what is wrong, the culprit printed.
         where: a path that the user can open or a part of the model ("" when there is none).
-        mend: what to do about it ("" when nothing is known).
+        fix: what to do about it ("" when nothing is known).
     """
 
     exit_code = 3
 
-    def __init__(self, what: str, where: str = "", mend: str = "") -> None:
-        self.what, self.where, self.mend = what, where, mend
+    def __init__(self, what: str, where: str = "", fix: str = "") -> None:
+        self.what, self.where, self.fix = what, where, fix
         super().__init__(self.__str__())
 
     def __str__(self) -> str:
         head = f"{self.where}: {self.what}" if self.where else self.what
-        return visible(f"{head}\nmend: {self.mend}" if self.mend else head)
+        return visible(f"{head}\nfix: {self.fix}" if self.fix else head)
 
 
 @dataclass(frozen=True)
@@ -48,20 +48,20 @@ class Problem:
         where: "file:line:column", or the path of the part ("bodies.arm.joint.on") for a model made in Python.
         what: what is wrong, the culprit printed.
         excerpt: the source line and the caret line below it, or "".
-        mend: the nearest right thing, or "".
+        fix: the nearest right thing, or "".
     """
 
     where: str
     what: str
     excerpt: str = ""
-    mend: str = ""
+    fix: str = ""
 
     def __str__(self) -> str:
         lines = [f"{self.where}: {self.what}" if self.where else self.what]
         if self.excerpt:
             lines.append(self.excerpt)
-        if self.mend:
-            lines.append(f"mend: {self.mend}")
+        if self.fix:
+            lines.append(f"fix: {self.fix}")
         return visible("\n".join(lines))
 
     def as_dict(self) -> dict[str, str | int | None]:
@@ -75,7 +75,7 @@ class Problem:
             "column": int(column) if placed else None,
             "what": self.what,
             "excerpt": self.excerpt,
-            "mend": self.mend,
+            "fix": self.fix,
         }
 
 
@@ -84,11 +84,11 @@ class ModelError(EomgenError):
 
     exit_code = 1
 
-    def __init__(self, problems: tuple[Problem, ...] | str, where: str = "", mend: str = "") -> None:
+    def __init__(self, problems: tuple[Problem, ...] | str, where: str = "", fix: str = "") -> None:
         if isinstance(problems, str):
-            problems = (Problem(where, problems, mend=mend),)
+            problems = (Problem(where, problems, fix=fix),)
         self.problems = tuple(problems)
-        super().__init__(self.problems[0].what, self.problems[0].where, self.problems[0].mend)
+        super().__init__(self.problems[0].what, self.problems[0].where, self.problems[0].fix)
 
     def __str__(self) -> str:
         return "\n\n".join(str(problem) for problem in self.problems)
@@ -100,11 +100,11 @@ class MissingValues(ModelError):
     def __init__(self, names: tuple[str, ...], where: str = "") -> None:
         self.names = tuple(names)
         listed = ", ".join(f"'{name}'" for name in self.names)
-        mend = "give it a value in [parameters]"
-        each = (Problem(where or f"parameters.{x}", f"no value for parameter '{x}'", mend=mend) for x in self.names)
+        fix = "give it a value in [parameters]"
+        each = (Problem(where or f"parameters.{x}", f"no value for parameter '{x}'", fix=fix) for x in self.names)
         super().__init__(tuple(each))
         if len(self.names) > 1:
-            self.what, self.mend = f"no value for parameters {listed}", "give them values in [parameters]"
+            self.what, self.fix = f"no value for parameters {listed}", "give them values in [parameters]"
 
 
 class ExpressionError(EomgenError):
@@ -112,9 +112,9 @@ class ExpressionError(EomgenError):
 
     exit_code = 1
 
-    def __init__(self, what: str, column: int = 0, mend: str = "", length: int = 1) -> None:
+    def __init__(self, what: str, column: int = 0, fix: str = "", length: int = 1) -> None:
         self.column, self.length = column, length
-        super().__init__(what, "", mend)
+        super().__init__(what, "", fix)
 
 
 class NumberBeyond(ExpressionError):
@@ -131,17 +131,17 @@ class DerivationError(EomgenError):
     """The equations could not be derived, or a result could not be had from them."""
 
 
-class OpenTies(DerivationError):
+class OpenConstraints(DerivationError):
     """Constraints that no place near the start closes.
 
     Args:
         nearest: how near they come to closing, in words; it takes a search, and is sought when somebody reads it.
     """
 
-    def __init__(self, what: str, where: str = "", mend: str = "", nearest: Callable[[], str] = str) -> None:
+    def __init__(self, what: str, where: str = "", fix: str = "", nearest: Callable[[], str] = str) -> None:
         self._said: str = what
         self._nearest: Callable[[], str] = str
-        super().__init__(what, where, mend)
+        super().__init__(what, where, fix)
         self._nearest = nearest
 
     @property
@@ -155,7 +155,7 @@ class OpenTies(DerivationError):
         self._said = said
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return OpenTies, (self.what, self.where, self.mend)
+        return OpenConstraints, (self.what, self.where, self.fix)
 
 
 class NotYet(DerivationError):

@@ -14,13 +14,13 @@ from xml.sax.saxutils import quoteattr
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, visible
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
 from eomgen.model.forces.load import UniformField
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
-from eomgen.records import dataclass
 from eomgen.robots.tables import UNLIMITED, LeftOut, LegalNames, remarked
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.node import Scalar
@@ -67,7 +67,7 @@ class _Writing:
         model = system.scope.model
         self.remarks = {q: remarked(part.about) for q, part in model.coordinates.items()}
         self.link_names = _apart({name: remarked(body.about).get("name", name) for name, body in model.bodies.items()})
-        self.joint_names = _apart({q: told.get("name", q) for q, told in self.remarks.items()})
+        self.joint_names = _apart({q: reported.get("name", q) for q, reported in self.remarks.items()})
         self.world = LegalNames(set(self.link_names.values())).new("world")
         self.joints = LegalNames(set(self.joint_names.values()))
         self.followed = self._followed()
@@ -193,13 +193,13 @@ class _Writing:
         return f'<dynamics damping="{damping!r}"/>'
 
     def _followed(self) -> dict[str, tuple[str, str]]:
-        """Of a coordinate that a tie makes follow another: (the tie, how it follows).
+        """Of a coordinate that a constraint makes follow another: (the constraint, how it follows).
 
         Of the two the later follows, or the one that no motor drives.
         """
         found: dict[str, tuple[str, str]] = {}
         driven = {name for name, _ in self._driven()}
-        for row in self.system.ties.closing:
+        for row in self.system.constraints.closing:
             if row.gap is None:
                 continue
             own = [x for x in self.system.symbols.q if depends_on(row.gap, (x,))]
@@ -212,14 +212,14 @@ class _Writing:
             if k is not None:
                 a, b, other = factors[k], factors[1 - k], quoteattr(self.joint_names[own[1 - k].name])
                 how = f'<mimic joint={other} multiplier="{-b / a!r}" offset="{-c / a!r}"/>'
-                found[own[k].name] = row.tie, how
+                found[own[k].name] = row.constraint, how
         return found
 
     def _mimic(self, q: str) -> str:
         """How a coordinate follows another one."""
-        tie, how = self.followed.get(q, ("", ""))
-        if tie:
-            self.left.setdefault("", []).append(tie)
+        constraint, how = self.followed.get(q, ("", ""))
+        if constraint:
+            self.left.setdefault("", []).append(constraint)
         return how
 
     def _driven(self) -> list[tuple[str, str]]:
@@ -252,15 +252,15 @@ class _Writing:
                 self.left.setdefault(what, []).extend(names)
 
     def _forces(self) -> None:
-        """What of the forces and ties is not said."""
+        """What of the forces and constraints is not said."""
         said = set(self.left.pop("", []))
-        ties = [name for name in self.system.scope.model.constraints if name not in said]
+        constraints = [name for name in self.system.scope.model.constraints if name not in said]
         fields = self.numbers(self.system.loads.fields, "forces")
         applied = self.system.loads.applied
         weight = [x.name for x in applied if all(isinstance(load, UniformField) for load in x.loads or (None,))]
         usual = fields[:2] == [0.0, 0.0] and abs(fields[2] + G) < ROUNDING
         forces = [name for name in self.system.scope.model.forces if name not in weight or not usual]
-        for what, names in (("forces", forces), ("constraints", ties)):
+        for what, names in (("forces", forces), ("constraints", constraints)):
             if names:
                 self.left.setdefault(what, []).extend(names)
 
@@ -271,12 +271,12 @@ def _apart(wanted: dict[str, str]) -> dict[str, str]:
     return {key: name if taken.count(name) == 1 else key for key, name in wanted.items()}
 
 
-def _limit(kind: str, told: dict[str, str]) -> str:
+def _limit(kind: str, reported: dict[str, str]) -> str:
     """The limits of a joint; a slide or hinge with ends must have all four."""
-    if kind == "continuous" and not told:
+    if kind == "continuous" and not reported:
         return ""
     ends = {} if kind == "continuous" else {"lower": f"-{UNLIMITED}", "upper": UNLIMITED}
-    said = {**ends, "effort": UNLIMITED, "velocity": UNLIMITED, **told}
+    said = {**ends, "effort": UNLIMITED, "velocity": UNLIMITED, **reported}
     return f"<limit {' '.join(f'{key}={quoteattr(value)}' for key, value in said.items())}/>"
 
 

@@ -57,7 +57,7 @@ def write(path: str | Path, content: Content) -> None:
         raise WriteFailed(
             f"the file cannot be written: {error.strerror or error}",
             str(path),
-            mend="name a place that can be written to",
+            fix="name a place that can be written to",
         ) from None
 
 
@@ -76,7 +76,7 @@ def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Pa
         if len(contents) == 1:
             what, where = "the file cannot be written", str(Path(directory, *contents))
         raise WriteFailed(
-            f"{what}: {error.strerror or error}", where, mend="write into another file or folder"
+            f"{what}: {error.strerror or error}", where, fix="write into another file or folder"
         ) from None
 
 

@@ -34,6 +34,7 @@ from eomgen.codegen.targets.c_lanes import RUN_USE, integrator_files
 from eomgen.codegen.vectors import single_error, single_vectors, texts_of, vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
+from eomgen.frozen import dataclass
 from eomgen.identification.proof_of_groups import groups_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
@@ -43,10 +44,17 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.proof.emitted_code import Judged, PhaseMotion, TriedState, Written, fmu_told, start_state_tried, unwritten
+from eomgen.proof.emitted_code import (
+    Judged,
+    PhaseMotion,
+    TriedState,
+    Written,
+    fmu_reported,
+    start_state_tried,
+    unwritten,
+)
 from eomgen.proof.states import consistent_states
 from eomgen.questions.run import pulling
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import paths_of
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import BEST, RUN, SINGLE
@@ -93,9 +101,9 @@ class Generated:
 
     @cached_property
     def _held(self) -> list[tuple[float, list[float], list[float]]]:
-        """States (t, x, p) at which all ties hold, in doubles; [] where none closes."""
+        """States (t, x, p) at which all constraints hold, in doubles; [] where none closes."""
         system = self.equations.graph.system
-        if not (system.free or system).ties.closing:
+        if not (system.free or system).constraints.closing:
             return []
         symbols, found = system.symbols, []
         groups = ((*symbols.q, *symbols.u), tuple(symbols.parameters.values()))
@@ -134,17 +142,19 @@ class Generated:
     @property
     def notes(self) -> tuple[str, ...]:
         """What is not in the code, and why."""
-        left = (f"the output {name}: {why}" for name, why in self.equations.asked_outputs.left.items())
+        left = (f"the output {name}: {why}" for name, why in self.equations.requested_outputs.left.items())
         unfinished = ["matrices: friction hangs on the reactions"] if self.equations.graph.friction else []
-        open_ties = "what puts the ties back as they open by the errors of many steps (--baumgarte lets them pull)"
-        drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.ties.rows)
+        open_constraints = (
+            "what puts the constraints back as they open by the errors of many steps (--baumgarte lets them pull)"
+        )
+        drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.constraints.rows)
         unfinished += ["jacobian: nothing moves"] if self.slopes and self.jacobian is None else []
-        return (*(note for note in (self.note, open_ties * drifts) if note), *left, *unfinished)
+        return (*(note for note in (self.note, open_constraints * drifts) if note), *left, *unfinished)
 
     @cached_property
     def outputs(self) -> Emitted | None:
         """The outputs that are functions of the state, described; None where there are none."""
-        names = tuple(self.equations.asked_outputs.values)
+        names = tuple(self.equations.requested_outputs.values)
         if not names:
             return None
         program = self.equations.outputs_program
@@ -162,8 +172,8 @@ class Generated:
         if not self.slopes or not self.equations.graph.symbols.q:
             return None
         found = self.equations.slopes
-        program, told = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
-        return program, replace(told, vectors=tuple(v for v in told.vectors if self._are_single(v)))
+        program, reported = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
+        return program, replace(reported, vectors=tuple(v for v in reported.vectors if self._are_single(v)))
 
     @cached_property
     def regressor(self) -> Emitted | None:
@@ -179,15 +189,16 @@ class Generated:
         program = program_of(entries_of(blocks), graph.symbols, inputs=graph.inputs, accelerations=graph.symbols.a)
         sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
         columns = {"Y": found.parameters, "Y_base": tuple(group.formula for group in found.base.groups)}
-        told = replace(self.motion[1], vectors=self._answers(program), role=REGRESSOR, blocks=sizes)
-        return program, replace(told, columns=tuple(columns.get(name, ()) for name in blocks))
+        reported = replace(self.motion[1], vectors=self._answers(program), role=REGRESSOR, blocks=sizes)
+        return program, replace(reported, columns=tuple(columns.get(name, ()) for name in blocks))
 
     @cached_property
     def _regressor(self) -> Regressor:
         return regressor_of(self.equations.system)
 
     def _are_single(self, v: TestVector) -> bool:
-        """Whether slopes have one value: where a change opens ties that follow from others, they hang on the pivots."""
+        """Whether slopes have one value: where a change opens constraints that follow from others, they hang on the
+        pivots."""
         if not self.equations.graph.J or any(y != y for y in v.result):
             return True
         found = self.equations.rhs_jacobian(v.t, v.x, v.p, v.inputs, single=True)
@@ -206,7 +217,9 @@ class Generated:
         """{path: content} of every file."""
         if not self.float32:
             return self._in_doubles
-        found = self._texts([(p, replace(told, vectors=single_vectors(p, told.vectors))) for p, told in self.emitted])
+        found = self._texts(
+            [(p, replace(reported, vectors=single_vectors(p, reported.vectors))) for p, reported in self.emitted]
+        )
         for target in self.targets:
             single, folder = target_named(target).single, self._folder(target)
             assert single is not None
@@ -252,7 +265,7 @@ class Generated:
         """Of every function in every language.
 
         Args:
-            plain: the equations whose ties do not pull, in which inverse dynamics is written.
+            plain: the equations whose constraints do not pull, in which inverse dynamics is written.
         """
         start = start_state_tried(0.0, self._start.x0, self._start.p0)
         start = (*(TriedState(t, np.array(x), p) for t, x, p in self._held), *start)
@@ -261,7 +274,7 @@ class Generated:
             values = self.equations.reaction_values
         judged = {RHS: Judged(PhaseMotion(self.equations.graph), values)}
         judged[REACTIONS] = judged[RHS]
-        for role, scalars in ((OUTPUTS, self.equations.asked_outputs.values), (MATRICES, self._matrix_entries)):
+        for role, scalars in ((OUTPUTS, self.equations.requested_outputs.values), (MATRICES, self._matrix_entries)):
             judged[role] = Judged(PhaseMotion(self.equations.graph), scalars)
         judged[JACOBIAN] = Judged(
             PhaseMotion(self.equations.graph), {}, slopes=partial(self.equations.rhs_jacobian, single=True)
@@ -280,7 +293,7 @@ class Generated:
             found = judged[emitted[1].role].shipped(self._written(self.targets[0], emitted))
             yield from () if found is None else (found,)
         for target in self.targets:
-            own = [told.vectors for _, told in self.emitted if target_named(target).writes(told.role)]
+            own = [reported.vectors for _, reported in self.emitted if target_named(target).writes(reported.role)]
             yield from unwritten(_inside(self.texts, self._folder(target)), chain.from_iterable(own))
         yield from self._packed()
         for target in self.targets if self.float32 else ():
@@ -295,17 +308,19 @@ class Generated:
         given = {name: x for name, x in zip(symbols.parameters, p0, strict=False) if x == x}
         for path, content in self.texts.items():
             if path.endswith(".fmu") and isinstance(content, bytes):
-                yield fmu_told(content, states if len(given) == len(symbols.parameters) else {}, given)
+                yield fmu_reported(content, states if len(given) == len(symbols.parameters) else {}, given)
 
     def _single(self, target: str, emitted: Emitted) -> Check:
         """The text in single precision, run, against the vectors and the tolerances that stand beside it."""
-        program, told = emitted
+        program, reported = emitted
         stem, single = stem_of(self.stem), target_named(target).single
         assert single is not None
         how, texts = "the code in single precision, run", _inside(self.texts, self._folder(target))
-        what = f"{told.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
+        what = f"{reported.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
         try:
-            error = single_error(single.run(texts, program, stem, told.role), single_vectors(program, told.vectors))
+            error = single_error(
+                single.run(texts, program, stem, reported.role), single_vectors(program, reported.vectors)
+            )
         except (RunFailed, ToolMissing) as failure:
             refused = isinstance(failure, RunFailed) and self._runs(target, emitted)
             return checked(what, failure.what, how) if refused else unchecked(what, failure.what, how)
@@ -330,9 +345,9 @@ class Generated:
         }
 
     def _written(self, target: str, emitted: Emitted) -> Written:
-        program, told = emitted
+        program, reported = emitted
         texts = _inside(self._in_doubles if self.float32 else self.texts, self._folder(target))
-        return Written(target, texts, program, stem_of(self.stem), told.role, told.vectors)
+        return Written(target, texts, program, stem_of(self.stem), reported.role, reported.vectors)
 
     @cached_property
     def _start(self) -> RightHandSide:
@@ -341,7 +356,7 @@ class Generated:
     @cached_property
     def _reactions(self) -> tuple[Emitted | None, str]:
         """(the program of the reactions, described; a line on those that are not in it)."""
-        equations, told = self.equations, self.motion[1]
+        equations, reported = self.equations, self.motion[1]
         try:
             names, program = equations.reactions_program
             answers = vectors(program, x0=self._start.x0, p0=self._start.p0, held=self._held) if names else ()
@@ -349,11 +364,11 @@ class Generated:
             return None, f"no code for the reactions: {error.what}"
         if not names:
             return None, "no code for the reactions: none has a single value" if equations.reactions.components else ""
-        asked = named_reactions(equations.reactions.balance)
-        left = ", ".join(named.name for named in asked if named.name not in names)
+        requested = named_reactions(equations.reactions.balance)
+        left = ", ".join(named.name for named in requested if named.name not in names)
         note = f"not in the code, statically indeterminate: {left}" if left else ""
-        remarks = {**told.remarks, **{named.name: f"[{named.unit}]" for named in asked}}
-        return (program, replace(told, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)), note
+        remarks = {**reported.remarks, **{named.name: f"[{named.unit}]" for named in requested}}
+        return (program, replace(reported, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)), note
 
 
 @doing("the code")
@@ -393,17 +408,15 @@ def generate(
     doubles = [target for target in targets if target_named(target).single is None]  # refuses what is none
     if float32 and doubles:
         some = ", ".join(target.name for target in ALL if target.single is not None)
-        raise UsageError(f"no single precision in {', '.join(doubles)}: its numbers are doubles", mend=f"take {some}")
+        raise UsageError(f"no single precision in {', '.join(doubles)}: its numbers are doubles", fix=f"take {some}")
     equations = pipeline.derive(model)
     equations = equations if baumgarte is None else pulling(equations, baumgarte)
     if float32 and equations.graph.J:
         closing = ", ".join(
-            f"'{name}'" for name in dict.fromkeys(row.tie for row in equations.graph.system.ties.closing)
+            f"'{name}'" for name in dict.fromkeys(row.constraint for row in equations.graph.system.constraints.closing)
         )
-        what = (
-            f"no single precision for ties that multipliers close: {closing}: it does not tell which depend on others"
-        )
-        raise UsageError(what, mend="make coordinates `dependent`, or leave --float32 out")
+        what = f"no single precision for constraints that multipliers close: {closing}: which are redundant stays open"
+        raise UsageError(what, fix="make coordinates `dependent`, or leave --float32 out")
     origin = origin or model.name
     source = f"{origin} ({model.source})" if model.source else origin
     acting = None if actuated is None else tuple(actuated)
@@ -419,11 +432,11 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
         UsageError: C is not asked for; contacts or paths change the equations on the way.
     """
     if "c" not in targets:
-        raise UsageError("an integrator is written in C", mend="ask for --target c too")
+        raise UsageError("an integrator is written in C", fix="ask for --target c too")
     changing = [*(contact.name for contact in contacts_of(model)), *paths_of(model)]
     if changing:
         names = ", ".join(f"'{name}'" for name in changing)
-        raise UsageError(f"no integrator for what changes its equations: {names}", mend="take eomgen simulate")
+        raise UsageError(f"no integrator for what changes its equations: {names}", fix="take eomgen simulate")
 
 
 def _inside(texts: Mapping[str, FileContent], folder: str) -> dict[str, FileContent]:

@@ -1,4 +1,5 @@
-"""Model, contact modes -> motion -> inertia | loads | ties -> Equations -> code -> Trajectory: all on one screen."""
+"""Model, contact modes -> motion -> inertia | loads | constraints -> Equations -> code -> Trajectory: all on one
+screen."""
 
 from __future__ import annotations
 
@@ -10,8 +11,9 @@ from typing import TYPE_CHECKING, Any
 from eomgen.codegen.programs import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
+from eomgen.frozen import recalled
 from eomgen.mechanics.constraints.rows import limits_passed
-from eomgen.mechanics.dynamics.formulations import METHODS, told_of_nodes, with_nodes_balanced
+from eomgen.mechanics.dynamics.formulations import METHODS, reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.kinematics.scene import ContactModes
@@ -22,7 +24,6 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs
 from eomgen.model.samples import left_tables
 from eomgen.model.unknowns import refuse_motion
-from eomgen.records import recalled
 from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import doing, growing
@@ -48,7 +49,8 @@ def derive(
     Args:
         method: by which way they are derived, one of METHODS: energies, wrenches along the motions that are free, or
             these with every body cut free first.
-        contacts: how the contacts are that can end, slide or stick, by tie or body on a path, what is not named closed;
+        contacts: how the contacts are that can end, slide or stick, by constraint or body on a path, what is not named
+            closed;
             None: as they are at the start. What had to be assumed of them is among the equations' `assumptions`.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
@@ -59,7 +61,7 @@ def derive(
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
     if method not in METHODS:
-        raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
+        raise UsageError(f"unknown method '{method}'", fix=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
     if contacts is None:
         return recalled(model, method, lambda: _derived(model, method, contacts_at_start(model)))
@@ -69,9 +71,9 @@ def derive(
 def _derived(model: Model, method: str, at_start: ContactsAtStart) -> Equations:
     system = system_of(model, at_start.modes)
     if method == "kinetostatic":
-        reactions_of(system)  # refuses joints and ties that cannot carry the motion
+        reactions_of(system)  # refuses joints and constraints that cannot carry the motion
     equations = equations_of_motion(system)
-    return Equations(model, method, equations, (*told_of_nodes(model), *at_start.assumptions))
+    return Equations(model, method, equations, (*reported_of_nodes(model), *at_start.assumptions))
 
 
 def inverse_dynamics(
@@ -122,7 +124,8 @@ def simulate_many(
 ) -> Runs:
     """Many motions of one model, derived and compiled once; a run that fails is recorded, and the rest go on.
 
-    A model without ties and contacts is stepped in the lanes of vectors, each with its own steps; one with ties by
+    A model without constraints and contacts is stepped in the lanes of vectors, each with its own steps; one with
+    constraints by
     marches in C, a run after the other; where contacts change, and where a step needs a look, one by one.
 
     Args:
@@ -134,8 +137,8 @@ def simulate_many(
     from eomgen.questions.many_runs import many_runs
 
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method)
-    asked = {"parameters": parameters, "start": start, "inputs": inputs}
-    return many_runs(run, time=time, samples=samples, threads=threads, **asked)
+    requested = {"parameters": parameters, "start": start, "inputs": inputs}
+    return many_runs(run, time=time, samples=samples, threads=threads, **requested)
 
 
 def simulate(
@@ -161,12 +164,13 @@ def simulate(
         inputs: values that replace the model's: numbers, expressions of t, `eomgen.samples(times, values)`; feedback by
             an expression of the state ("-k*x - c*x'"), by {"value": law, "every": 0.01}, sampled and held, or by a
             Python function of (t, x), x = (q, u), which scipy steps.
-        rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
+        rtol, atol: tolerances of the integration; constraints are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
         samples: how many instants are given, or the instants themselves, in SI or with a unit.
         method: "auto" is DOP853, and Radau where a motion is stiff; DOP853, RK45, RK23; Radau, BDF, LSODA; "taylor"
             goes by power series of the equations, which kinks do not have.
-        stabilization: what keeps ties closed: "projection", "baumgarte" or "none"; "energy" keeps the energy too.
+        stabilization: what keeps constraints closed: "projection", "baumgarte" or "none"; "energy" keeps the energy
+            too.
         until: an equation such as "theta = 90 deg" or "reaction_n(wall) = 0": the end, where it first holds.
     Raises:
         MissingValues: parameters without a value, all named.
@@ -181,7 +185,7 @@ def simulate(
         from eomgen.simulation.integrator import Stepping
 
         if until is not None:
-            raise UsageError("a run with controllers ends with its time", mend="leave `until` out")
+            raise UsageError("a run with controllers ends with its time", fix="leave `until` out")
         equations = derive(with_controlled(model, tuple(controllers)))
         how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
         instants = SAMPLES if samples is None else samples
@@ -204,7 +208,7 @@ def _warned(model: Model, found: Trajectory) -> Trajectory:
     passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])
     for problem in (*left_tables(model, float(found.t[-1]) if len(found.t) else 0.0), *passed):
         warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
-    missing = found.told if isinstance(found.reactions, OnDemand) else found.remark  # which waits as they do
+    missing = found.reported if isinstance(found.reactions, OnDemand) else found.remark  # which waits as they do
     if missing and (found.reactions or found.outputs):
         warnings.warn(f"{model.name}: {missing}", RuntimeWarning, stacklevel=3)
     return found

@@ -106,7 +106,7 @@ run.plot(view="polar")
 # %% [markdown]
 # ## Small motions
 #
-# About the place of rest: matrices, modes, the state space.
+# About the equilibrium: matrices, modes, the state space.
 
 # %%
 small = eomgen.linearize(model, parameters={"l1": 1, "l2": 1})

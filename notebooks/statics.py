@@ -121,14 +121,16 @@ eomgen.virtual_displacement(here.parent / "models" / "fink_truss.toml", "tension
 # %%
 import dataclasses
 
-loose = dataclasses.replace(frame, constraints={name: tie for name, tie in frame.constraints.items() if name != "B"})
+loose = dataclasses.replace(
+    frame, constraints={name: constraint for name, constraint in frame.constraints.items() if name != "B"}
+)
 try:
     eomgen.statics(loose)
 except eomgen.DerivationError as error:
     print(error)
 
 # %% [markdown]
-# A system with coordinates is free to move. Then the places of rest are asked, and whether they are stable.
+# A system with coordinates is free to move. Then the equilibria are asked, and whether they are stable.
 
 # %%
 eomgen.statics(eomgen.load(here.parent / "models" / "elastic_pendulum.toml"))

@@ -56,7 +56,7 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     """A quick test compiles nothing, in its fixtures neither: what goes to a compiler, or to its cache, is slow."""
     with pytest.MonkeyPatch.context() as patch:
         if item.get_closest_marker("slow") is None:
-            patch.setattr("eomgen.codegen.build._kept", _compiled_in_a_quick_test)
+            patch.setattr("eomgen.codegen.build._compiled_file", _compiled_in_a_quick_test)
         if hasattr(os, "fork"):
             patch.setattr(os, "fork", _forked_without_threads)
         yield

@@ -115,6 +115,6 @@ def test_a_file_that_asks_nothing_is_typeset_all_the_same(name):
 
 
 def test_answers_of_what_is_driven_wholly_rest_on_proven_rates():
-    """No speed is left, and the rates that follow are put to the ties all the same."""
+    """No speed is left, and the rates that follow are put to the constraints all the same."""
     certificate = eomgen.solve(eomgen.loads(GUIDED + '[outputs]\nv = "vx(pin.origin)"\n')).certify()
     assert certificate.ok and "eliminated rows hold whatever the speeds" in [x.name for x in certificate.checks]

@@ -96,8 +96,8 @@ def test_what_cannot_be_answered_says_so_and_the_others_are_given(output, word):
 def test_the_message_of_one_output_does_not_depend_on_another():
     """The outputs are answered one by one, in the order of the file."""
     rope = '[constraints.rope]\nkind = "link"\npoints = ["O", "bob.center"]\n[points]\nO = [0, 0]\n[outputs]'
-    asked = 'c = "reaction_n(rope)"\nb = "tension(rope)"\nd = "multiplier(rope)"\n'
-    found = answers(asked, PENDULUM.replace("[outputs]", rope))
+    requested = 'c = "reaction_n(rope)"\nb = "tension(rope)"\nd = "multiplier(rope)"\n'
+    found = answers(requested, PENDULUM.replace("[outputs]", rope))
     assert not found["c"].answered and "no normal reaction" in (found["c"].message or "")
     assert list(found) == ["c", "b", "d"]
     assert found["b"].exact == found["d"].exact == "m*(l*theta'^2 + g*cos(theta))"
@@ -224,9 +224,9 @@ def test_at_a_time_an_oscillator_is_where_its_law_of_motion_says():
 
 def test_a_given_motion_is_exact_at_a_time():
     """s(t) = 0.1 + 3 t + w t^2/2; its rate 3 + w t; an input by its own expression."""
-    asked = 's = { value = "s", at = "t = t1" }\nv = { value = "vy(lift.center)", at = "t = 2" }\n'
-    asked += 'f = { value = "F", at = "t = t1" }\nt = { value = "t", at = "t = 2*t1" }\n'
-    found = answers(asked, OSCILLATOR)
+    requested = 's = { value = "s", at = "t = t1" }\nv = { value = "vy(lift.center)", at = "t = 2" }\n'
+    requested += 'f = { value = "F", at = "t = t1" }\nt = { value = "t", at = "t = 2*t1" }\n'
+    found = answers(requested, OSCILLATOR)
     exact = {name: parse(a.exact or "").evaluate({"w": 2.0, "t1": 1.5, "pi": math.pi}) for name, a in found.items()}
     assert exact == pytest.approx({"s": 0.1 + 4.5 + 2.25, "v": 7, "f": 3, "t": 3})
     assert {name: a.value for name, a in found.items()} == pytest.approx(exact)

@@ -39,7 +39,7 @@ def balances(path: Path, equation: str) -> Balances:
 def test_every_balance_of_what_is_cut_free_holds(model, equation):
     """sum of F . e = 0 and sum of M = 0, inertia forces among them, with what the model says of all reactions."""
     judged = balances(MODELS / f"{model}.toml", equation)
-    cuts = list(judged._free.cuts(judged._asked[0]))
+    cuts = list(judged._free.cuts(judged._requested[0]))
     assert len(cuts) > 3
     for cut in cuts:
         pushes = [push for each in judged._free.acting for push in each.on(cut.parts)]
@@ -57,7 +57,7 @@ def test_every_balance_of_a_part_of_a_truss_holds(model):
 
 
 @pytest.mark.parametrize(
-    ("model", "equation", "kind", "told"),
+    ("model", "equation", "kind", "reported"),
     usual(
         [
             (
@@ -99,10 +99,10 @@ def test_every_balance_of_a_part_of_a_truss_holds(model):
         3,
     ),
 )
-def test_one_wrong_item_of_a_balance_is_told(model, equation, kind, told):
+def test_one_wrong_item_of_a_balance_is_told(model, equation, kind, reported):
     """All else is right: what was forgotten, turned, or taken for another component or lever arm of a part cut free."""
     (cause,) = eomgen.verify(MISTAKES / f"{model}.toml", equation).causes
-    assert (cause.kind, told in cause.text) == (kind, True), cause.text
+    assert (cause.kind, reported in cause.text) == (kind, True), cause.text
     assert cause.body or cause.force or kind == "wrong_quantity"
 
 
@@ -129,18 +129,18 @@ forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("equation", "told"),
+    ("equation", "reported"),
     [
         ("tension(string) = 2*m*g", "the weight of bob in the balance of forces along y of bob, -m*g, is missing"),
         ("tension(string) = m*g", "the inertia force of bob"),
     ],
 )
-def test_the_balance_at_an_instant_is_that_of_its_state(equation, told):
+def test_the_balance_at_an_instant_is_that_of_its_state(equation, reported):
     """N = m g + m v^2/l at the lowest place, v^2 = 2 g l; what has no value there made such an answer undecided."""
     model = eomgen.loads(PENDULUM)
     assert eomgen.verify(model, "tension(string) = 3*m*g", at="theta = 0")
     found = eomgen.verify(model, equation, at="theta = 0")
-    assert found.verdict == "wrong" and told in found.causes[0].text
+    assert found.verdict == "wrong" and reported in found.causes[0].text
 
 
 def test_a_section_cuts_line_loads():

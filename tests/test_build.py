@@ -10,7 +10,7 @@ import pytest
 from forked import needs_sh
 from hand_made import cart_pole, pendulum
 
-from eomgen import kept
+from eomgen import disk_cache
 from eomgen.codegen import build, rhs
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
@@ -26,7 +26,7 @@ needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 @pytest.fixture
 def own_cache(tmp_path, monkeypatch):
     """A cache folder of this test's own."""
-    monkeypatch.setattr(kept.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    monkeypatch.setattr(disk_cache.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
     return tmp_path / "cache" / "eomgen"
 
 
@@ -97,11 +97,11 @@ def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatc
     if what == "may be written":
         path.chmod(0o777)
     elif what == "belongs to another":
-        monkeypatch.setattr(kept, "is_ours", lambda x: x != path or x.stat().st_mtime_ns != old)
+        monkeypatch.setattr(disk_cache, "is_ours", lambda x: x != path or x.stat().st_mtime_ns != old)
     else:
         other = own_cache / f"{'0' * 32}-{path.name[33:]}"
         path.rename(other)
-        assert kept.content_of(other) is None
+        assert disk_cache.content_of(other) is None
     old = path.stat().st_mtime_ns if path.exists() else 0
     ran = []
     real = build._ran
@@ -117,9 +117,9 @@ def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(
     """0777 becomes 0700; where the folder is another's, one of this process is taken."""
     cached(own_cache, monkeypatch)
     own_cache.chmod(0o777)
-    assert kept.cache_place() == own_cache and own_cache.stat().st_mode & 0o777 == 0o700
+    assert disk_cache.cache_place() == own_cache and own_cache.stat().st_mode & 0o777 == 0o700
     monkeypatch.setattr(build.os, "getuid", lambda: own_cache.stat().st_uid + 1)
-    assert kept.cache_place() != own_cache
+    assert disk_cache.cache_place() != own_cache
 
 
 @pytest.mark.slow
@@ -146,7 +146,7 @@ def test_a_compiler_that_does_not_work_is_one_line(own_cache, tmp_path, monkeypa
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     """A file in the folder's place: the library goes to a folder of this process."""
     (tmp_path / "taken").write_text("")
-    monkeypatch.setattr(kept.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "taken" / name))
+    monkeypatch.setattr(disk_cache.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "taken" / name))
     assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
 
 
@@ -166,7 +166,7 @@ def test_several_at_once_compile_into_one_cache(own_cache):
 
 @pytest.mark.slow
 def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
-    """No compiler: one line on stderr in a process; an explicit "c" is an error with its mend."""
+    """No compiler: one line on stderr in a process; an explicit "c" is an error with its fix."""
     monkeypatch.setattr(build.shutil, "which", lambda name: None)
     monkeypatch.setattr(build.importlib.util, "find_spec", lambda name: None)
     monkeypatch.setattr(rhs, "_said", set())

@@ -316,7 +316,7 @@ def test_a_model_is_read_from_stdin_too():
 
 
 def test_an_error_under_json_carries_its_place(tmp_path):
-    """file, line, column, what, excerpt, mend of every problem."""
+    """file, line, column, what, excerpt, fix of every problem."""
     path = tmp_path / "bad.toml"
     path.write_text(FALL.replace("k*x^3", "k*y^3"))
     result = run("check", str(path), "--json")
@@ -393,7 +393,7 @@ def test_check_counts_the_nodes_of_a_truss_as_particles():
     """2 Np - members - supports = 0"""
     lines = run("check", TRUSS).stdout.splitlines()
     assert "degrees of freedom: 0 by rank" in lines
-    assert "count by formula: 0 = 2*3 (particles) - 6 (ties)" in lines
+    assert "count by formula: 0 = 2*3 (particles) - 6 (constraints)" in lines
 
 
 @pytest.mark.parametrize(
@@ -652,7 +652,7 @@ def test_reactions_that_cannot_be_code_are_said_in_one_line(tmp_path):
 
 
 def test_a_run_says_once_where_a_reaction_has_no_value(tmp_path):
-    """nan in the file, null in the JSON, one line on stderr that names the first instant and the ties."""
+    """nan in the file, null in the JSON, one line on stderr that names the first instant and the constraints."""
     words = ("simulate", str(MODELS / "parallelogram_reactions.toml"), "--time", "0.1", "--samples", "3")
     result = run(*words, "--json")
     trajectory = json.loads(result.stdout)["trajectory"]

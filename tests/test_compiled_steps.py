@@ -24,15 +24,18 @@ def rates(name: str):
     """(the right-hand side in C, the same without its address, the start)."""
     rhs = eomgen.derive(eomgen.load(MODELS / f"{name}.toml")).rhs("c")
     f = rhs.at(rhs.p0)
-    return f, lambda t, x: f(t, x), rhs.x0, rhs.spheres
+    return f, lambda t, x: f(t, x), rhs.x0, rhs.unit_quaternions
 
 
 @pytest.mark.parametrize("name", ["double_pendulum", "spherical_pendulum", "arm3", "tumbling_body"])
 def test_steps_in_c_are_those_of_scipy(name):
     """The same instants and states to rounding, between the steps too, and as many evaluations."""
-    f, plain, x0, spheres = rates(name)
+    f, plain, x0, unit_quaternions = rates(name)
     how, instants = Stepping(rtol=1e-7, atol=1e-9), np.linspace(0.0, 0.5, 38)
-    own, other = (march(rate, (0.0, 0.5), x0, how=how, instants=instants, spheres=spheres) for rate in (f, plain))
+    own, other = (
+        march(rate, (0.0, 0.5), x0, how=how, instants=instants, unit_quaternions=unit_quaternions)
+        for rate in (f, plain)
+    )
     assert (own.steps, own.status, own.message) == (other.steps, other.status, other.message) and own.steps > 3
     steps, expected = (run.tracks[0].all[0] for run in (own, other))
     assert steps == pytest.approx(expected, rel=1e-6)
@@ -66,7 +69,7 @@ def test_a_step_shrinks_until_it_goes_no_further():
     assert run.status in ("not finite", "step too small") and run.t[-1] == pytest.approx(1, abs=1e-6)
 
 
-RUNS = [  # contacts that change, ties in all forms, change points, quaternions, samples
+RUNS = [  # contacts that change, constraints in all forms, change points, quaternions, samples
     ("sliding_ladder", 2.0),
     ("rough_incline", 2.0),
     ("four_bar", 3.0),

@@ -1,4 +1,4 @@
-"""A run whose own energy, ties or norms say that it is wrong is not ok, without being asked for its proof."""
+"""A run whose own energy, constraints or norms say that it is wrong is not ok, without being asked for its proof."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import eomgen
+from eomgen.frozen import with_fields
 from eomgen.questions import many_runs
-from eomgen.records import with_fields
 from eomgen.simulation.solvers import accuracy_of
 
 pytestmark = pytest.mark.slow
@@ -31,8 +31,8 @@ def altered(run, column, by):
     [
         ("double_pendulum", 2, "E - E0 is the integral of the power"),
         ("cart_pole", 3, "E - E0 is the integral of the power"),
-        ("four_bar", 1, "E - E0 is the integral of the power|the ties stay closed"),
-        ("sliding_ladder", 0, "E - E0|ties"),
+        ("four_bar", 1, "E - E0 is the integral of the power|the constraints stay closed"),
+        ("sliding_ladder", 0, "E - E0|constraints"),
         ("tumbling_body", 3, "E - E0|quaternions keep their norm"),
     ],
 )

@@ -58,8 +58,8 @@ def test_a_unit_that_is_lost_ends_a_verb(monkeypatch, tmp_path):
     path.write_text(MODEL)
     monkeypatch.setattr(Expression, "scaled", lambda self, factor, pi_power=0: self)
     done = CliRunner().invoke(main, ["check", str(path), "--json"])
-    told = json.loads(done.stdout)["error"]["problems"][0]["what"]
-    assert done.exit_code == 3 and "the file's number of 'm' is 0.25 in SI, and 250 was read" in told
+    reported = json.loads(done.stdout)["error"]["problems"][0]["what"]
+    assert done.exit_code == 3 and "the file's number of 'm' is 0.25 in SI, and 250 was read" in reported
 
 
 @each("path", sorted((Path(__file__).parents[1] / "models").rglob("*.toml")))

@@ -55,9 +55,13 @@ def test_a_row_follows_in_the_reals_as_in_the_prime_field(seed):
     rows, shares = rng.integers(-9, 10, size=(3, 5)), rng.integers(-9, 10, size=3)
     row = shares @ rows
     number = fifty_digits().number
-    for asked in (row, row + np.eye(5, dtype=int)[seed], 0 * row):
-        real = dense.follows_in_digits([[number(int(x)) for x in r] for r in rows], [number(int(x)) for x in asked])
-        assert real == modular.follows(rows.tolist(), asked.tolist()) == (np.linalg.matrix_rank([*rows, asked]) == 3)
+    for requested in (row, row + np.eye(5, dtype=int)[seed], 0 * row):
+        real = dense.follows_in_digits([[number(int(x)) for x in r] for r in rows], [number(int(x)) for x in requested])
+        assert (
+            real
+            == modular.follows(rows.tolist(), requested.tolist())
+            == (np.linalg.matrix_rank([*rows, requested]) == 3)
+        )
 
 
 def test_rows_that_are_rounding_are_no_rows():

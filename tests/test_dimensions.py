@@ -53,7 +53,7 @@ def declared(force: str) -> eomgen.Model:
 
 
 @each(
-    "force, told, mend",
+    "force, reported, fix",
     [
         ("-k*x^2", "'-k*x^2' is in N*m, but the force of force 'f' is in N", "write -k*x"),
         ("-k*x + m", "a force and a mass have no sum: '-k*x' is in N, 'm' in kg", ""),
@@ -69,18 +69,18 @@ def declared(force: str) -> eomgen.Model:
         (
             "k",
             "parameter 'k' is in N/m, but the force of force 'f' is in N",
-            "give another parameter, or mend its unit",
+            "give another parameter, or fix its unit",
         ),
         ("sqrt(k*l)", "'sqrt(k*l)' is in", ""),
     ],
 )
-def test_declared_units_that_do_not_fit_are_an_error_with_both_terms(force, told, mend):
+def test_declared_units_that_do_not_fit_are_an_error_with_both_terms(force, reported, fix):
     """[a + b]: [a] = [b]; [f(a)] = 1; a field's own."""
     with pytest.raises(ModelError) as error:
         declared(PULL.format(force))
     (problem,) = error.value.problems
-    assert told in problem.what
-    assert problem.mend == mend
+    assert reported in problem.what
+    assert problem.fix == fix
 
 
 def test_carets_stand_under_both_terms():
@@ -114,7 +114,7 @@ def test_plain_numbers_and_names_without_a_unit_fit_anything(force):
 
 
 @each(
-    "force, told",
+    "force, reported",
     [
         (PULL.format("z*x + z*x'"), "'z*x' is in m*[z], 'z*x'' in m*[z]/s"),
         (PULL.format("k*psi"), "'k*psi' is in N/m"),
@@ -123,10 +123,10 @@ def test_plain_numbers_and_names_without_a_unit_fit_anything(force):
         (PULL.format("2*k"), "'2*k' is in N/m"),
     ],
 )
-def test_what_only_inference_knows_is_a_warning(force, told):
+def test_what_only_inference_knows_is_a_warning(force, reported):
     """z has no unit, psi is an angle by its joint, 2 may be a coefficient."""
     (warning,) = inferred(Catalog(declared(force), ())).warnings
-    assert told in warning.what
+    assert reported in warning.what
 
 
 @each(
@@ -191,13 +191,13 @@ def test_a_name_among_thousands_is_looked_up_as_fast_as_among_few():
 
 
 @each(
-    "text, told",
+    "text, reported",
     [
         ('o = { value = "x", unit = "mm", at = "phi = l" }', "is in m, but the left side is in radians"),
         ('o = "max(x, k)"', "a length and N/m do not fit together in max: 'x' is in m, 'k' in N/m"),
     ],
 )
-def test_what_stands_beside_another_is_told_by_how_it_stands_there(text, told):
+def test_what_stands_beside_another_is_told_by_how_it_stands_there(text, reported):
     """Sides of an equation are no value of the output, and what is compared is not added."""
-    with pytest.raises(ModelError, match=re.escape(told)):
+    with pytest.raises(ModelError, match=re.escape(reported)):
         eomgen.loads(MODEL.format(PULL.format("-k*x")) + f"[outputs]\n{text}\n")

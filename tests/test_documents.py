@@ -67,16 +67,16 @@ def test_the_exact_text_of_every_quantity_gives_its_number(verb, name):
 def test_the_answers_of_python_are_drawn_as_those_of_the_verb():
     """eomgen.solve(model): text, LaTeX, Markdown and JSON are those of `eomgen solve --no-certify`."""
     model = eomgen.load(MODELS / "seeds" / "ch22_p1.toml")
-    found, told = eomgen.solve(model), solve_document(model, certify=False)
+    found, reported = eomgen.solve(model), solve_document(model, certify=False)
     assert [found.render(form) for form in ("text", "latex", "markdown")] == [
-        rendered(told, form) for form in ("text", "latex", "markdown")
+        rendered(reported, form) for form in ("text", "latex", "markdown")
     ]
     assert str(found).startswith("kinetic_energy  = ") and r"\dot{\theta}^{2}" in found.latex()
     assert found.as_dict()["outputs"]["Q_theta"]["exact"] == found["Q_theta"].exact == "6*M*R*g*sin(theta)"
 
 
 def test_an_equation_of_numbers_alone_is_printed():
-    """A couple on what has no inertia: 0 = 2, which no acceleration can mend."""
+    """A couple on what has no inertia: 0 = 2, which no acceleration can fix."""
     text = """
     eomgen = 1
     space = "plane"

@@ -113,7 +113,7 @@ def test_plain_numbers_stay_exact_on_the_graph():
 
 
 @each(
-    "text, what, column, mend",
+    "text, what, column, fix",
     [
         ("2x", "no sign between '2' and 'x'", 1, "write 2*x"),
         ("a + 2 (x)", "no sign between '2' and '('", 6, "write 2*(...)"),
@@ -142,12 +142,12 @@ def test_plain_numbers_stay_exact_on_the_graph():
         ("x\x00", "unexpected character '\\x00'", 1, "not seen"),
     ],
 )
-def test_an_error_says_what_where_and_how_to_mend_it(text, what, column, mend):
+def test_an_error_says_what_where_and_how_to_mend_it(text, what, column, fix):
     """STYLE 6: the culprit, its column from 0, the nearest right thing."""
     with pytest.raises(ExpressionError) as caught:
         parse(text)
     assert (caught.value.what, caught.value.column) == (what, column)
-    assert mend in caught.value.mend and bool(mend) == bool(caught.value.mend)
+    assert fix in caught.value.fix and bool(fix) == bool(caught.value.fix)
 
 
 @each(
@@ -202,11 +202,11 @@ def test_what_has_no_value_says_where():
 
 
 def test_an_unknown_name_is_reported_with_the_nearest_one():
-    """The caret stands under the name, the mend offers the one that was meant."""
+    """The caret stands under the name, the fix offers the one that was meant."""
     with pytest.raises(ExpressionError) as caught:
         parse("2*lenght + 1").evaluate({"length": 1, "mass": 2})
     assert (caught.value.what, caught.value.column, caught.value.length) == ("unknown name 'lenght'", 2, 6)
-    assert caught.value.mend == "did you mean 'length'?"
+    assert caught.value.fix == "did you mean 'length'?"
 
 
 def test_a_flat_sum_of_a_thousand_terms_needs_no_depth():
@@ -236,7 +236,7 @@ def test_numbers_of_python_become_exact():
 
 
 def test_outputs_may_call_functions_of_the_model():
-    """Dotted names, ties and members are references; the rest of an argument is an expression."""
+    """Dotted names, constraints and members are references; the rest of an argument is an expression."""
     expression = parse("2*speed(arm.end)^2 - max(tension(T, n1-n2), 0) + frequency(1)", references=True)
     assert expression.calls == (
         Call("speed", (Reference("arm.end"),)),

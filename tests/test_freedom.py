@@ -1,4 +1,5 @@
-"""Degrees of freedom: by rank at a generic configuration, beside the count by formula; redundant ties by name."""
+"""Degrees of freedom: by rank at a generic configuration, beside the count by formula; redundant constraints by
+name."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.mechanics.constraints.rank import freedom_of
-from eomgen.proof.freedoms import counted_otherwise, lines_otherwise, standing_otherwise
+from eomgen.proof.degrees_of_freedom import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.verbs.check import check_document
 from eomgen.verbs.checked import checked_model
 
@@ -65,7 +66,7 @@ def test_a_third_equal_crank_is_redundant_and_is_named():
     """A parallelogram with three cranks: 3*4 - 8 - 4 = 0 by the formula, and yet it moves: f = 4 - 3 = 1."""
     found = freedom(coordinates(q1=1.0, q2=0.0, q3=1.0, q4=1.0) + FOUR_BAR + HINGE + MIDDLE)
     assert (found.by_rank, found.by_formula) == (1, 0)
-    assert [(row.tie, row.others) for row in found.redundant] == [("middle_hinge", ("right_hinge",))]
+    assert [(row.constraint, row.others) for row in found.redundant] == [("middle_hinge", ("right_hinge",))]
 
 
 @pytest.mark.parametrize("angle", [0.0, 1.5707963267948966])
@@ -81,7 +82,7 @@ def test_the_same_support_twice_is_redundant_once():
     text = coordinates(q1=1.0, q2=0.3) + crank("left", "[0, 0]", "q1") + COUPLER
     found = freedom(text + support.format("wall", 0) + support.format("again", 0))
     assert found.by_rank == 1
-    assert [(row.tie, row.number, row.others) for row in found.redundant] == [("again", 1, ("wall",))]
+    assert [(row.constraint, row.number, row.others) for row in found.redundant] == [("again", 1, ("wall",))]
 
 
 def test_a_tie_that_the_coordinates_satisfy_only_reacts():
@@ -110,8 +111,8 @@ def test_particles_count_two_in_the_plane_and_three_in_space():
 
 def test_a_rate_equation_takes_a_freedom():
     """q2' = 3 q1' is one row."""
-    tie = '[constraints.gear]\nkind = "equation"\nrate = "q2\' - 3*q1\'"\n'
-    found = freedom(coordinates(q1=0.0, q2=0.0) + crank("left", "[0, 0]", "q1") + COUPLER + tie)
+    constraint = '[constraints.gear]\nkind = "equation"\nrate = "q2\' - 3*q1\'"\n'
+    found = freedom(coordinates(q1=0.0, q2=0.0) + crank("left", "[0, 0]", "q1") + COUPLER + constraint)
     assert (found.by_rank, found.by_formula) == (1, 1)
 
 
@@ -124,19 +125,19 @@ def test_ties_that_cannot_close_are_not_counted():
 
 
 def test_nodes_of_a_truss_are_particles_and_members_are_ties():
-    """1 = 3*1 (bodies) + 2*2 (particles) - 2 (joints) - 5 (ties)"""
+    """1 = 3*1 (bodies) + 2*2 (particles) - 2 (joints) - 5 (constraints)"""
     truss = '[trusses.T]\nnodes = { A = [0, 0], B = [1, 0] }\nmembers = ["A-B"]\n'
     pins = '[constraints]\na = { kind = "pin", points = ["T.A"] }\nb = { kind = "pin", points = ["T.B"] }\n'
     found = freedom(coordinates(q1=1.0) + crank("left", "[0, 0]", "q1") + truss + pins)
     assert (found.by_rank, found.by_formula, found.not_counted) == (1, 0, "")
-    assert found.formula == "3*1 (bodies) + 2*2 (particles) - 2 (joints) - 5 (ties)"
+    assert found.formula == "3*1 (bodies) + 2*2 (particles) - 2 (joints) - 5 (constraints)"
 
 
 DEPENDENT = "[coordinates]\nq1 = 1.0\nq2 = { dependent = true, near = 0.1 }\nq3 = { dependent = true, near = 1.1 }\n"
 
 
 def test_dependent_coordinates_leave_the_count_as_it_is():
-    """nu - rank J counts the same freedoms before and after the elimination: 3 - 2 = 1 - 0."""
+    """nu - rank J counts the same degrees of freedom before and after the elimination: 3 - 2 = 1 - 0."""
     found = freedom(DEPENDENT + FOUR_BAR + HINGE)
     assert found == freedom(coordinates(q1=1.0, q2=0.0, q3=1.0) + FOUR_BAR + HINGE)
     assert (found.by_rank, found.by_formula, found.closing) == (1, 1, ("right_hinge",))
@@ -147,7 +148,7 @@ def test_redundant_ties_are_named_where_coordinates_are_dependent():
     text = DEPENDENT + "q4 = { dependent = true, near = 1 }\n" + FOUR_BAR + HINGE + MIDDLE
     found = freedom(text)
     assert (found.by_rank, found.by_formula) == (1, 0)
-    assert [(row.tie, row.others) for row in found.redundant] == [("middle_hinge", ("right_hinge",))]
+    assert [(row.constraint, row.others) for row in found.redundant] == [("middle_hinge", ("right_hinge",))]
 
 
 def test_a_model_without_values_is_counted_all_the_same():
@@ -162,16 +163,19 @@ def test_redundant_loops_are_named_and_leave_the_freedom_that_there_is():
     """A coupler on four equal cranks: the formula says -1, the rank 1, and two rows follow from the first pin."""
     found = eomgen.freedom_of(eomgen.load(Path(__file__).parents[1] / "models" / "four_cranks.toml"))
     assert (found.by_rank, found.by_formula) == (1, -1)
-    assert [(row.tie, row.number) for row in found.redundant] == [("Q", 2), ("R", 2)]
+    assert [(row.constraint, row.number) for row in found.redundant] == [("Q", 2), ("R", 2)]
 
 
 def test_a_tie_that_closes_in_some_rows_and_reacts_in_others_says_which():
     """A cone that rolls on its plane: n holds by itself, and both other rows keep phi - psi sin(alpha) = 1/5, once."""
     model = eomgen.load(Path(__file__).parent.parent / "models" / "rolling_cone.toml")
     lines = rendered(check_document(model)).splitlines()
-    assert "ties that close: plane (rows 2 and 3)" in lines and "ties that only react: plane (row 1)" in lines
+    assert (
+        "constraints that close: plane (rows 2 and 3)" in lines
+        and "constraints that only react: plane (row 1)" in lines
+    )
     kept = [line for line in lines if line.startswith("integrable")]
-    assert kept == ["integrable (holonomic): rows 2 and 3 of tie 'plane': phi - psi*sin(alpha) - 1/5 = 0"]
+    assert kept == ["integrable (holonomic): rows 2 and 3 of constraint 'plane': phi - psi*sin(alpha) - 1/5 = 0"]
     freedom = eomgen.freedom_of(model)
     assert (freedom.closing, freedom.identical) == (("plane",), ("plane",))
 
@@ -212,21 +216,21 @@ high = { kind = "pin", points = ["door.high"], axis = [0, 0, 1] }
 
 
 def test_a_count_that_is_printed_or_told_otherwise_is_seen():
-    """Lines and entries of `check` say the degrees of freedom, the rows and their ties that were found"""
+    """Lines and entries of `check` say the degrees of freedom, the rows and their constraints that were found"""
     found = checked_model(eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0)))
     document = check_document(found.model)
-    lines, told = document.steps[0].statements[0].lines, document.entries()
-    assert told["ok"] and lines_otherwise(lines, told, found.freedom) == ""
+    lines, reported = document.steps[0].statements[0].lines, document.entries()
+    assert reported["ok"] and lines_otherwise(lines, reported, found.freedom) == ""
     redundant = next(line for line in lines if line.startswith("redundant"))
     others = (
         [line.replace(": ", ": 7") if line.startswith("degrees") else line for line in lines],
         [line for line in lines if line != redundant],
         [line.replace("row 1", "row 9").replace("row 2", "row 9") for line in lines],
-        [line.replace("ties that close: ", "ties that close: and ") for line in lines],
+        [line.replace("constraints that close: ", "constraints that close: and ") for line in lines],
     )
-    assert all(lines_otherwise([*each], told, found.freedom) for each in others)
+    assert all(lines_otherwise([*each], reported, found.freedom) for each in others)
     for name in ("degrees_of_freedom", "by_formula", "redundant", "closing"):
-        assert lines_otherwise(lines, told | {name: None}, found.freedom), name
+        assert lines_otherwise(lines, reported | {name: None}, found.freedom), name
 
 
 def test_what_the_rank_contradicts_is_not_ok_for_machines(monkeypatch):
@@ -234,8 +238,8 @@ def test_what_the_rank_contradicts_is_not_ok_for_machines(monkeypatch):
     from eomgen.verbs import check
 
     monkeypatch.setattr(check, "counted_otherwise", lambda *_: "another count")
-    told = check_document(eomgen.load(Path(__file__).parent.parent / "models" / "four_bar.toml")).entries()
-    assert told["ok"] is False and [each["what"] for each in told["problems"]] == ["another count"]
+    reported = check_document(eomgen.load(Path(__file__).parent.parent / "models" / "four_bar.toml")).entries()
+    assert reported["ok"] is False and [each["what"] for each in reported["problems"]] == ["another count"]
 
 
 def test_how_a_structure_stands_is_the_rank_of_its_reactions_in_doubles():
@@ -266,13 +270,14 @@ constraints.hinge = { kind = "pin", points = ["door.side", "arm.tip"], axis = AX
 
 
 def test_a_hinge_with_its_axis_in_a_body_turns_with_it():
-    """Along y of the door it is the joint's own axis, at any start: 2 freedoms and the same accelerations; in the
+    """Along y of the door it is the joint's own axis, at any start: 2 degrees of freedom and the same accelerations;
+    in the
     ground's axes it is another line where the arm is turned: 1 freedom, of which `check` warns."""
     fixed = eomgen.loads(HINGED.replace("AXIS", "[0, 1, 0]"))
     own = eomgen.loads(HINGED.replace("AXIS", '[0, 1, 0], axes = "door"'))
     assert (freedom_of(fixed).by_rank, freedom_of(own).by_rank) == (1, 2)
     (warning,) = checked_model(fixed).cautions
-    assert "leaves 1 degree of freedom" in warning.what and warning.mend.endswith('it leaves 2: axes = "door"')
+    assert "leaves 1 degree of freedom" in warning.what and warning.fix.endswith('it leaves 2: axes = "door"')
     assert checked_model(own).cautions == ()
     without = eomgen.loads(HINGED.partition("constraints.")[0])
     rates = [eomgen.derive(m).rhs("numpy")(0, [0.7, 0.4, 1, 0.3], []) for m in (own, without)]
@@ -301,6 +306,6 @@ constraints.bowl = { kind = "rolling", body = "ball", circle = { at = "C", radiu
 def test_a_bowl_without_inside_is_warned_of():
     """|c - C| = 0.85 < R: it would come to lie below the bowl; with `inside`, or on a hill, nothing is said."""
     (warning,) = checked_model(eomgen.loads(BOWL)).cautions
-    assert "'ball' starts within the circle of 'bowl'" in warning.what and "inside = true" in warning.mend
+    assert "'ball' starts within the circle of 'bowl'" in warning.what and "inside = true" in warning.fix
     assert checked_model(eomgen.loads(BOWL.replace("false", "true"))).cautions == ()
     assert checked_model(eomgen.loads(BOWL.replace("y = 0.15", "y = -0.15"))).cautions == ()

@@ -39,7 +39,8 @@ CLOSES = {"l1": 2.0, "l2": 1.0, "l3": 2.1, "l4": 1.9}, {"q1": 1.1, "q2": -0.613,
 
 
 def random_state(model: Any, seed: int) -> tuple[dict[str, float], dict[str, float]]:
-    """(numbers by name: parameters, inputs, q, q'; accelerations by name) at a random state in which the ties hold."""
+    """(numbers by name: parameters, inputs, q, q'; accelerations by name) at a random state in which the constraints
+    hold."""
     rng = Random(seed)
     parameters = {name: rng.uniform(0.6, 1.4) for name in model.parameters}
     speeds = [u.name for u in eomgen.derive(model).graph.symbols.u]
@@ -57,7 +58,7 @@ def random_state(model: Any, seed: int) -> tuple[dict[str, float], dict[str, flo
 
 @pytest.mark.parametrize("name", usual([*SYSTEMS], 3, 2))
 def test_accelerations_are_those_of_sympy(name):
-    """u' at random states that keep the ties, against sympy's own full M and forcing: 1e-10."""
+    """u' at random states that keep the constraints, against sympy's own full M and forcing: 1e-10."""
     system = SYSTEMS[name]()
     model = eomgen.from_sympy(system, name=name)
     for seed in (1, 2):
@@ -100,7 +101,7 @@ def test_what_sympy_derives_is_judged_against_the_model_and_simulates():
 
 
 def test_what_is_none_of_sympys_systems_is_refused():
-    """What it is, and how to mend it."""
+    """What it is, and how to fix it."""
     with pytest.raises(UsageError, match="a System, KanesMethod or LagrangesMethod"):
         eomgen.from_sympy(sm.Symbol("x"))
     q, u, f = dynamicsymbols("q u f")

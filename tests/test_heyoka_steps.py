@@ -52,7 +52,7 @@ def test_taylor_series_stop_at_an_event():
         (lambda: eomgen.load(MODELS / "bricard.toml"), "solve a linear system"),
         (lambda: eomgen.loads(PUSHED), "made of pieces"),
     ],
-    ids=["dependent ties", "samples"],
+    ids=["dependent constraints", "samples"],
 )
 def test_what_has_no_series_is_refused_by_a_sentence(model, why):
     """A Solve, or an operation that has no derivatives of every order."""

@@ -19,10 +19,10 @@ from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.identification import fit
 from eomgen.identification.base_parameters import Group
+from eomgen.identification.constrained_rows import sampled_rows
 from eomgen.identification.fit import _begun_checked, noise_of, numbers_of
 from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
-from eomgen.identification.tied_rows import sampled_rows
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -240,9 +240,9 @@ def test_a_loop_tells_its_groups_as_formulas_of_its_lengths():
     assert (
         four["mx(rocker)"] == "mx(rocker) + c/b*mx(coupler)" and four["Izz(coupler)"] == "Izz(coupler) - b*mx(coupler)"
     )
-    tied = eomgen.regressor(eomgen.loads(FOUR_BAR)).base
-    assert tied.arithmetic == "50 digits"
-    assert {g.name: g.formula for g in tied.groups if "coupler" in g.formula} == {
+    constrained = eomgen.regressor(eomgen.loads(FOUR_BAR)).base
+    assert constrained.arithmetic == "50 digits"
+    assert {g.name: g.formula for g in constrained.groups if "coupler" in g.formula} == {
         name: text for name, text in four.items() if "coupler" in text
     }
     slider = {g.name: g.formula for g in eomgen.regressor(MODELS / "slider_crank.toml").base.groups}
@@ -272,10 +272,10 @@ def test_formulas_of_groups_hold_for_other_lengths(name):
 def test_without_data_identify_says_what_motions_tell_apart():
     """The groups, and what no force depends on; in JSON with the factors at the model's lengths."""
     found = CliRunner().invoke(main, ["identify", str(MODELS / "four_bar.toml"), "--json"])
-    told = json.loads(found.stdout)
-    assert found.exit_code == 0 and told["without_effect"] == ["m(crank)", "m(rocker)"]
-    assert told["base"]["mx(crank)"]["formula"] == "mx(crank) - a/b*mx(coupler) + a*m(coupler)"
-    assert told["base"]["mx(crank)"]["factors"]["m(coupler)"] == 0.4
+    reported = json.loads(found.stdout)
+    assert found.exit_code == 0 and reported["without_effect"] == ["m(crank)", "m(rocker)"]
+    assert reported["base"]["mx(crank)"]["formula"] == "mx(crank) - a/b*mx(coupler) + a*m(coupler)"
+    assert reported["base"]["mx(crank)"]["factors"]["m(coupler)"] == 0.4
     text = CliRunner().invoke(main, ["identify", str(MODELS / "four_bar.toml")]).stdout
     assert "8 base parameters of 12" in text and "Without effect: m(crank), m(rocker)." in text
 
@@ -328,9 +328,9 @@ def test_identify_reads_a_csv_and_refuses_what_tells_nothing(tmp_path):
     path.write_text("\n".join([",".join(data), *(",".join(map(repr, map(float, row))) for row in rows)]))
     result = CliRunner().invoke(main, ["identify", str(model), "--data", str(path), "--json"])
     assert result.exit_code == 0, result.output
-    told = json.loads(result.stdout)
-    assert told["samples"] == 200 and told["residual"] < 1e-5 and told["condition"] > 1
-    assert all(deviation["deviation"] >= 0 for deviation in told["base"].values())
+    reported = json.loads(result.stdout)
+    assert reported["samples"] == 200 and reported["residual"] < 1e-5 and reported["condition"] > 1
+    assert all(deviation["deviation"] >= 0 for deviation in reported["base"].values())
     assert "base parameters" in CliRunner().invoke(main, ["identify", str(model), "--data", str(path)]).stdout
     still = {name: 0 * x for name, x in data.items()} | {"t": data["t"]}
     with pytest.raises(UsageError, match="does not excite"):
@@ -438,8 +438,8 @@ def test_samples_are_stacked_with_the_forces_that_act_there(text):
     found, data = regressor_of(eomgen.derive(model).graph.system), data_of(model, 1, 50)
     stacked = fit.stacking_of(found)(data)
     wrong = replace(stacked, b=stacked.b / 2)
-    told = [samples_checked(found, fit._samples(found, data, each)).ok for each in (stacked, wrong)]
-    assert told == [True, False]
+    reported = [samples_checked(found, fit._samples(found, data, each)).ok for each in (stacked, wrong)]
+    assert reported == [True, False]
 
 
 def test_deviations_condition_and_residual_are_proven_by_another_factorization():
@@ -449,10 +449,10 @@ def test_deviations_condition_and_residual_are_proven_by_another_factorization()
     b = W @ [1, 2, 3] + 0.1 * rng.normal(size=40)
     left = b - W @ np.linalg.lstsq(W, b, rcond=None)[0]
     deviations = np.sqrt(np.diag(np.linalg.inv(W.T @ W)) * (left @ left) / 37)
-    told = [deviations, float(np.linalg.cond(W / np.linalg.norm(W, axis=0))), float(np.sqrt(np.mean(left**2)))]
-    assert spread_checked(W, b, *told).ok
+    reported = [deviations, float(np.linalg.cond(W / np.linalg.norm(W, axis=0))), float(np.sqrt(np.mean(left**2)))]
+    assert spread_checked(W, b, *reported).ok
     for k in range(3):
-        assert spread_checked(W, b, *[2 * x if j == k else x for j, x in enumerate(told)]).ok is False
+        assert spread_checked(W, b, *[2 * x if j == k else x for j, x in enumerate(reported)]).ok is False
 
 
 @pytest.mark.slow

@@ -168,7 +168,7 @@ def test_the_text_of_numbers_types_and_functions():
         ("sliding_ladder", {"integrator": True}, "'floor', 'wall'"),
         ("double_pendulum", {"integrator": True, "targets": ("numpy",)}, "written in C"),
         ("double_pendulum", {"float32": True, "targets": ("c", "numpy", "fmu")}, "no single precision in numpy, fmu"),
-        ("bricard", {"float32": True}, "ties that multipliers close"),
+        ("bricard", {"float32": True}, "constraints that multipliers close"),
     ],
 )
 def test_what_has_none_is_refused_by_name(name, how, message):

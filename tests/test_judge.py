@@ -212,7 +212,8 @@ def test_one_place_of_a_contribution_is_named(model, equation, cause, words):
     ),
 )
 def test_one_place_of_the_own_formula_is_mended(model, equation, cause, words):
-    """The change that makes it right, by what the place would have to be; where roots, units and ties fail, too."""
+    """The change that makes it right, by what the place would have to be; where roots, units and constraints fail,
+    too."""
     found = verdict(model, equation)
     assert (found.verdict, kinds(found)) == ("wrong", [cause])
     assert all(word in found.causes[0].text for word in words)
@@ -225,11 +226,11 @@ def test_a_mend_is_a_simple_product_of_names():
     values = rng.uniform(-2, 2, (2, 40))
     products, own = Products((a, b), values), rng.uniform(1, 2, 40)
 
-    def mends(needed: np.ndarray) -> list[object]:
+    def fixes(needed: np.ndarray) -> list[object]:
         return [each.to for each in products.changes(x, own, needed, inner=False, forced=False)]
 
-    assert mends(own * values[0] / values[1]) == [a / b * x]
-    assert mends(-own) == [-x] and mends(0 * own) == [0] and mends(7 / 5 * own) == []
+    assert fixes(own * values[0] / values[1]) == [a / b * x]
+    assert fixes(-own) == [-x] and fixes(0 * own) == [0] and fixes(7 / 5 * own) == []
 
 
 def test_a_function_of_a_body_may_have_a_greek_name():
@@ -333,7 +334,7 @@ def test_roots_are_compared_with_50_digits_up_to_their_rounding():
 
 @pytest.mark.slow
 def test_redundant_ties_make_nothing_right():
-    """Where six rows tie five coordinates, apart from the ties everything follows from everything."""
+    """Where six rows constraint five coordinates, apart from the constraints everything follows from everything."""
     right = "e''*l^2*m/3 + g*l*m*cos(e)/2 - l*lam(R, 2)*cos(e) = -l*lam(R, 1)*sin(e)"
     assert verdict("four_cranks", right)
     assert not verdict("four_cranks", right.replace(" + g", " + a + g"))
@@ -440,8 +441,8 @@ def test_a_hint_tells_no_more_than_it_should():
 
 def test_stdin_and_the_certificate():
     result = run("verify", PENDULUM, "-", "--json", text="T = m*l^2*theta'^2/2\n")
-    told = json.loads(result.stdout)
-    assert result.exit_code == 0 and told["certificate"]["ok"] is True
+    reported = json.loads(result.stdout)
+    assert result.exit_code == 0 and reported["certificate"]["ok"] is True
 
 
 def test_another_kind_is_refused():
@@ -536,7 +537,7 @@ def test_what_is_wrong_by_little_is_wrong():
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("model", "equation", "kind", "told"),
+    ("model", "equation", "kind", "reported"),
     usual(
         [
             ("block_on_wedge", "reaction_n(block) = m*g*cos(alpha)", "missing_term", "inertia force of block"),
@@ -557,10 +558,10 @@ def test_what_is_wrong_by_little_is_wrong():
         3,
     ),
 )
-def test_the_derivation_is_replayed_with_one_thing_wrong(model, equation, kind, told):
+def test_the_derivation_is_replayed_with_one_thing_wrong(model, equation, kind, reported):
     """What stood still or was left out on the way to an answer; the energy theorem; slopes at rest; another place."""
     (cause,) = verdict(model, equation).causes
-    assert (not kind or cause.kind == kind) and told in cause.text
+    assert (not kind or cause.kind == kind) and reported in cause.text
 
 
 STRANGERS = Path(__file__).parent / "helpers" / "unseen_mistakes"
@@ -593,7 +594,11 @@ STRANGERS = Path(__file__).parent / "helpers" / "unseen_mistakes"
             ("40_plate_with_hole", "J_O = m*(b^2 + h^2)/12 - mh*r^2/2", ["Steiner", "part 2", "hole"]),
             ("10_roller_on_cart", "frequency(2) = sqrt(2*k/(3*m))", ["as if x (cart, cylinder) stood still"]),
             ("53_triatomic", "frequency(3) = sqrt(k/m + k/M)", ["middle stands with the factor 2"]),
-            ("41_bead_on_wire", "(1 + x^2/p^2)*x'' + g*x/p = 0", ["tie wire differentiated twice", "is missing"]),
+            (
+                "41_bead_on_wire",
+                "(1 + x^2/p^2)*x'' + g*x/p = 0",
+                ["constraint wire differentiated twice", "is missing"],
+            ),
             ("30_doubled_cord", "(mA + mB/4)*x'' = mB*g/2 - mu*mA*g", ["move a quarter as far"]),
             ("60_box_on_two_links", "T1 + T2 = m*g*sin(theta) - m*l*theta'^2", ["inertia force", "sin and cos"]),
             ("44_mass_on_turntable", "T = m*(x'^2 + y'^2)/2 + m*w*(x^2 + y^2)/2", ["no sum"]),
@@ -618,8 +623,8 @@ STRANGERS = Path(__file__).parent / "helpers" / "unseen_mistakes"
 def test_the_thought_behind_a_mistake_is_told(model, equation, words):
     """What somebody did who derived it so: in equations, energies, frequencies and reactions of a stranger."""
     found = eomgen.verify(STRANGERS / f"{model}.toml", equation)
-    told = " ".join(line for cause in found.causes for line in cause.lines)
-    assert found.verdict == "wrong" and all(word in told for word in words), told
+    reported = " ".join(line for cause in found.causes for line in cause.lines)
+    assert found.verdict == "wrong" and all(word in reported for word in words), reported
 
 
 @pytest.mark.slow
@@ -748,7 +753,7 @@ def test_a_mistake_is_told_by_the_names_of_its_author(equation, words):
 
 @each("equation", ["s' = 2*e^(-2/3*W*t)", r"l\ddot\varphi = (g + \ddot y)\sin\varphi", "s' = 2 - 2/3*W*s"])
 def test_rates_in_time_and_driven_places_are_judged(equation):
-    """A rate by its integral in time; renamed beside a driven coordinate, where places of rest are of another graph."""
+    """A rate by its integral in time; renamed beside a driven coordinate, where equilibria are of another graph."""
     assert eomgen.verify(eomgen.loads(SHAKEN), equation)
 
 
@@ -843,7 +848,7 @@ O = [0, "R"]
         [
             ("3/2*m*R*phi'' + 20*m/R*x = 0", "k"),
             ("3/2*m*R*phi'' + k*x = 0", ""),
-            ("x'' = R*phi''", "the ties"),
+            ("x'' = R*phi''", "the constraints"),
             ("y'' = -9*a*sin(3*t)", "the given motion of y"),
             ("frequency(1)^2 = 2*k/(3*m)", ""),
             ("frequency(1)^2 = 40/(3*R)", ""),
@@ -854,7 +859,7 @@ O = [0, "R"]
     ),
 )
 def test_what_follows_from_the_file_is_right(equation, up_to):
-    """Parameters that are formulas of others, ties once more differentiated, given motions."""
+    """Parameters that are formulas of others, constraints once more differentiated, given motions."""
     model = eomgen.loads(TIED)
     found = eomgen.verify(model, equation)
     assert found.verdict == "right" and up_to in found.up_to
@@ -942,8 +947,8 @@ constraints.road = { kind = "equation", gap = "y - c*x^2" }
 def test_derivatives_of_energies_are_no_products_of_letters(model, right, wrong):
     """p = dT/dq', its rate, dT/dq, dV/dq by hand, of T = m (r'^2 + r^2 q'^2)/2 and others; as decided again."""
     judge = Judge(Case(eomgen.loads(model)))
-    for equation, told in ((right, "right"), (wrong, "wrong")):
+    for equation, reported in ((right, "right"), (wrong, "wrong")):
         found = judge.verdict(equation)
-        assert found.verdict == told, found
+        assert found.verdict == reported, found
         (said,) = verdicts_again([judge.said(found)])
         assert said.ok or (said.ok is None and judge.case.reading.read(equation).takes_rates), said

@@ -66,7 +66,7 @@ def test_every_kind_has_a_picture(kind, tmp_path):
 
 
 def marks_of(kind: str, scene: Scene) -> list[Mark]:
-    """The marks that show a joint, a tie or a force, and not the bodies at it."""
+    """The marks that show a joint, a constraint or a force, and not the bodies at it."""
     if kind == "gravity":
         return [mark for mark in scene.marks if mark.form.kind == "field"]
     roles = ("inertia", "label", "point", "dimension", "axes", *(["body"] if kinds.kinds()[kind] != "Shapes" else []))
@@ -111,12 +111,12 @@ def test_what_a_joint_leaves_and_carries_fills_its_space(kind, free, held):
 def test_what_the_example_of_a_function_asks_is_answered(example):
     """docs/examples/outputs: each of its outputs has a value."""
     model = eomgen.load(kinds.EXAMPLES / "outputs" / f"{example}.toml")
-    told = kinds.answered(model, list(model.outputs))
+    reported = kinds.answered(model, list(model.outputs))
     assert all(
-        re.search(rf"^\| `{name}` \|.*\| -?[\d.]+(e[+-]\d+)?( \S+)* \|$", told, re.M) for name in model.outputs
-    ), told
+        re.search(rf"^\| `{name}` \|.*\| -?[\d.]+(e[+-]\d+)?( \S+)* \|$", reported, re.M) for name in model.outputs
+    ), reported
 
 
 def test_every_output_function_has_an_example():
     """Each of `ALL` is asked in one of docs/examples/outputs."""
-    assert not [function.names for function in kinds.outputs.ALL if not kinds.asked_in(function)]
+    assert not [function.names for function in kinds.outputs.ALL if not kinds.requested_in(function)]

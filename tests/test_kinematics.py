@@ -72,12 +72,12 @@ def test_a_driven_coordinate_has_the_rate_and_acceleration_of_its_law(law, speed
 
 @pytest.mark.parametrize("f", usual(["exp(-t^2)", "sin(t^2)", "1/(1 + t^5)", "exp(sin(w*t))"], 2, 1))
 def test_an_acceleration_without_an_integral_in_closed_form_says_so(f):
-    """The integral of exp(-t^2) is no elementary function: an error with a place and a mend, no approximation."""
+    """The integral of exp(-t^2) is no elementary function: an error with a place and a fix, no approximation."""
     with pytest.raises(DerivationError) as caught:
         driven(f'acceleration = "{f}"')
     assert "no integral in closed form" in caught.value.what
     assert caught.value.where == "coordinates.s"
-    assert "`motion` or `rate`" in caught.value.mend
+    assert "`motion` or `rate`" in caught.value.fix
     assert caught.value.exit_code == 3
 
 

@@ -215,7 +215,7 @@ def test_multipliers_are_the_reactions_that_they_are_said_to_be(name):
     solution = np.linalg.solve(np.block([[M, -J.T], [J, np.zeros((k, k))]]), right)
     state |= dict(zip(symbols.a, solution[:n], strict=True))
     values = dict(zip(named.symbols, named.reactions.values, strict=True))
-    for row, lam in zip(system.ties.closing, solution[n:], strict=True):
+    for row, lam in zip(system.constraints.closing, solution[n:], strict=True):
         reaction = named.of_row(row)
         assert reaction is not None
         (found,) = evaluate(substituted((reaction,), values), state, FLOAT)
@@ -252,10 +252,10 @@ def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
     for symbol, text in [*data.get("definitions", []), *data.get("reaction_definitions", [])]:
         also[symbol] = read_back(text, derived, also)
     reactions = reactions_of(derived.system)
-    asked = {named.name: named for named in named_reactions(reactions.balance)}
-    assert list(data["reactions"]) == list(asked)
+    requested = {named.name: named for named in named_reactions(reactions.balance)}
+    assert list(data["reactions"]) == list(requested)
     pairs = [
-        (read_back(text, derived, also), reactions.combined(asked[n].combination, n) + asked[n].given)
+        (read_back(text, derived, also), reactions.combined(requested[n].combination, n) + requested[n].given)
         for n, text in data["reactions"].items()
         if text is not None
     ]

@@ -183,14 +183,14 @@ def test_names_are_set_with_greek_letters_subscripts_and_dots(name, expected):
     assert Notation().latex(name) == expected
 
 
-def told_apart(names: list[str]) -> dict[str, str]:
-    found = Notation().told_apart(names)
+def reported_apart(names: list[str]) -> dict[str, str]:
+    found = Notation().reported_apart(names)
     return {name: found.latex(name) for name in names}
 
 
 def test_two_names_that_would_look_alike_are_told_apart_everywhere():
     """theta1 and theta_1, and their rates"""
-    found = told_apart(["theta_1", "theta1", "theta1'", "theta_1''"])
+    found = reported_apart(["theta_1", "theta1", "theta1'", "theta_1''"])
     assert found == {
         "theta_1": r"\theta_{1}",
         "theta1": r"\mathrm{theta1}",
@@ -205,7 +205,7 @@ def test_no_two_symbols_of_a_derivation_look_alike(name):
     derived = equations(name)
     s = derived.graph.symbols
     symbols = [x.name for x in (*s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)]
-    found = told_apart(symbols)
+    found = reported_apart(symbols)
     assert len(set(found.values())) == len(symbols)
 
 

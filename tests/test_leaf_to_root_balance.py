@@ -9,7 +9,7 @@ from eomgen.simulation.reaction_columns import balanced_from_leaves, steps_of
 
 
 def _bodies(parents: list[int], loops: list[tuple[int, int]], rng: np.random.Generator) -> tuple[np.ndarray, list]:
-    """(matrices of 4 states, rows of each body): a joint of 5 components a body, ties of 2 between bodies."""
+    """(matrices of 4 states, rows of each body): a joint of 5 components a body, constraints of 2 between bodies."""
     pairs = [(body, parent, 5) for body, parent in enumerate(parents)] + [(a, b, 2) for a, b in loops]
     A = np.zeros((4, 6 * len(parents), sum(k for *_, k in pairs)))
     place = 0
@@ -25,7 +25,7 @@ def _bodies(parents: list[int], loops: list[tuple[int, int]], rng: np.random.Gen
     "parents, loops, core",
     [
         ([-1, 0, 1, 1, 3], [], 0),  # a tree: nothing is left over
-        ([-1, 0, 1, -1, 3, 4], [(2, -1)], 17),  # one loop: three joints and the tie are solved as one
+        ([-1, 0, 1, -1, 3, 4], [(2, -1)], 17),  # one loop: three joints and the constraint are solved as one
         ([-1, 0, -1, 2], [(1, 3), (1, -1)], 24),
     ],
 )

@@ -48,8 +48,8 @@ def test_every_visible_mark_of_a_formula_counts_one(tex: str, marks: int):
 def test_the_script_tells_the_length_of_each_formula():
     """benchmarks/formula_length.py FORMULA ..., or a formula a line on its input."""
     formulas = [r"M\ddot{X} = 0", r"\frac{a}{b}"]
-    asked = subprocess.run([sys.executable, SCRIPT, *formulas], capture_output=True, text=True, check=True)
+    requested = subprocess.run([sys.executable, SCRIPT, *formulas], capture_output=True, text=True, check=True)
     piped = subprocess.run(
         [sys.executable, SCRIPT], input="\n".join(formulas), capture_output=True, text=True, check=True
     )
-    assert asked.stdout == piped.stdout == "    4  M\\ddot{X} = 0\n    3  \\frac{a}{b}\n"
+    assert requested.stdout == piped.stdout == "    4  M\\ddot{X} = 0\n    3  \\frac{a}{b}\n"

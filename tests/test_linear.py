@@ -49,12 +49,13 @@ def test_a_small_coefficient_is_none_the_less_one():
     rows = LinearSystem([{0: 1, 1: r * sin(theta)}, {1: 1}], [0, b], 2, lambda x: evaluate(x, state, fifty_digits()))
     found = sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants
     assert equal_at_random_states([(found[0], -r * sin(theta) * b)]).equal
-    state[theta] = state[r]  # an angle that ties hold at 0, in numbers of 50 digits
+    state[theta] = state[r]  # an angle that constraints hold at 0, in numbers of 50 digits
     assert sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants[0] == 0
 
 
 def test_what_vanishes_where_ties_hold_and_not_beside_stays_and_is_no_pivot():
-    """x + s y = b1, c x + y = b2, s = 0 on the ties: (1 - c s) y = b2 - c b1 off them too; zeros throughout go."""
+    """x + s y = b1, c x + y = b2, s = 0 on the constraints: (1 - c s) y = b2 - c b1 off them too; zeros throughout
+    go."""
     g = Graph()
     s, c, b = g.symbol("s"), g.symbol("c"), [g.symbol("b1"), g.symbol("b2")]
     state = {s: fifty_digits().number(0), c: fifty_digits().number(2)}

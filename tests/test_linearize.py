@@ -142,8 +142,8 @@ def test_entries_are_written_as_formulas_of_a_book():
     for text in texts:
         assert to_text(book_form(parse(text, longest=len(text)).evaluate(symbols))) == text
     assert sum(map(len, texts)) < 2100  # 3 368 characters multiplied out
-    told = found.render("text")
-    assert "G[phi, delta]" in told and "G[delta, phi]" not in told
+    reported = found.render("text")
+    assert "G[phi, delta]" in reported and "G[delta, phi]" not in reported
     assert " G = " not in eomgen.linearize(eomgen.load(MODELS / "furuta_pendulum.toml")).render("text")
 
 

@@ -64,15 +64,15 @@ def test_each_run_is_what_simulate_gives(name, given, target):
 def test_what_a_run_gives_does_not_depend_on_its_neighbours_nor_on_threads():
     """Bit for bit: among nine others in one thread, in two, backwards, and alone."""
     angles = np.linspace(-2, 2, 37)
-    asked = {"time": 3, "samples": 31}
+    requested = {"time": 3, "samples": 31}
     model = MODELS / "double_pendulum.toml"
-    whole = eomgen.simulate_many(model, start={"theta1": angles}, **asked)
+    whole = eomgen.simulate_many(model, start={"theta1": angles}, **requested)
     others = [
-        eomgen.simulate_many(model, start={"theta1": angles}, threads=2, **asked).x,
-        eomgen.simulate_many(model, start={"theta1": angles[::-1]}, **asked).x[::-1],
+        eomgen.simulate_many(model, start={"theta1": angles}, threads=2, **requested).x,
+        eomgen.simulate_many(model, start={"theta1": angles[::-1]}, **requested).x[::-1],
     ]
     assert all(np.array_equal(whole.x, x) for x in others)
-    assert np.array_equal(eomgen.simulate_many(model, start={"theta1": angles[5:6]}, **asked).x[0], whole.x[5])
+    assert np.array_equal(eomgen.simulate_many(model, start={"theta1": angles[5:6]}, **requested).x[0], whole.x[5])
     assert np.max(whole.drift) < 1e-8
 
 
@@ -108,8 +108,8 @@ def test_runs_with_ties_are_marched_and_those_that_cannot_start_are_told(threads
         many_runs, "_one_by_one", lambda plan, which, n: alone.extend(which) or one_by_one(plan, which, n)
     )
     lengths = np.array([0.9, 5.0, 1.0, 1.1, 0.1, 1.05])
-    asked = {"time": 0.5, "samples": 6, "threads": threads}
-    runs = eomgen.simulate_many(MODELS / "four_bar.toml", parameters={"b": lengths}, **asked)
+    requested = {"time": 0.5, "samples": 6, "threads": threads}
+    runs = eomgen.simulate_many(MODELS / "four_bar.toml", parameters={"b": lengths}, **requested)
     assert alone == [1, 4] and (runs.status == "refused").tolist() == [False, True, False, False, True, False]
     with pytest.raises(DerivationError) as refused:
         eomgen.simulate(MODELS / "four_bar.toml", time=0.5, parameters={"b": 5.0})
@@ -195,14 +195,14 @@ def test_functions_of_vectors_are_those_of_the_library():
 
 def test_what_makes_no_sense_is_refused():
     model = MODELS / "double_pendulum.toml"
-    for asked, message in (
+    for requested, message in (
         ({"parameters": {"l1": [1.0, 2.0]}, "start": {"theta1": [1.0]}}, "several lengths"),
         ({"parameters": {"q": [1.0, 2.0]}}, "no parameter 'q'"),
         ({"start": {"theta1": [1.0, np.nan]}}, "finite numbers"),
         ({"threads": 0}, "0 threads"),
     ):
         with pytest.raises(UsageError, match=message):
-            eomgen.simulate_many(model, time=1, **asked)
+            eomgen.simulate_many(model, time=1, **requested)
 
 
 @pytest.mark.slow

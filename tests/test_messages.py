@@ -1,4 +1,4 @@
-"""Common mistakes and the mend that is said; one mistake is one error, and hides no other."""
+"""Common mistakes and the fix that is said; one mistake is one error, and hides no other."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from newcomer import CRANE
 import eomgen
 from eomgen.cli import main
 
-JOINT, ASKED, ANGLE = (
+JOINT, REQUESTED, ANGLE = (
     'joint = { kind = "revolute", on = "trolley", angle = "phi - pi/2" }',
     "\"phi''\"",
     '"phi - pi/2"',
@@ -30,18 +30,18 @@ HABITS = [
     ('{ value = 5, unit = "kg" }', '"5 kg"', '{ value = 5, unit = "kg" }'),
     ("value = 5,", "value = 5,0,", "write a decimal point: 5.0"),
     (CRANE, "name: crane\nbodies:\n  - a\n", 'write: name = "crane"'),
-    (ASKED, '"phi_dot"', "write phi'"),
-    (ASKED, '"phiddot"', "write phi''"),
-    (ASKED, '"dphi"', "write phi'"),
-    (ASKED, '"diff(phi, t)"', "write phi'"),
-    (ASKED, '"diff(phi, t, 2)"', "write phi''"),
-    (ASKED, '"ddot(phi)"', "write phi''"),
-    (ASKED, '"sin^2(phi + (x))"', "write sin(phi + (x))^2"),
-    (ASKED, '"x(boom.end"', "write )"),
+    (REQUESTED, '"phi_dot"', "write phi'"),
+    (REQUESTED, '"phiddot"', "write phi''"),
+    (REQUESTED, '"dphi"', "write phi'"),
+    (REQUESTED, '"diff(phi, t)"', "write phi'"),
+    (REQUESTED, '"diff(phi, t, 2)"', "write phi''"),
+    (REQUESTED, '"ddot(phi)"', "write phi''"),
+    (REQUESTED, '"sin^2(phi + (x))"', "write sin(phi + (x))^2"),
+    (REQUESTED, '"x(boom.end"', "write )"),
     (ANGLE, '"phi - π/2"', "write pi"),
     (ANGLE, '"φ"', "write phi"),
-    (ASKED, '"reaction(boom)"', "one of reaction_x, reaction_y"),
-    (ASKED, '"velocity(boom.end)"', "one of speed, vx, vy"),
+    (REQUESTED, '"reaction(boom)"', "one of reaction_x, reaction_y"),
+    (REQUESTED, '"velocity(boom.end)"', "one of speed, vx, vy"),
     ('"revolute"', '"hinge"', "'revolute'"),
     ('"prismatic"', '"slider"', "'prismatic'"),
     ('kind = "revolute"', 'type = "revolute"', "write kind"),
@@ -57,12 +57,12 @@ def problems(text: str) -> tuple[eomgen.Problem, ...]:
     return caught.value.problems
 
 
-@each("old, new, mend", HABITS)
-def test_a_habit_of_another_notation_is_answered_with_ours(old, new, mend):
-    """One mistake, and all that is said leads to its mend."""
+@each("old, new, fix", HABITS)
+def test_a_habit_of_another_notation_is_answered_with_ours(old, new, fix):
+    """One mistake, and all that is said leads to its fix."""
     assert CRANE.count(old) >= 1
     found = problems(CRANE.replace(old, new, 1))
-    assert mend in found[0].mend
+    assert fix in found[0].fix
     assert len(found) == 1 or new == "[boddies.boom]"
 
 
@@ -114,9 +114,9 @@ def test_a_strange_key_is_meant_by_the_only_one_that_is_missing():
     damper = '\n[forces.drag]\nkind = "damper"\nbetween = ["boom.end", "ground"]\ndamping = 3\n'
     with pytest.raises(eomgen.ModelError) as caught:
         eomgen.loads(CRANE + damper)
-    told = str(caught.value)
-    assert "write 'points': it is needed here" in told and "has no 'points'" not in told
-    assert "declare it in [points]: ground = [...]" in told and told.count("mend:") == 2
+    reported = str(caught.value)
+    assert "write 'points': it is needed here" in reported and "has no 'points'" not in reported
+    assert "declare it in [points]: ground = [...]" in reported and reported.count("fix:") == 2
 
 
 TORN = """
@@ -158,7 +158,7 @@ INSIDE = ("symbolic", "proof", "judge")  # what is refused there comes out of so
 
 
 def test_every_refusal_that_is_written_says_what_to_do():
-    """Third argument or `mend=`; an error made of problems carries theirs."""
+    """Third argument or `fix=`; an error made of problems carries theirs."""
     silent = []
     for path in sorted(Path(eomgen.__file__).parent.rglob("*.py")):
         if path.relative_to(Path(eomgen.__file__).parent).parts[0] in INSIDE:
@@ -168,7 +168,7 @@ def test_every_refusal_that_is_written_says_what_to_do():
                 continue
             if not (isinstance(call.func, ast.Name) and call.func.id in REFUSALS):
                 continue
-            says = len(call.args) > 2 or any(word.arg == "mend" for word in call.keywords)
+            says = len(call.args) > 2 or any(word.arg == "fix" for word in call.keywords)
             text = isinstance(call.args[0], (ast.Constant, ast.JoinedStr, ast.Name)) if call.args else True
             if text and not says and not (isinstance(call.args[0], ast.Name) and call.args[0].id == "problems"):
                 silent.append(f"{path.name}:{node.lineno}")

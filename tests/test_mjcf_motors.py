@@ -1,4 +1,4 @@
-"""Motors, rotors, ties of MJCF: M and forces as MuJoCo computes them, or a line that names what was left out."""
+"""Motors, rotors, constraints of MJCF: M and forces as MuJoCo computes them, or a line that names what was left out."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def agrees(found: Any, text: str) -> bool:
     return True
 
 
-def told(found: Any) -> dict[str, tuple[str, ...]]:
+def reported(found: Any) -> dict[str, tuple[str, ...]]:
     return {each.what: each.where for each in found.left_out if each.what != "geoms that touch"}
 
 
@@ -107,7 +107,7 @@ def test_a_motor_weighs_and_resists_as_in_mujoco(name, tmp_path):
     """M and Q - c: gear^2 of its rotor and damper on whatever it acts, its push."""
     text = text_of(f"<actuator>{MOTORS[name]}</actuator>")
     found = robot(tmp_path, text, "xml")
-    assert agrees(found, text) and not told(found)
+    assert agrees(found, text) and not reported(found)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +126,7 @@ def test_a_motor_that_pushes_nothing_here_still_weighs_and_resists(motor, what, 
     text = text_of(f"<actuator>{motor}</actuator>", top='<option actuatorgroupdisable="1"/>')
     found = robot(tmp_path, text, "xml")
     M, Q, M0, Q0 = at_random(found.model, text)
-    assert told(found) == {what: ("w",)} and np.allclose(M, M0, rtol=0, atol=1e-12 * abs(M0).max())
+    assert reported(found) == {what: ("w",)} and np.allclose(M, M0, rtol=0, atol=1e-12 * abs(M0).max())
     assert "off" not in what or np.allclose(Q, Q0, rtol=0, atol=1e-11 * abs(Q0).max())
 
 
@@ -143,7 +143,7 @@ def test_rotors_of_balls_free_bodies_and_tendons_are_in_m(given, tmp_path):
     """a |w|^2/2, a (|v|^2 + |w|^2)/2, a L'^2/2: M and Q - c as MuJoCo has them; dampers may be switched off."""
     text = text_of(f'<actuator><motor joint="h" {BOTH}/></actuator>', **given)
     found = robot(tmp_path, text, "xml")
-    assert agrees(found, text) and not told(found)
+    assert agrees(found, text) and not reported(found)
 
 
 def test_limits_springs_and_plugins_are_told_by_name(tmp_path):
@@ -152,14 +152,14 @@ def test_limits_springs_and_plugins_are_told_by_name(tmp_path):
     text = text_of('<actuator><motor name="w" tendon="t2" forcerange="-2 3"/></actuator>', tendon=limited)
     found = robot(tmp_path, text, "xml")
     listed = {each.what: each for each in found.left_out}
-    assert told(found)["limits of motors"] == ("w (-2 to 3)", "all at t2 (-0.05 to 0.05)")
+    assert reported(found)["limits of motors"] == ("w (-2 to 3)", "all at t2 (-0.05 to 0.05)")
     assert "max" in listed["limits of motors"].nearest
     plugin = """<mujoco><extension><plugin plugin="mujoco.pid"><instance name="p">
       <config key="kp" value="40"/></instance></plugin></extension>
       <worldbody><body><joint name="j" type="slide" axis="1 0 0"/><geom size=".1"/></body></worldbody>
       <actuator><plugin name="servo" joint="j" plugin="mujoco.pid" instance="p"/></actuator></mujoco>"""
     found = robot(tmp_path, plugin, "xml")
-    assert told(found) == {"motors by plugins": ("servo",)} and not found.model.inputs
+    assert reported(found) == {"motors by plugins": ("servo",)} and not found.model.inputs
 
 
 @pytest.mark.parametrize("by", ["body1='b' body2='f' relpose='.2 .3 .1 .9 .1 .2 .3'", "site1='s2' site2='sf'"])
@@ -169,7 +169,7 @@ def test_bodies_that_are_welded_start_where_they_are(by, tmp_path):
         'pos="1 1 1"><joint', 'pos="1 1 1"><site name="sf" pos=".1 .2 .3" euler="10 20 30"/><joint'
     )
     found = robot(tmp_path, text, "xml")
-    assert found.model.constraints["w"].kind == "clamp" and "fr" in told(found)["start where ties gape"]
+    assert found.model.constraints["w"].kind == "clamp" and "fr" in reported(found)["start where constraints gape"]
     equations = eomgen.derive(found.model)
     assert equations.certify().ok
     mujoco: Any = importlib.import_module("mujoco")
@@ -188,7 +188,7 @@ def test_a_weld_that_cannot_close_is_told(tmp_path):
     """Two bodies on hinges far apart."""
     text = text_of("<equality><weld name='w' body1='a' body2='e' relpose='9 9 9 1 0 0 0'/></equality>")
     found = robot(tmp_path, text, "xml")
-    assert told(found)["welds that cannot close"] == ("w",) and not found.model.constraints
+    assert reported(found)["welds that cannot close"] == ("w",) and not found.model.constraints
 
 
 @pytest.mark.parametrize(
@@ -232,7 +232,7 @@ def test_springs_and_dampers_of_any_power_push_as_in_mujoco(law, tmp_path):
     text = text.replace('name="p" type', f'name="p" springref="0.2" stiffness="{law}" damping="{law}" type')
     text = text.replace('name="f" pos="1 1 1"', 'name="f" pos="1 1 1" euler="10 20 30"')
     found = robot(tmp_path, text, "xml")
-    assert not told(found) and agrees(found, text)
+    assert not reported(found) and agrees(found, text)
 
 
 def test_the_spring_of_a_ball_rests_where_it_is_not_turned(tmp_path):

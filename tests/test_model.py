@@ -16,7 +16,7 @@ from eomgen.model.joints import Placed, Revolute
 from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter, Piece
 from eomgen.model.reader import loads
 from eomgen.model.shapes import Disc, Rod
-from eomgen.model.unbuilt import unbuilt, unbuilt_ties
+from eomgen.model.unbuilt import unbuilt, unbuilt_constraints
 from eomgen.model.values import exact_parameters, numeric_parameters, start_values
 
 TEXT = """
@@ -201,7 +201,7 @@ def test_no_kind_waits_for_a_later_version():
         bodies={"bar": {"shape": {"kind": "rod", "mass": 1, "length": 1}, "joint": bar}},
         constraints={"g": {"kind": "guide", "point": "bar.end", "along": [1, 0, 0]}},
     )
-    assert unbuilt(waiting) == unbuilt_ties(waiting) == ()
+    assert unbuilt(waiting) == unbuilt_constraints(waiting) == ()
 
 
 @each("name", ["simple_pendulum", "stewart_platform", "gerber_beam"])

@@ -1,4 +1,4 @@
-"""A state in which something has no value: the force, joint, input or tie is named, what it does, and where."""
+"""A state in which something has no value: the force, joint, input or constraint is named, what it does, and where."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def model(start, joint="", more=""):
 
 
 @pytest.mark.parametrize(
-    ("start", "joint", "more", "told"),
+    ("start", "joint", "more", "reported"),
     [
         (0, "", FORCE.format("k/x"), "force 'pull' divides by zero at x = 0"),
         (0, "", FORCE.format("sin(x)/x"), "force 'pull' is 0/0 at x = 0"),
@@ -42,10 +42,10 @@ def model(start, joint="", more=""):
         (1, ', force = "u"', '[inputs]\nu = "1/t"', "input 'u' divides by zero at t = 0"),
     ],
 )
-def test_a_motion_that_starts_without_a_value_says_what_has_none(start, joint, more, told):
+def test_a_motion_that_starts_without_a_value_says_what_has_none(start, joint, more, reported):
     """0/0, 1/0, sqrt(-2), log(-2): the culprit, why, and the state."""
     run = eomgen.simulate(model(start, joint, more), time=1)
-    assert run.message == f"The motion starts where {told}."
+    assert run.message == f"The motion starts where {reported}."
     assert run.status == "not finite"
 
 
@@ -90,9 +90,9 @@ FLAT = {"space": "plane", "z": "", "at": '["x", "y"]', "o": ""}
 SPACE = {"space": "space", "z": "z = 0, ", "at": '["x", "y", "z"]', "o": ", 0"}
 
 
-@pytest.mark.parametrize(("how", "told"), [(FLAT, "a corner or a jump"), (SPACE, "is 0/0 at")])
-def test_small_motions_about_what_does_not_slide_name_its_friction(how, told):
+@pytest.mark.parametrize(("how", "reported"), [(FLAT, "a corner or a jump"), (SPACE, "is 0/0 at")])
+def test_small_motions_about_what_does_not_slide_name_its_friction(how, reported):
     """mu N v/|v| jumps at v = 0; on a surface its direction has no value there."""
-    with pytest.raises(eomgen.EomgenError, match=told) as refused:
+    with pytest.raises(eomgen.EomgenError, match=reported) as refused:
         eomgen.linearize(eomgen.loads(ROUGH.format(**how)), about="start")
     assert "the friction of 'floor'" in str(refused.value)

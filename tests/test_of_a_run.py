@@ -16,7 +16,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.model.fields import Table
-from eomgen.questions.of_a_run import asked_of
+from eomgen.questions.of_a_run import requested_of
 from eomgen.symbolic.numeric.isolation import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow
@@ -173,18 +173,18 @@ def test_what_cannot_be_read_is_an_error(swing, text, message):
 
 def test_outputs_of_a_run_stand_in_text_and_json_and_solve_leaves_them(tmp_path):
     path = tmp_path / "swing.toml"
-    asked = [
+    requested = [
         "[outputs]",
         'peak = { value = "max(q)", unit = "deg" }',
         'T = "period(q)"',
         'w = { value = "q\'", at = "q = 0", event = 2 }',
         "a = \"q''\"",
     ]
-    path.write_text(PENDULUM + "\n".join(asked))
+    path.write_text(PENDULUM + "\n".join(requested))
     found = CliRunner().invoke(main, ["simulate", str(path), "--time", "6", "--json"])
-    told = json.loads(found.output)["quantities"]
-    assert told["peak"]["value"] == pytest.approx(math.degrees(2)) and told["peak"]["unit"] == "deg"
-    assert told["w"]["t"] == pytest.approx([0.75 * told["T"]["value"]], rel=1e-7)
+    reported = json.loads(found.output)["quantities"]
+    assert reported["peak"]["value"] == pytest.approx(math.degrees(2)) and reported["peak"]["unit"] == "deg"
+    assert reported["w"]["t"] == pytest.approx([0.75 * reported["T"]["value"]], rel=1e-7)
     text = CliRunner().invoke(main, ["simulate", str(path), "--time", "6"]).output
     assert "peak [deg]" in text and "what is of the whole run holds against its samples" in text
     solved = CliRunner().invoke(main, ["solve", str(path), "--json"])
@@ -222,11 +222,11 @@ def test_what_is_told_of_a_run_is_held_against_its_samples(swing):
     found = swing.proof.whole
     model = eomgen.loads(PENDULUM)
     for text in ("q at t = 1", "q' at q = 0, event 2", "max(q')", "q + 1", "q at t = 20", "q' at q = 0, event 40"):
-        asked = asked_of(model, text)
-        assert found.answered_otherwise(asked, found.of(asked).value) == ""
-    at = asked_of(model, "q at t = 1")
+        requested = requested_of(model, text)
+        assert found.answered_otherwise(requested, found.of(requested).value) == ""
+    at = requested_of(model, "q at t = 1")
     assert "it is not 1.9" in found.answered_otherwise(at, 1.9)
     assert "no value, and it is met near t = 1" in found.answered_otherwise(at, None)
-    assert "2" in found.answered_otherwise(asked_of(model, "q"), 2.1)
-    later = replace(found.of(asked_of(model, "q' at q = 0, event 3")))
-    assert found.answered_otherwise(asked_of(model, "q' at q = 0, event 2"), later.value)
+    assert "2" in found.answered_otherwise(requested_of(model, "q"), 2.1)
+    later = replace(found.of(requested_of(model, "q' at q = 0, event 3")))
+    assert found.answered_otherwise(requested_of(model, "q' at q = 0, event 2"), later.value)

@@ -12,7 +12,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.model.fields import Table
-from eomgen.proof.run_told import output_columns_hold
+from eomgen.proof.run_reported import output_columns_hold
 from eomgen.simulation.columns import formulas_of
 
 pytestmark = pytest.mark.slow
@@ -121,8 +121,8 @@ def test_the_proof_sees_a_wrong_column():
     assert all(check.status == "holds" for check in output_columns_hold(run, formulas_of(model)))
     wrong = replace(run, outputs={**run.outputs, "hinge_x": run.outputs["hinge_x"] * (1 + 1e-6)})
     checks = {check.name: check for check in output_columns_hold(wrong, formulas_of(model))}
-    told = checks["columns of outputs are those of the formulas"]
-    assert told.status == "fails" and "hinge_x" in told.detail
+    reported = checks["columns of outputs are those of the formulas"]
+    assert reported.status == "fails" and "hinge_x" in reported.detail
 
 
 def test_a_simulator_gives_the_columns_that_are_asked():

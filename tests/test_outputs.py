@@ -288,10 +288,10 @@ DUE = {
 
 def test_what_acts_between_two_things_can_be_asked():
     """Pulls by length and rate, couples by the angle of one body against the other; proven by what is declared."""
-    asked = {f"f{k}": pair for k, pair in enumerate(DUE.items())}
-    text = LINES + "".join(f'{name} = "{is_} - ({due})"\n{name}_ = "{is_}"\n' for name, (is_, due) in asked.items())
+    requested = {f"f{k}": pair for k, pair in enumerate(DUE.items())}
+    text = LINES + "".join(f'{name} = "{is_} - ({due})"\n{name}_ = "{is_}"\n' for name, (is_, due) in requested.items())
     found = eomgen.solve(eomgen.loads(text))
-    for name in asked:
+    for name in requested:
         assert found[name].value == pytest.approx(0, abs=1e-13) and abs(found[f"{name}_"].value) > 0.1
     assert found.certify().ok
 

@@ -36,7 +36,7 @@ joint = { kind = "revolute", on = "cart", angle = "phi" }
 def run(folder: Path, *words: str) -> tuple[str, list[list[str]]]:
     (folder / "wheel.toml").write_text(WHEEL)
     file = folder / "run.csv"
-    asked = [
+    requested = [
         "simulate",
         str(folder / "wheel.toml"),
         "--time",
@@ -47,7 +47,7 @@ def run(folder: Path, *words: str) -> tuple[str, list[list[str]]]:
         "numpy",
         "--no-certify",
     ]
-    result = CliRunner().invoke(main, [*asked, "-o", str(file), *words])
+    result = CliRunner().invoke(main, [*requested, "-o", str(file), *words])
     assert result.exit_code == 0, result.stderr
     return result.stderr, list(csv.reader(file.open()))
 
@@ -69,8 +69,8 @@ def test_with_units_its_columns_are_in_those_of_the_file(tmp_path):
 
 def test_the_table_of_a_run_is_in_the_units_of_the_file(tmp_path):
     """phi [deg]  30  120."""
-    told, _ = run(tmp_path)
-    assert ["phi", "[deg]", "30", "120"] in [line.split() for line in told.splitlines()]
+    reported, _ = run(tmp_path)
+    assert ["phi", "[deg]", "30", "120"] in [line.split() for line in reported.splitlines()]
 
 
 def test_reactions_and_functions_have_units_by_what_they_are():
@@ -81,7 +81,7 @@ def test_reactions_and_functions_have_units_by_what_they_are():
     assert found == dict(zip(names, ("N", "N*m", "rad/s", "m", "m/s"), strict=False))
 
 
-ASKED = """
+REQUESTED = """
 [outputs]
 F = "reaction_x(cart)"
 M = "reaction_couple(cart)"
@@ -99,21 +99,21 @@ UNITS = {"F": "N", "M": "N*m", "p": "kg*m/s", "P": "W", "w": "rad/s", "angle": "
 
 def test_an_output_has_the_unit_of_its_formula_wherever_it_is_told(tmp_path):
     """solve, JSON, the table of a run, --units of its CSV and derive --units name one unit for each output."""
-    text = WHEEL.replace("[coordinates]", "k = 3\n[coordinates]") + ASKED
+    text = WHEEL.replace("[coordinates]", "k = 3\n[coordinates]") + REQUESTED
     path, file = tmp_path / "wheel.toml", tmp_path / "run.csv"
     path.write_text(text)
 
-    def told(*words: str):
+    def reported(*words: str):
         result = CliRunner().invoke(main, [words[0], str(path), *words[1:], "--no-certify"])
         assert result.exit_code in (0, 3), result.stderr
         return result
 
-    answers = json.loads(told("solve", "--json").stdout)["outputs"]
+    answers = json.loads(reported("solve", "--json").stdout)["outputs"]
     assert {name: answer["unit"] for name, answer in answers.items()} == UNITS
-    assert " N   [" in told("solve").stdout and "kg·m/s   [" in told("solve").stdout
-    derived = json.loads(told("derive", "--units", "--json").stdout)["units"]["outputs"]
+    assert " N   [" in reported("solve").stdout and "kg·m/s   [" in reported("solve").stdout
+    derived = json.loads(reported("derive", "--units", "--json").stdout)["units"]["outputs"]
     assert {name: unit for name, unit in derived.items() if UNITS[name]} == {n: u for n, u in UNITS.items() if u}
-    run = told("simulate", "--time", "1", "--samples", "3", "--target", "numpy", "--units", "-o", str(file))
+    run = reported("simulate", "--time", "1", "--samples", "3", "--target", "numpy", "--units", "-o", str(file))
     (head, *rows) = csv.reader(file.open())
     for name, unit in UNITS.items():
         shown = f"{name} [{unit}]" if unit else name

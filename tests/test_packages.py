@@ -53,8 +53,8 @@ def test_what_is_imported_is_declared():
 
 def test_the_base_installation_is_imported():
     """No dependency that nothing in the package asks for."""
-    asked = {DISTRIBUTIONS.get(name, name).replace("-", "_") for name in imported()}
-    assert {distribution(requirement) for requirement in PROJECT["dependencies"]} <= asked
+    requested = {DISTRIBUTIONS.get(name, name).replace("-", "_") for name in imported()}
+    assert {distribution(requirement) for requirement in PROJECT["dependencies"]} <= requested
 
 
 def test_a_message_or_page_names_an_extra_that_there_is():

@@ -1,4 +1,5 @@
-"""The page's own integrator and its ties, run by node: orders measured, ties kept, the motion that of scipy's."""
+"""The page's own integrator and its constraints, run by node: orders measured, constraints kept, the motion that of
+scipy's."""
 
 from __future__ import annotations
 
@@ -22,7 +23,7 @@ MODELS = Path(__file__).parent.parent / "models"
 PLAYER = Path(eomgen.__file__).parent / "page" / "player"
 
 
-def told(text: str) -> Any:
+def reported(text: str) -> Any:
     """What a module prints as JSON; it may import the player's modules from PLAYER."""
     text = text.replace("PLAYER", PLAYER.as_uri())
     command = [tool("node"), "--input-type=module", "-e", text]
@@ -49,26 +50,26 @@ console.log(JSON.stringify(found));
 
 def test_the_order_is_five_and_between_the_steps_four():
     """|x(10) - sin 10| ~ h^5; in a step from an exact state |x(t) - exact| ~ h^5, the local error of order 4."""
-    rows = np.log(np.array(told(CIRCLE)))
+    rows = np.log(np.array(reported(CIRCLE)))
     at_end, between = ((rows[-1, k] - rows[0, k]) / (rows[-1, 0] - rows[0, 0]) for k in (1, 2))
     assert 4.6 < at_end < 6.2 and 4.6 < between < 5.6
 
 
 def motion(name: str, given: dict[str, float], time: float, rtol: float) -> dict[str, Any]:
-    """A model's motion by the page's programs in node: states at three instants, what is open of its ties."""
+    """A model's motion by the page's programs in node: states at three instants, what is open of its constraints."""
     played = PlayedRun(eomgen.simulate(MODELS / f"{name}.toml", time=0.01), PlayerOptions(moves=True))
     live = played.live
     assert live is not None
     programs = ", ".join(f"{key}: {javascript_expression(program)}" for key, program in live.programs.items())
     values = [float(value) for value in played.phase.p]
     parameters = {key: value for key, value in given.items() if key in played.model.parameters}
-    return told(f"""
+    return reported(f"""
 import {{ Motion }} from "PLAYER/motion.mjs";
-const told = {json.dumps(live.told())}, motion = new Motion(told, {{ {programs} }}, {json.dumps(values)});
+const told = {json.dumps(live.reported())}, motion = new Motion(told, {{ {programs} }}, {json.dumps(values)});
 motion.parametersSet({json.dumps(parameters)});
 const run = motion.run({json.dumps(given)}, {{ time: {time}, rtol: {rtol} }});
 const x = [0, {time / 2}, {time}].map(t => Array.from(motion.at(run, t)));
-const open = Math.max(...run.t.flatMap(t => motion.ties.open(t, run.at(t))));
+const open = Math.max(...run.t.flatMap(t => motion.constraints.open(t, run.at(t))));
 const names = [...told.phase.coordinates, ...told.phase.speeds];
 console.log(JSON.stringify({{ x, names, open, message: run.message }}));
 """)
@@ -91,7 +92,7 @@ console.log(JSON.stringify({{ x, names, open, message: run.message }}));
     ),
 )
 def test_the_motion_of_the_page_is_that_of_the_simulation(name, given):
-    """Coordinates and speeds at three instants to 1e-7 of their size, ties open by less than 1e-9."""
+    """Coordinates and speeds at three instants to 1e-7 of their size, constraints open by less than 1e-9."""
     model = eomgen.load(MODELS / f"{name}.toml")
     found = motion(name, given, 1.0, 1e-10)
     assert found["message"] == "" and found["open"] < 1e-9
@@ -105,5 +106,6 @@ def test_the_motion_of_the_page_is_that_of_the_simulation(name, given):
 
 
 def test_a_singular_position_is_no_place_to_go_on_from():
-    """The n-four-bar falls through positions in which its ties do not determine it: the page stops, and says so."""
+    """The n-four-bar falls through positions in which its constraints do not determine it: the page stops, and says
+    so."""
     assert "singular position" in motion("n_four_bar", {}, 1.5, 1e-8)["message"]

@@ -51,9 +51,9 @@ def has(package: str) -> pytest.MarkDecorator:
 
 
 @cache
-def of(name: str, **asked: object) -> eomgen.report:
+def of(name: str, **requested: object) -> eomgen.report:
     """A report, made once."""
-    return report(MODELS / f"{name}.toml", **asked)
+    return report(MODELS / f"{name}.toml", **requested)
 
 
 @pytest.fixture(scope="module")
@@ -430,5 +430,5 @@ def test_the_help_names_every_section():
     """`eomgen report --help` and SECTIONS."""
     from eomgen.cli import main
 
-    told = main.commands["report"].help
-    assert sorted(told.partition("Sections:")[2].replace(".", "").split()) == sorted(SECTIONS)
+    reported = main.commands["report"].help
+    assert sorted(reported.partition("Sections:")[2].replace(".", "").split()) == sorted(SECTIONS)

@@ -80,7 +80,7 @@ def test_a_spring_is_a_zigzag_from_end_to_end():
         lambda: eomgen.kinematics(eomgen.load(MODELS / "seeds" / "ch11_p4.toml")),
         lambda: eomgen.inertia(eomgen.load(MODELS / "seeds" / "ch13_p2.toml")),
     ],
-    ids=["structure", "places of rest", "mechanism", "inertia"],
+    ids=["structure", "equilibria", "mechanism", "inertia"],
 )
 def test_results_show_themselves_and_their_pictures_in_a_notebook(made, tmp_path):
     """`_repr_markdown_` of the steps, `_repr_png_` of the picture, and the same as a file."""
@@ -123,7 +123,7 @@ def test_the_ellipsoid_of_inertia_is_drawn_in_space(tmp_path):
 
 
 def test_the_python_name_gives_places_of_rest_where_the_verb_does():
-    """`eomgen.statics` of a system that is free to move: its places of rest; a single reaction is then refused."""
+    """`eomgen.statics` of a system that is free to move: its equilibria; a single reaction is then refused."""
     pendulum = eomgen.load(MODELS / "simple_pendulum.toml")
     assert len(eomgen.statics(pendulum).places) == 2
     with pytest.raises(eomgen.UsageError, match="free to move"):

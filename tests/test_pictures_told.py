@@ -13,12 +13,19 @@ import pytest
 from slow_run import usual
 
 import eomgen
+from eomgen.documents.equilibrium_picture import drawing_at_rest
 from eomgen.documents.moving_picture import Movie, movie_of
-from eomgen.documents.rest_picture import drawing_at_rest
-from eomgen.page.player import PlayedRun, PlayerOptions, _named_otherwise, player_page_of, player_read_back, player_told
-from eomgen.proof.pictures_told import pictures_told, states_shown
+from eomgen.page.player import (
+    PlayedRun,
+    PlayerOptions,
+    _named_otherwise,
+    player_page_of,
+    player_read_back,
+    player_reported,
+)
+from eomgen.proof.pictures_reported import pictures_reported, states_shown
 from eomgen.scene.making import scene_of
-from eomgen.scene.phase_frames import picture_told
+from eomgen.scene.phase_frames import picture_reported
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.animate import movie_read_back
 from tests.test_shapes import EXAMPLES as SHAPES
@@ -139,13 +146,13 @@ def test_a_body_that_is_not_drawn_is_seen():
 def test_dimension_lines_are_as_long_as_what_stands_beside_them():
     """|c - d| = l beside l, an arc of phi beside phi"""
     scene = scene_of(eomgen.loads(CART))
-    told = picture_told(drawing_at_rest(scene), scene, 0)
-    assert dict(told.lengths)["l"] == pytest.approx(0.8)
-    assert dict(told.angles)["phi"] == pytest.approx(np.radians(40))
+    reported = picture_reported(drawing_at_rest(scene), scene, 0)
+    assert dict(reported.lengths)["l"] == pytest.approx(0.8)
+    assert dict(reported.angles)["phi"] == pytest.approx(np.radians(40))
     (_, state), *_ = states_shown(run(), run().t[:1])
-    longer = replace(told, lengths=[(name, 1.1 * x) for name, x in told.lengths])
-    wider = replace(told, angles=[(name, 1.1 * x) for name, x in told.angles])
-    found = [[c.detail for c in pictures_told([(state, x)]) if c.ok is False] for x in (told, longer, wider)]
+    longer = replace(reported, lengths=[(name, 1.1 * x) for name, x in reported.lengths])
+    wider = replace(reported, angles=[(name, 1.1 * x) for name, x in reported.angles])
+    found = [[c.detail for c in pictures_reported([(state, x)]) if c.ok is False] for x in (reported, longer, wider)]
     assert [bool(x) for x in found] == [False, True, True]
 
 
@@ -159,41 +166,41 @@ def page(model: str) -> tuple[PlayedRun, str]:
 def wrong_page(change: Any, model: str = CART) -> str:
     """What is contradicted of a page that is told something else."""
     played, text = page(model)
-    told = json.loads(json.dumps(player_told(text)))
-    change(told)
+    reported = json.loads(json.dumps(player_reported(text)))
+    change(reported)
     begin = text.index("{", text.index("begun(document.getElementById("))
     _, end = json.JSONDecoder().raw_decode(text[begin:])
-    checks = player_read_back(played, text[:begin] + json.dumps(told) + text[begin + end :])
+    checks = player_read_back(played, text[:begin] + json.dumps(reported) + text[begin + end :])
     return "; ".join(check.detail for check in checks if check.ok is False)
 
 
-def marks(told: Any, kind: str) -> Any:
-    return next(mark for mark in told["scene"]["marks"] if mark["kind"] == kind)
+def marks(reported: Any, kind: str) -> Any:
+    return next(mark for mark in reported["scene"]["marks"] if mark["kind"] == kind)
 
 
-def joint(told: Any) -> Any:
-    return next(mark for mark in told["scene"]["marks"] if mark.get("symbol") == "hinge")
+def joint(reported: Any) -> Any:
+    return next(mark for mark in reported["scene"]["marks"] if mark.get("symbol") == "hinge")
 
 
-def plotted(told: Any, name: str) -> Any:
-    return next(each for each in told["plotted"] if each["name"] == name)
+def plotted(reported: Any, name: str) -> Any:
+    return next(each for each in reported["plotted"] if each["name"] == name)
 
 
 CHANGES = {
-    "nothing": lambda told: None,
-    "a parameter": lambda told: told["parameters"][0].update(value=0.9),
-    "the size of a unit": lambda told: plotted(told, "phi").update(size=1.0),
-    "a unit": lambda told: plotted(told, "phi").update(unit="rad"),
-    "a slider that ends before its value": lambda told: told["sliders"][0].update(max=0.1),
-    "a power of ten of a column": lambda told: told["run"]["x"]["columns"][0].__setitem__(0, -10),
-    "a name": lambda told: told.update(names=told["names"][::-1]),
-    "a corner of a body": lambda told: marks(told, "polygon")["points"][0].__setitem__(0, 0.3),
-    "where a spring begins": lambda told: marks(told, "spring").update(a=[-0.9, 0]),
-    "the pose of a body": lambda told: told["scene"]["frames"][1]["pose"].__setitem__(1, 0.1),
-    "the symbol of a joint": lambda told: joint(told).update(symbol="pin"),
-    "where a joint is": lambda told: joint(told).update(at=[0.1, 0]),
-    "where a point is": lambda told: told["scene"]["points"][0].update(at=[1, 0]),
-    "contacts that there are not": lambda told: told.update(rests="The contacts of this model change."),
+    "nothing": lambda reported: None,
+    "a parameter": lambda reported: reported["parameters"][0].update(value=0.9),
+    "the size of a unit": lambda reported: plotted(reported, "phi").update(size=1.0),
+    "a unit": lambda reported: plotted(reported, "phi").update(unit="rad"),
+    "a slider that ends before its value": lambda reported: reported["sliders"][0].update(max=0.1),
+    "a power of ten of a column": lambda reported: reported["run"]["x"]["columns"][0].__setitem__(0, -10),
+    "a name": lambda reported: reported.update(names=reported["names"][::-1]),
+    "a corner of a body": lambda reported: marks(reported, "polygon")["points"][0].__setitem__(0, 0.3),
+    "where a spring begins": lambda reported: marks(reported, "spring").update(a=[-0.9, 0]),
+    "the pose of a body": lambda reported: reported["scene"]["frames"][1]["pose"].__setitem__(1, 0.1),
+    "the symbol of a joint": lambda reported: joint(reported).update(symbol="pin"),
+    "where a joint is": lambda reported: joint(reported).update(at=[0.1, 0]),
+    "where a point is": lambda reported: reported["scene"]["points"][0].update(at=[1, 0]),
+    "contacts that there are not": lambda reported: reported.update(rests="The contacts of this model change."),
 }
 
 
@@ -245,23 +252,23 @@ plane = { at = [0, 0, 0], normal = [0, 0, 1] }
 """
 
 
-def ellipsoid(told: Any, name: str) -> Any:
-    return next(mark for mark in told["scene"]["marks"] if mark["of"] == name and mark["kind"] == "ellipsoid")
+def ellipsoid(reported: Any, name: str) -> Any:
+    return next(mark for mark in reported["scene"]["marks"] if mark["of"] == name and mark["kind"] == "ellipsoid")
 
 
-def without(told: Any, name: str) -> None:
-    told["scene"]["marks"] = [mark for mark in told["scene"]["marks"] if mark["of"] != name]
+def without(reported: Any, name: str) -> None:
+    reported["scene"]["marks"] = [mark for mark in reported["scene"]["marks"] if mark["of"] != name]
 
 
 UNLIKE = {
-    "nothing": ("", lambda told: None),
-    "no platform": ("'platform': is not drawn", lambda told: without(told, "platform")),
-    "no stone": ("'stone': is not drawn as it rolls", lambda told: without(told, "stone")),
-    "a larger platform": ("moments", lambda told: ellipsoid(told, "platform").update(size=[1.4, 1.7, 2.2])),
-    "a platform elsewhere": ("mass centre", lambda told: ellipsoid(told, "platform").update(at=[0, 0, 0.4])),
+    "nothing": ("", lambda reported: None),
+    "no platform": ("'platform': is not drawn", lambda reported: without(reported, "platform")),
+    "no stone": ("'stone': is not drawn as it rolls", lambda reported: without(reported, "stone")),
+    "a larger platform": ("moments", lambda reported: ellipsoid(reported, "platform").update(size=[1.4, 1.7, 2.2])),
+    "a platform elsewhere": ("mass centre", lambda reported: ellipsoid(reported, "platform").update(at=[0, 0, 0.4])),
     "another stone": (
         "'stone': is not as large as it rolls",
-        lambda told: ellipsoid(told, "stone").update(size=[2, 0.2, 0.3]),
+        lambda reported: ellipsoid(reported, "stone").update(size=[2, 0.2, 0.3]),
     ),
 }
 
@@ -309,7 +316,7 @@ line = { at = [0, 0], normal = [0, 1] }
 @pytest.mark.parametrize("body", ["", "disc", "plate"])
 def test_what_moves_freely_in_the_plane_is_drawn(body: str):
     """|r - c| = r of a disc; a plate between its points"""
-    found = wrong_page(lambda told: without(told, body), DISC)
+    found = wrong_page(lambda reported: without(reported, body), DISC)
     assert f"'{body}': is not drawn" in found if body else not found
 
 

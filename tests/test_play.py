@@ -214,7 +214,7 @@ IN_SPACE = """
     ),
 )
 def test_a_body_is_drawn_to_where_the_pointer_goes(name, taken):
-    """The start is another then, one at which the ties hold; the motion from there is a simulation's."""
+    """The start is another then, one at which the constraints hold; the motion from there is a simulation's."""
     seen = visited(page(name), DRAG % taken)
     assert seen.console == ()
     found, model = seen.found, eomgen.load(MODELS / f"{name}.toml")
@@ -269,9 +269,9 @@ def test_each_phase_is_drawn_by_its_own_coordinates(name):
     """A body's place goes on from phase to phase: between neighbouring pictures it makes no leap."""
     run = eomgen.simulate(MODELS / f"{name}.toml", time=3 if name == "loop_the_loop" else 2, samples=801)
     numbers = phase_frames(run, run.t)
-    told, frames = numbers.scene.to_json(), numbers.frames
+    reported, frames = numbers.scene.to_json(), numbers.frames
     assert len(run.phases) > 1
-    pose = next(frame["pose"] for frame in told["frames"] if frame["name"])
+    pose = next(frame["pose"] for frame in reported["frames"] if frame["name"])
     places = np.column_stack([frames[:, v[0]] if isinstance(v, list) else np.full(len(frames), v) for v in pose[:2]])
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
     assert np.isfinite(steps).all() and steps.max() < 0.2

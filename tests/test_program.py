@@ -241,8 +241,8 @@ def test_a_large_system_is_solved_in_a_loop_and_a_small_one_written_out():
     """Never unroll an O(n^3) solve: n = 12 is written out, n = 20 is one Solve statement."""
     kinds = {n: [s.kind for s in right_hand_side(spring_row(n)).statements if isinstance(s, Solve)] for n in (12, 20)}
     assert kinds == {12: [], 20: ["dense"]}
-    ties = [s.kind for s in right_hand_side(tied_pendulum()).statements if isinstance(s, Solve)]
-    assert ties == ["kkt"]
+    constraints = [s.kind for s in right_hand_side(tied_pendulum()).statements if isinstance(s, Solve)]
+    assert constraints == ["kkt"]
 
 
 def test_a_symbol_that_is_no_argument_is_refused_by_name():

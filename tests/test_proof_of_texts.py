@@ -66,9 +66,9 @@ def test_a_wrong_text_for_machines_is_a_contradiction(entry: str):
 def test_cases_are_read_back_one_by_one(monkeypatch: pytest.MonkeyPatch):
     """V of a bead on a path of two pieces, "... where s <= L; ...": its expressions, and where each holds."""
     found = eomgen.derive(MODELS / "loop_the_loop.toml").document
-    assert " where " in rendered(found, "text") and told(found) == ["holds"]
+    assert " where " in rendered(found, "text") and reported(found) == ["holds"]
     monkeypatch.setattr(proof_of_texts, "cases_text", lambda x: [case.replace("<=", "<") for case in cases_text(x)])
-    assert told(found) == ["fails"]
+    assert reported(found) == ["fails"]
 
 
 SAMPLED = """
@@ -86,10 +86,10 @@ forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
 def test_rates_of_samples_are_read_back_by_their_names(monkeypatch: pytest.MonkeyPatch):
     """arm' and arm'' of a motion through samples; one printed for the other is a contradiction."""
     found = eomgen.derive(eomgen.loads(SAMPLED)).document
-    assert told(found) == ["holds"]
+    assert reported(found) == ["holds"]
     print_side = proof_of_texts.side_text
     monkeypatch.setattr(proof_of_texts, "side_text", lambda x: print_side(x).replace("arm''", "arm'"))
-    assert told(found) == ["fails"]
+    assert reported(found) == ["fails"]
 
 
 VERBS = [
@@ -113,20 +113,20 @@ def test_a_sign_lost_in_printing_is_a_contradiction_of_every_verb(
     verb: str, name: str, monkeypatch: pytest.MonkeyPatch
 ):
     """Printed with the other sign a term is not what was found: exit 3, whatever the verb and its format."""
-    asked = [verb, str(MODELS / f"{name}.toml")]
+    requested = [verb, str(MODELS / f"{name}.toml")]
     monkeypatch.setenv("EOMGEN_FRESH", "1")
-    assert CliRunner().invoke(main, asked).exit_code == 0
+    assert CliRunner().invoke(main, requested).exit_code == 0
     monkeypatch.setattr(text, "summands", partial(_turned, text.summands))
-    assert [CliRunner().invoke(main, [*asked, *form]).exit_code for form in ([], ["--json"])] == [3, 3]
+    assert [CliRunner().invoke(main, [*requested, *form]).exit_code for form in ([], ["--json"])] == [3, 3]
 
 
-def _turned(summands: Callable[..., list[Product]], *asked: Any) -> list[Product]:
+def _turned(summands: Callable[..., list[Product]], *requested: Any) -> list[Product]:
     """The summands, the first with the other sign where there are several."""
-    first, *others = summands(*asked)
+    first, *others = summands(*requested)
     return [replace(first, coefficient=-first.coefficient), *others] if others else [first]
 
 
-def told(document: Document) -> list[str]:
+def reported(document: Document) -> list[str]:
     """What the proof of what is printed says, by itself."""
     other = checked("another", "", "by another way")
     certificate = proof_of_texts.proven(document, Certificate((other,))).certificate
@@ -178,6 +178,6 @@ def test_texts_are_read_back_with_parameters_as_exact_as_their_numbers(tmp_path:
     """v/(w - pi/3) is 1.7e9 m: with pi/3 as a double it has 7 digits, and a true text would be contradicted."""
     path = tmp_path / "far.toml"
     path.write_text(FAR)
-    told = CliRunner().invoke(main, ["kinematics", str(path), "--format", "json"])
-    assert told.exit_code == 0
-    assert '"exact": "v/(w - k)"' in told.stdout
+    reported = CliRunner().invoke(main, ["kinematics", str(path), "--format", "json"])
+    assert reported.exit_code == 0
+    assert '"exact": "v/(w - k)"' in reported.stdout

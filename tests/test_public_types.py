@@ -40,12 +40,12 @@ def of_a_model() -> list[str]:
 
 def test_the_stub_says_of_every_public_name_where_it_is():
     """__init__.pyi, for type checkers, and the table of __init__.py, at run time, are the same."""
-    told = {}
+    reported = {}
     for node in ast.parse((ROOT / "__init__.pyi").read_text(encoding="utf-8")).body:
         if isinstance(node, ast.ImportFrom):
-            told |= {alias.asname: str(node.module) for alias in node.names}
-    assert set(told) == set(eomgen.__all__)
-    for name, home in told.items():
+            reported |= {alias.asname: str(node.module) for alias in node.names}
+    assert set(reported) == set(eomgen.__all__)
+    for name, home in reported.items():
         there = getattr(sys.modules.get(str(home)) or __import__(str(home), fromlist=[name]), name)
         assert there is getattr(eomgen, name)
 

@@ -61,9 +61,9 @@ def test_a_run_out_of_a_pickle_has_its_numbers_and_says_what_it_lacks(pendulum):
     assert again.ok and again.status == run.status
     assert again.drift == run.drift and again.phases[0].end == run.phases[0].end
     assert all(np.array_equal(a, b) for a, b in zip(again.phases[0].track, run.phases[0].track, strict=True))
-    for asked in (again.certify, lambda: again.ask("max(theta1)"), lambda: again.accuracy):
+    for requested in (again.certify, lambda: again.ask("max(theta1)"), lambda: again.accuracy):
         with pytest.raises(eomgen.UsageError, match="nothing is known of the equations"):
-            asked()
+            requested()
 
 
 def test_numbers_of_a_linearization_out_of_a_pickle_are_exactly_those(pendulum):

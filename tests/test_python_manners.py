@@ -87,7 +87,7 @@ def test_gravity_is_what_holds_up_the_weight(pendulum):
     "name", ["double_pendulum", "four_bar", "cart_pole", "heavy_top", "rolling_disc_and_bar", "stewart_platform"]
 )
 def test_slopes_of_the_right_hand_side_are_its_differences(name):
-    """A = df/dx and B = df/dw by central differences, ties and dependent speeds included"""
+    """A = df/dx and B = df/dw by central differences, constraints and dependent speeds included"""
     e = eomgen.derive(MODELS / f"{name}.toml")
     rhs, x, h = e.rhs("numpy"), e.start(), 1e-6
     w = np.zeros(len(e.inputs))

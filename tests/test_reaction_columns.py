@@ -81,7 +81,7 @@ points = ["beam.B"]
 
 @pytest.mark.parametrize(("name", "culprit"), UNPLACED.items())
 def test_what_has_no_place_or_is_held_by_nothing_is_named(name, culprit):
-    """a tie between coordinates, a potential of coordinates, a body that geometry alone places"""
+    """a constraint between coordinates, a potential of coordinates, a body that geometry alone places"""
     with pytest.raises(DerivationError) as caught:
         named_reactions(derived(name).reactions.balance)
     assert culprit in str(caught.value)
@@ -92,7 +92,7 @@ def test_a_column_is_what_an_output_of_its_name_says(path):
     """reaction_x(B), reaction_n(wall), tension(rope, 2), drive(q): the same number, in the motion through a state."""
     equations = equations_of(path.stem)
     reactions, quantities = equations.reactions, Quantities(equations.system)
-    state = generic_state(equations.system.ties, Random(3))
+    state = generic_state(equations.system.constraints, Random(3))
     a = [fifty_digits().number(1) * float(value) for value in accelerations_at(equations.graph, state)]
     state |= dict(zip(equations.graph.symbols.a, a, strict=True))
     state |= multipliers_at(equations, state)
@@ -118,9 +118,9 @@ def multipliers_at(equations: Equations, state: dict) -> dict:
 
 
 def states(equations: Equations, count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """(t, x, p) of random states on the ties."""
+    """(t, x, p) of random states on the constraints."""
     symbols = equations.graph.symbols
-    found = [generic_state(equations.system.ties, Random(seed)) for seed in range(count)]
+    found = [generic_state(equations.system.constraints, Random(seed)) for seed in range(count)]
     rows = np.array([[float(state[s]) for s in (symbols.t, *symbols.q, *symbols.u)] for state in found])
     p = np.array([float(found[0][s]) for s in symbols.parameters.values()])
     return rows[:, 0], rows[:, 1:], p
@@ -171,9 +171,9 @@ def test_a_position_where_a_formula_would_divide_by_zero_is_no_singular_one():
 def test_in_a_singular_position_only_what_is_open_has_no_value():
     """Cranks and coupler in one line: the forces along it are shared as one likes, those across it are not."""
     model = eomgen.load(MODELS / "parallelogram_reactions.toml")
-    with pytest.warns(RuntimeWarning, match=r"singular positions, first at t = 0 s: reaction_x\(OA\)") as told:
+    with pytest.warns(RuntimeWarning, match=r"singular positions, first at t = 0 s: reaction_x\(OA\)") as reported:
         run = eomgen.simulate(model, time=0.5, samples=26)
-    assert len(told) == 1
+    assert len(reported) == 1
     along, across = (np.array([run[f"reaction_{axis}({joint})"] for joint in ("OA", "CB", "AB", "B")]) for axis in "xy")
     assert np.isnan(along[:, 0]).all() and np.isfinite(along[:, 1:]).all() and np.isfinite(across).all()
     assert across[:, 0] == pytest.approx(across[:, 1], rel=1e-2)  # and nothing jumps
@@ -181,9 +181,11 @@ def test_in_a_singular_position_only_what_is_open_has_no_value():
 
 def test_of_redundant_ties_the_determinate_part_is_given():
     """A beam on two pins: A_x and B_x are open, A_y + B_y and the moments are not: at rest A_y = M g/2 + 3 m g/4."""
-    with pytest.warns(RuntimeWarning, match=r"Statically indeterminate: reaction_x\(A\), reaction_x\(B\)\.") as told:
+    with pytest.warns(
+        RuntimeWarning, match=r"Statically indeterminate: reaction_x\(A\), reaction_x\(B\)\."
+    ) as reported:
         run = eomgen.simulate(loaded(BEAM), time=1.0, samples=11, start={"theta": 0.0})
-    assert len(told) == 1
+    assert len(reported) == 1
     assert np.isnan(run["reaction_x(A)"]).all() and np.isnan(run["reaction_x(B)"]).all()
     assert run["reaction_y(A)"] == pytest.approx(np.full(11, (3.0 / 2 + 2.0 * 3 / 4) * 9.81))
     assert run["reaction_y(B)"] == pytest.approx(np.full(11, (3.0 / 2 + 2.0 * 1 / 4) * 9.81))
@@ -298,7 +300,10 @@ def test_every_reaction_of_a_large_system_is_there_soon(name, components):
 
 def test_a_picture_shows_the_largest_reactions_only(tmp_path):
     """40 hinge components of a chain: those of 5 hinges, with a word; forces and couples in panels of their own."""
-    for name, words, panels in (("chain20", "the largest, at 5 of 20 joints and ties", 1), ("arm3", "reactions [N", 2)):
+    for name, words, panels in (
+        ("chain20", "the largest, at 5 of 20 joints and constraints", 1),
+        ("arm3", "reactions [N", 2),
+    ):
         run = eomgen.simulate(eomgen.load(MODELS / f"{name}.toml"), time=0.2, samples=11)
         over_time(run, "", {}).save(tmp_path / f"{name}.svg")
         text = (tmp_path / f"{name}.svg").read_text()  # beside the outlines of a text its words

@@ -55,7 +55,7 @@ def document(text: str = SWING) -> Document:
     return eomgen.derive(eomgen.loads(text)).document
 
 
-def told(page: str, form: str) -> str:
+def reported(page: str, form: str) -> str:
     """What is wrong with a page; "" where it is read back as it was found."""
     return "; ".join(check.detail for check in page_read_back(document(), page, form) if check.status == "fails")
 
@@ -63,7 +63,7 @@ def told(page: str, form: str) -> str:
 @pytest.mark.parametrize("form", ["latex", "markdown"])
 def test_a_page_says_what_was_found(form: str):
     """Each formula, number, entry and word."""
-    assert not told(rendered(document(), form), form)
+    assert not reported(rendered(document(), form), form)
 
 
 CHANGES = {
@@ -88,8 +88,8 @@ def test_a_change_of_a_page_is_seen(form: str, change: str):
     if old not in page:
         pytest.skip("not on this page")
     last = page.rpartition(old)
-    assert told(page.replace(old, new, 1), form)
-    assert told(f"{last[0]}{new}{last[2]}", form)
+    assert reported(page.replace(old, new, 1), form)
+    assert reported(f"{last[0]}{new}{last[2]}", form)
 
 
 def test_typeset_formulas_are_read_as_a_person_reads_them():
@@ -126,18 +126,18 @@ def test_a_change_of_a_text_is_seen(change: str):
     """Where it stands first and where it stands last."""
     page, (old, new) = rendered(document(), "text"), TEXT[change]
     last = page.rpartition(old)
-    assert told_of_text(page) == ""
-    assert told_of_text(page.replace(old, new, 1))
-    assert told_of_text(f"{last[0]}{new}{last[2]}")
+    assert reported_of_text(page) == ""
+    assert reported_of_text(page.replace(old, new, 1))
+    assert reported_of_text(f"{last[0]}{new}{last[2]}")
 
 
 def test_columns_of_a_text_that_are_exchanged_are_seen():
     """A cell stands under its head."""
     page = rendered(document(), "text")
-    assert told_of_text(re.sub(r"kg( +)2\b", r"2\1kg", page, count=1))
+    assert reported_of_text(re.sub(r"kg( +)2\b", r"2\1kg", page, count=1))
 
 
-def told_of_text(page: str) -> str:
+def reported_of_text(page: str) -> str:
     return "; ".join(check.detail for check in text_read_back(document(), page) if check.status == "fails")
 
 

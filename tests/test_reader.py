@@ -1,4 +1,4 @@
-"""Text -> Model, or every problem at once with its place, its culprit and its mend."""
+"""Text -> Model, or every problem at once with its place, its culprit and its fix."""
 
 # ruff: noqa: E501 - a message stands on the line on which it is told
 
@@ -27,10 +27,10 @@ joint = { kind = "revolute", angle = "q" }
 
 
 def problems(text: str, space: str = "plane") -> list[str]:
-    """Each problem of a model as "line:column: what / mend"."""
+    """Each problem of a model as "line:column: what / fix"."""
     with pytest.raises(ModelError) as caught:
         loads(HEAD.format(space=space) + text, name="m")
-    return [f"{p.where.removeprefix('m:')}: {p.what} / {p.mend}" for p in caught.value.problems]
+    return [f"{p.where.removeprefix('m:')}: {p.what} / {p.fix}" for p in caught.value.problems]
 
 
 def only_problem(text: str, space: str = "plane") -> str:
@@ -48,7 +48,7 @@ def test_every_model_of_the_gallery_loads(path):
 
 
 def test_an_error_is_told_as_the_style_asks():
-    """file:line:column: what / source line / caret under the culprit inside the text / mend."""
+    """file:line:column: what / source line / caret under the culprit inside the text / fix."""
     text = (
         HEAD.format(space="plane")
         + ARM.replace("bodies.arm", "bodies.forearm")
@@ -63,20 +63,20 @@ def test_an_error_is_told_as_the_style_asks():
         "models/robot.toml:12:36: joint of body 'hand' hangs on a body that was never declared: 'forarm'\n"
         '    joint = { kind = "revolute", on = "forarm.end", angle = "q" }\n'
         "                                       ^^^^^^\n"
-        "mend: did you mean 'forearm'?"
+        "fix: did you mean 'forearm'?"
     )
 
 
 def test_all_problems_come_at_once_in_the_order_of_the_file():
     """An unknown key, an unknown name, an idle coordinate and a negative mass: four problems, one error."""
-    told = problems(
+    reported = problems(
         '[coordinates]\nq = 0\nidle = 0\n[bodies.b]\nshape = { kind = "rod", mass = -1, length = 1, lenght = 2 }\n'
         'joint = { kind = "revolute", angle = "q + k" }\n'
     )
-    assert [line.split(":")[0] for line in told] == ["6", "8", "8", "9"]
-    assert "'idle' is used by nothing" in told[0] and "negative: -1" in told[1]
-    assert "unknown key 'lenght' in the shape of body 'b' / did you mean 'length'?" in told[2]
-    assert "unknown name 'k' in the angle of the joint of body 'b'" in told[3]
+    assert [line.split(":")[0] for line in reported] == ["6", "8", "8", "9"]
+    assert "'idle' is used by nothing" in reported[0] and "negative: -1" in reported[1]
+    assert "unknown key 'lenght' in the shape of body 'b' / did you mean 'length'?" in reported[2]
+    assert "unknown name 'k' in the angle of the joint of body 'b'" in reported[3]
 
 
 BODY = '[bodies.b]\nshape = {{ kind = "{}", {} }}\n'
@@ -113,7 +113,7 @@ WRONG = {
     "mass in metres": (
         "[parameters]\na = { value = 1, unit = 'm' }\n" + BODY.format("particle", 'mass = "a"'),
         "7:38: parameter 'a' is in m, but the mass of the shape of body 'b' is in kg / "
-        "give another parameter, or mend its unit",
+        "give another parameter, or fix its unit",
     ),
     "a unit in the field": (
         BODY.format("particle", "mass = { value = 1, unit = 's' }"),
@@ -237,10 +237,10 @@ WRONG = {
 }
 
 
-@each("text, told", WRONG.values())
-def test_each_mistake_has_its_place_its_words_and_its_mend(text, told):
-    """One mistake, one problem: "line:column: what / mend"."""
-    assert only_problem(text) == told
+@each("text, reported", WRONG.values())
+def test_each_mistake_has_its_place_its_words_and_its_mend(text, reported):
+    """One mistake, one problem: "line:column: what / fix"."""
+    assert only_problem(text) == reported
 
 
 def test_a_ring_of_bodies_is_told_once():
@@ -261,8 +261,8 @@ def test_a_ring_of_bodies_is_told_once():
 def test_the_triangle_inequality_holds_for_principal_moments(inertia, possible):
     """I_1 <= I_2 + I_3, equality allowed: tr(I)/2 - I has no negative eigenvalue."""
     text = f'[coordinates]\nq = 0\n[bodies.b]\nmass = 1\ninertia = {inertia}\njoint = {{ kind = "revolute", angle = "q" }}\n'
-    told = [x.what for x in warnings_of(loads(HEAD.format(space="space") + text))]
-    assert (not possible) == any("breaks the triangle inequality" in what for what in told)
+    reported = [x.what for x in warnings_of(loads(HEAD.format(space="space") + text))]
+    assert (not possible) == any("breaks the triangle inequality" in what for what in reported)
     measured = loads(HEAD.format(space="space") + text.replace("mass = 1", "mass = 1\nmeasured = true"))
     assert not any("triangle" in x.what for x in warnings_of(measured))
 
@@ -302,8 +302,8 @@ def test_values_are_exact_and_in_si():
 
 def test_a_key_given_twice_does_not_hide_the_rest():
     """The second `m` is told with the line of the first, and what else is wrong too."""
-    told = problems("[parameters]\nm = 1\nm = 2\n[bodies.b]\nshape = { kind = 'rodd' }\n")
-    assert told[0] == "6:1: 'm' is given twice / first given in line 5" and "'rodd'" in told[1]
+    reported = problems("[parameters]\nm = 1\nm = 2\n[bodies.b]\nshape = { kind = 'rodd' }\n")
+    assert reported[0] == "6:1: 'm' is given twice / first given in line 5" and "'rodd'" in reported[1]
 
 
 def test_text_that_is_not_toml_is_told_with_its_place():
@@ -324,15 +324,15 @@ def test_a_byte_order_mark_and_windows_line_ends_do_no_harm():
 
 
 @each(
-    "first, told",
+    "first, reported",
     [
         ("", "the file does not say that it is a model"),
         ("eomgen = 2\n", "version 2 of the model file is not known here"),
         ("eomgen = true\n", "version true of the model file is not known here"),
     ],
 )
-def test_the_version_must_be_there_and_known(first, told):
-    with pytest.raises(ModelError, match=told):
+def test_the_version_must_be_there_and_known(first, reported):
+    with pytest.raises(ModelError, match=reported):
         loads(first + 'space = "plane"\n')
 
 

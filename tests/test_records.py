@@ -1,4 +1,4 @@
-"""eomgen.records: frozen classes are those of the standard library, in all that a user of one sees."""
+"""eomgen.frozen: frozen classes are those of the standard library, in all that a user of one sees."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 import pytest
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 
 def _declared(maker: Any) -> tuple[type, ...]:

@@ -131,10 +131,10 @@ def test_the_python_session_of_the_reference_runs_as_it_stands(monkeypatch):
     monkeypatch.chdir(ROOT)
     session = "\n".join(blocks(REFERENCE, "python"))
     test = doctest.DocTestParser().get_doctest(session, {}, "docs/reference", "docs/reference", 0)
-    told: list[str] = []
-    outcome = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=told.append)
+    reported: list[str] = []
+    outcome = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=reported.append)
     assert outcome.attempted > 10
-    assert outcome.failed == 0, "".join(told)
+    assert outcome.failed == 0, "".join(reported)
 
 
 def test_the_python_of_the_readme_runs_as_it_stands(monkeypatch):
@@ -195,8 +195,8 @@ def test_what_the_readme_offers_next_does_what_it_says(tmp_path, monkeypatch):
         done[words[0]] = result.stdout
         assert all(Path(file).exists() for option, file in pairwise(words) if option == "-o"), line
     assert list(done) == ["new", "report", "play", "verify", "codegen"] and Path("my_model.toml").exists()
-    told = re.search(r"`(the term with[^`]*)`", README)
-    assert told and " ".join(told[1].split()) in " ".join(done["verify"].split())
+    reported = re.search(r"`(the term with[^`]*)`", README)
+    assert reported and " ".join(reported[1].split()) in " ".join(done["verify"].split())
 
 
 def test_every_command_has_its_row_in_the_page_of_commands():

@@ -6,7 +6,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.rows import rows_of_tie
+from eomgen.mechanics.constraints.rows import rows_of_constraint
 from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.mechanics.free_bodies.release import released, stays_straight
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -44,23 +44,23 @@ joint = { kind = "placed", at = ["l*cos(theta)", "-l*sin(theta)"] }
 """
 
 
-def freed(text: str, tie: str) -> tuple[System, System]:
+def freed(text: str, constraint: str) -> tuple[System, System]:
     """The system before and after."""
     before = system_of(eomgen.loads(HEAD + text))
-    model, modes = released(before, tie)
+    model, modes = released(before, constraint)
     return before, system_of(model, modes)
 
 
-def status(system: System, tie: str) -> set[str]:
-    return {row.status for row in system.ties.rows if row.tie == tie}
+def status(system: System, constraint: str) -> set[str]:
+    return {row.status for row in system.constraints.rows if row.constraint == constraint}
 
 
 def test_a_displacement_stands_last_and_its_rate_is_that_of_the_gap():
-    """The coordinates of the model first, then wire_gap = L - |r|; the tie's own gap is (L^2 - r^2)/(2 L)."""
+    """The coordinates of the model first, then wire_gap = L - |r|; the constraint's own gap is (L^2 - r^2)/(2 L)."""
     before, after = freed(WIRE, "wire")
     assert [q.name for q in before.symbols.q] == ["s", "theta"]
     assert [q.name for q in after.symbols.q] == ["s", "theta", "wire_gap"]
-    (row,) = rows_of_tie(after.motion, "wire")
+    (row,) = rows_of_constraint(after.motion, "wire")
     numbers = [0.3, 0.7, 0.2, 0.5, -0.4, 0.9]
     state = dict(zip((*after.symbols.q, *after.symbols.u), numbers, strict=True))
     state |= {node: 1.0 for node in after.symbols.parameters.values()}

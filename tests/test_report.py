@@ -12,6 +12,7 @@ from pathlib import Path
 import pytest
 from derivations import (
     LARGE,
+    at_unit_norms,
     by_every_method,
     by_methods,
     derivable,
@@ -20,7 +21,6 @@ from derivations import (
     free_system,
     in_time,
     model_called,
-    on_spheres,
     read_back,
     residuals,
     symbols_named,
@@ -141,7 +141,7 @@ def assert_printed_equations_are_those_of_motion(derived: Equations, derivation:
     if derived.graph.friction:
         motion = dict(zip(derived.graph.symbols.a, derived.graph.accelerations or (), strict=True))
         pairs = [substituted(pair, motion) for pair in pairs]
-    assert equal_at_random_states(on_spheres(derived, pairs)).equal
+    assert equal_at_random_states(at_unit_norms(derived, pairs)).equal
 
 
 def is_complete(part: Step) -> bool:
@@ -182,7 +182,7 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
         pairs.append((read_back(to_text(x), derived, also), expected))
     if all(map(is_complete, in_time(derived).steps)):
         assert len(pairs) == 1 + 3 * len(system.symbols.u)
-    assert equal_at_random_states(on_spheres(derived, pairs)).equal
+    assert equal_at_random_states(at_unit_norms(derived, pairs)).equal
 
 
 def _printed_system(derived: Equations) -> System:
@@ -209,7 +209,7 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
     also = printed_definitions(rendered(in_time(derived), "text"), derived, in_time(derived))
     forces = generalized_forces(_printed_system(derived).loads)
     pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, forces, strict=True)]
-    assert equal_at_random_states(on_spheres(derived, pairs)).equal
+    assert equal_at_random_states(at_unit_norms(derived, pairs)).equal
 
 
 @pytest.mark.parametrize("name", [name for name in SMALL if not by_energies(name)])
@@ -225,7 +225,7 @@ def test_printed_balance_of_momentum_is_that_of_the_equations(name):
     known |= {Name("c", by=x): c for x, c in zip(u, graph.c, strict=True)}
     known |= {Name("Q", by=x): Q for x, Q in zip(q, graph.Q, strict=True)}
     pairs = [(read_back(to_text(printed.get(name, 0)), derived, also), x) for name, x in known.items()]
-    assert equal_at_random_states(on_spheres(derived, pairs)).equal
+    assert equal_at_random_states(at_unit_norms(derived, pairs)).equal
 
 
 @pytest.mark.parametrize("name", [name for name in SMALL if name != "loop"])
@@ -294,7 +294,7 @@ def test_the_payload_reads_back_as_the_equations(name):
     for equation, residual in zip(data["equations"], residuals(derived), strict=True):
         left, right = equation.split(" = ")
         pairs.append((read_back(left, derived, also) - read_back(right, derived, also), residual))
-    assert equal_at_random_states(on_spheres(derived, pairs)).equal
+    assert equal_at_random_states(at_unit_norms(derived, pairs)).equal
 
 
 def test_the_payload_has_the_keys_that_others_rely_on():

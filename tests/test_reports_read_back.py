@@ -233,7 +233,7 @@ def test_an_owner_has_one_colour_and_a_component_one_kind_of_line():
 def test_lines_that_look_alike_are_seen():
     """A dash is lost."""
     assert ' d1"' in page(".html")
-    assert any("look alike" in told for told in wrong(".html", page(".html").replace(' d1"', '"')))
+    assert any("look alike" in reported for reported in wrong(".html", page(".html").replace(' d1"', '"')))
 
 
 @pytest.mark.parametrize("ends", [(99980, 100060), (1e-9, 1.00001e-9), (-3e-7, 2e-7), (0, 1e9), (-1.00001e4, -1e4)])

@@ -72,15 +72,15 @@ def test_what_motors_push_is_what_mujoco_computes(name, tmp_path):
         force = values(graph, [y - x for x, y in zip(graph.c, graph.Q, strict=True)], data.qpos, data.qvel, 0.7)
         expected = data.qfrc_actuator + data.qfrc_passive - data.qfrc_bias
         assert np.allclose(force, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
-    told = {each.what: each.where for each in found.left_out}
-    assert ("off" in name) == ("motors that are switched off" in told)
-    assert ("no" in name.split()) == ("inputs of motors" in told)
+    reported = {each.what: each.where for each in found.left_out}
+    assert ("off" in name) == ("motors that are switched off" in reported)
+    assert ("no" in name.split()) == ("inputs of motors" in reported)
 
 
 @pytest.mark.slow
 @needs(".mujoco", what="mujoco")
 @pytest.mark.parametrize(
-    "tie",
+    "constraint",
     [
         '<joint joint1="h" joint2="p" polycoef="0 1 0 0 0"/>',  # 1 rad/m
         '<joint joint1="x" joint2="z" polycoef="0.1 2 1 -1 0"/>',
@@ -88,20 +88,20 @@ def test_what_motors_push_is_what_mujoco_computes(name, tmp_path):
         '<weld body1="b" body2="c" torquescale="0"/>',  # a point alone
     ],
 )
-def test_ties_of_mixed_units_are_mujoco_s_rows(tie, tmp_path):
-    """J spans the rows of MuJoCo's, and phi are their gaps where each row is of one tie of coordinates."""
-    text = BODIES.format(top="", rest=f"<equality>{tie}</equality>")
+def test_ties_of_mixed_units_are_mujoco_s_rows(constraint, tmp_path):
+    """J spans the rows of MuJoCo's, and phi are their gaps where each row is of one constraint of coordinates."""
+    text = BODIES.format(top="", rest=f"<equality>{constraint}</equality>")
     found, (mujoco, model, data) = robot(tmp_path, text, "xml"), compiled(text)
     graph = eomgen.derive(found.model).graph
     data.qpos[:] = np.add(model.qpos0, [0.1, 0.2, -0.3, 0.4, 0.5])
     mujoco.mj_forward(model, data)
     every = data.efc_J.reshape(-1, 5)
-    of_ties = (data.efc_type == 0) & np.any(every, axis=1)  # contacts stand there too
-    rows = every[of_ties]
+    of_constraints = (data.efc_type == 0) & np.any(every, axis=1)  # contacts stand there too
+    rows = every[of_constraints]
     J = values(graph, [x for row in graph.J for x in row], data.qpos, np.zeros(5), 0).reshape(-1, 5)
     assert np.linalg.matrix_rank(np.vstack([J, rows]), 1e-9) == len(J) == np.linalg.matrix_rank(rows, 1e-9)
-    gaps = data.efc_pos[of_ties]
-    assert "weld" in tie or np.allclose(values(graph, graph.phi, data.qpos, np.zeros(5), 0), gaps, atol=1e-12)
+    gaps = data.efc_pos[of_constraints]
+    assert "weld" in constraint or np.allclose(values(graph, graph.phi, data.qpos, np.zeros(5), 0), gaps, atol=1e-12)
 
 
 @pytest.mark.slow
@@ -116,14 +116,14 @@ def test_what_mujoco_has_beyond_a_model_is_listed(tmp_path):
       <contact><pair geom1="g1" geom2="g2"/></contact>
       <actuator><motor name="w" joint="h" forcerange="-2 2" ctrlrange="-1 1"/><velocity name="v" site="s" kv="2"/>
       </actuator></mujoco>"""
-    told = {each.what: each.where for each in robot(tmp_path, text, "xml").left_out}
-    assert told["limits of motors"] == ("w (ctrl -1 to 1, force -2 to 2)", "all at h (-1 to 1)")
-    assert told["limits of free and ball joints"] == ("b",) and told["motors that are no linear laws"] == ("v",)
-    assert told["springs that yield"] == ("h",)
+    reported = {each.what: each.where for each in robot(tmp_path, text, "xml").left_out}
+    assert reported["limits of motors"] == ("w (ctrl -1 to 1, force -2 to 2)", "all at h (-1 to 1)")
+    assert reported["limits of free and ball joints"] == ("b",) and reported["motors that are no linear laws"] == ("v",)
+    assert reported["springs that yield"] == ("h",)
     ratio = '<general name="n" tendon="ten" gear="2" gainprm="-1" biastype="affine" biasprm="0 1 1"/>'  # MuJoCo: nan
     found = robot(tmp_path, BODIES.format(top="", rest=f"<actuator>{ratio}</actuator>"), "xml").left_out
     assert {each.what: each.where for each in found}["motors that are no linear laws"] == ("n",)
-    assert told["pairs of geoms that touch"] == ("g2 and g1",)
+    assert reported["pairs of geoms that touch"] == ("g2 and g1",)
 
 
 @pytest.mark.slow
@@ -266,8 +266,8 @@ def test_export_lists_motions_that_are_given_and_refuses_a_factor_by_its_name():
 space = "space"
 coordinates = { q = { motion = "0.1*t" } }
 bodies.a = { mass = 1, inertia = [1, 1, 1], joint = { kind = "revolute", angle = "ANGLE" } }"""
-    told = {each.what: each.where for each in urdf_of(eomgen.loads(text.replace("ANGLE", "q - 1"))).left_out}
-    assert told["given motions"] == ("q",)
+    reported = {each.what: each.where for each in urdf_of(eomgen.loads(text.replace("ANGLE", "q - 1"))).left_out}
+    assert reported["given motions"] == ("q",)
     with pytest.raises(DerivationError, match="no joint that goes 2 times its coordinate: 'q'"):
         urdf_of(eomgen.loads(text.replace("ANGLE", "2*q")))
 

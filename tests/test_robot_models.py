@@ -35,7 +35,7 @@ def sdf(*models: str, version: str = "1.11", world: bool = True) -> str:
     return f'<sdf version="{version}">{whole}</sdf>'
 
 
-def told(found: Any) -> dict[str, tuple[str, ...]]:
+def reported(found: Any) -> dict[str, tuple[str, ...]]:
     return {each.what: each.where for each in found.left_out}
 
 
@@ -47,24 +47,24 @@ def test_of_several_models_the_first_that_moves_or_the_named_one_comes(tmp_path)
     world = sdf("<include><uri>model://sun</uri></include>", GROUND, PENDULUM, SLIDER)
     first = robot(tmp_path, world)
     assert first.model.name == "pendulum" and list(first.model.coordinates) == ["hinge"]
-    assert told(first)["model"] == ("sun", "ground", "slider")
+    assert reported(first)["model"] == ("sun", "ground", "slider")
     entry = next(each for each in first.left_out if each.what == "model")
     assert entry.as_dict()["nearest"] == "eomgen import FILE --model NAME" and "nearest: eomgen import" in str(entry)
     for name, coordinates in (("slider", ["rail"]), ("ground", [])):
         found = robot(tmp_path, world, model=name)
         assert found.model.name == name and list(found.model.coordinates) == coordinates
-        assert name not in told(found)["model"] and len(told(found)["model"]) == 3
-    with pytest.raises(ModelError, match=r"no model is called 'slide'\nmend: did you mean 'slider'"):
+        assert name not in reported(found)["model"] and len(reported(found)["model"]) == 3
+    with pytest.raises(ModelError, match=r"no model is called 'slide'\nfix: did you mean 'slider'"):
         robot(tmp_path, world, model="slide")
     with pytest.raises(UsageError, match="only SDF files"):
         robot(tmp_path, '<robot name="r"><link name="a"/></robot>', "urdf", model="r")
     still = robot(tmp_path, sdf(GROUND, GROUND.replace("ground", "wall")))
-    assert still.model.name == "ground" and told(still)["model"] == ("wall",)
+    assert still.model.name == "ground" and reported(still)["model"] == ("wall",)
     path = tmp_path / "robot.sdf"
     path.write_text(world)
-    asked = CliRunner().invoke(main, ["import", str(path), "--model", "slider", "--json"])
-    listed = {each["what"]: each for each in json.loads(asked.stdout)["left_out"]}
-    assert asked.exit_code == 0 and listed["model"]["where"] == ["sun", "ground", "pendulum"]
+    requested = CliRunner().invoke(main, ["import", str(path), "--model", "slider", "--json"])
+    listed = {each["what"]: each for each in json.loads(requested.stdout)["left_out"]}
+    assert requested.exit_code == 0 and listed["model"]["where"] == ["sun", "ground", "pendulum"]
     assert all(set(each) == {"what", "where", "why", "nearest"} for each in listed.values())
 
 
@@ -136,7 +136,7 @@ def test_a_model_within_a_model_is_as_if_its_links_stood_in_the_whole(way, tmp_p
     arm, end = WAYS[way]
     (tmp_path / "arm.sdf").write_text(sdf(f'<model name="x">{ARM}</model>', world=False))
     found = robot(tmp_path, sdf(ROOT.format(arm=arm, end=end), world=False))
-    assert set(found.model.coordinates) == {"root", "arm_elbow", "arm_hand"} and not told(found)
+    assert set(found.model.coordinates) == {"root", "arm_elbow", "arm_hand"} and not reported(found)
     assert found.model.constraints["mimic_arm_hand"].gap.text == "arm_hand - 2*arm_elbow"
     flat = FLAT
     if end == "arm":  # where a joint ends in a frame, it sits in the frame
@@ -165,7 +165,7 @@ def test_a_model_whose_file_is_not_there_is_told_and_a_joint_to_it_refused(tmp_p
     """The include by its name in `left_out`; a joint to a link that is not there names it."""
     text = PENDULUM.replace("<link", "<include><uri>model://hand</uri></include><link", 1)
     found = robot(tmp_path, sdf(text, world=False))
-    assert told(found)["include"] == ("include model://hand",) and list(found.model.coordinates) == ["hinge"]
+    assert reported(found)["include"] == ("include model://hand",) and list(found.model.coordinates) == ["hinge"]
     with pytest.raises(ModelError, match="names a link that there is not: 'hand::l'"):
         robot(tmp_path, sdf(text.replace("<child>bob", "<child>hand::l"), world=False))
 
@@ -301,7 +301,7 @@ def test_a_surface_in_a_file_gives_the_mass_that_it_encloses(form, tmp_path):
     ],
 )
 def test_a_mass_by_density_that_nobody_knows_is_refused(text, what, tmp_path):
-    """Never made up: what is missing, where, and how to mend it."""
+    """Never made up: what is missing, where, and how to fix it."""
     (tmp_path / "a.dae").write_text("x")
     (tmp_path / "open.stl").write_text("solid\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendsolid")
     with pytest.raises(ModelError) as caught:
@@ -336,7 +336,7 @@ def test_a_rotor_behind_a_gear_weighs_by_the_square_of_its_ratio(kind, M, tmp_pa
     """M = 1 + n^2 J = 1 + 100^2 * 1e-3 on a hinge and on a slide, of URDF and SDF; without a ratio it is 1."""
     both = '<drake:gear_ratio value="100"/><drake:rotor_inertia value="1e-3"/>'
     found = robot(tmp_path, urdf(kind, both), "urdf")
-    assert dynamics(found.model, {"j": 0.2}, {"j'": 0.1})[0] == pytest.approx(M) and not told(found)
+    assert dynamics(found.model, {"j": 0.2}, {"j'": 0.1})[0] == pytest.approx(M) and not reported(found)
     alone = robot(tmp_path, urdf(kind, '<drake:rotor_inertia value="2"/>'), "urdf").model
     assert dynamics(alone, {"j": 0.2}, {"j'": 0.1})[0] == pytest.approx(3)
     text = PENDULUM.replace(
@@ -345,20 +345,20 @@ def test_a_rotor_behind_a_gear_weighs_by_the_square_of_its_ratio(kind, M, tmp_pa
     text = sdf(text, world=False).replace("<sdf", '<sdf xmlns:drake="http://drake.mit.edu"')
     with_it, without = robot(tmp_path, text), robot(tmp_path, sdf(PENDULUM.replace("revolute", kind), world=False))
     added = [dynamics(x.model, {"hinge": 0.2}, {"hinge'": 0.1})[0].item() for x in (with_it, without)]
-    assert added[0] - added[1] == pytest.approx(10) and not told(with_it)
+    assert added[0] - added[1] == pytest.approx(10) and not reported(with_it)
 
 
 def test_a_rotor_of_what_is_no_joint_about_one_axis_is_told(tmp_path):
     """On a floating joint, and of a joint of SDF without a motor (effort 0), which has no rotor."""
     both = '<drake:gear_ratio value="100"/><drake:rotor_inertia value="1e-3"/>'
     found = robot(tmp_path, urdf("floating", both), "urdf")
-    assert {"drake:gear_ratio", "drake:rotor_inertia"} <= set(told(found))
-    assert told(found)["drake:rotor_inertia"] == ("actuator m",)
+    assert {"drake:gear_ratio", "drake:rotor_inertia"} <= set(reported(found))
+    assert reported(found)["drake:rotor_inertia"] == ("actuator m",)
     text = PENDULUM.replace(
         "</axis>", "<limit><effort>0</effort></limit></axis><drake:rotor_inertia>1</drake:rotor_inertia>"
     )
     text = sdf(text, world=False).replace("<sdf", '<sdf xmlns:drake="http://drake.mit.edu"')
-    assert "drake:rotor_inertia" in told(robot(tmp_path, text))
+    assert "drake:rotor_inertia" in reported(robot(tmp_path, text))
 
 
 # -- how files begin and end ---------------------------------------------------------------------------------------

@@ -165,7 +165,7 @@ def test_floating_and_planar_joints_have_six_and_three_freedoms(tmp_path):
         (('type="fixed"', 'type="welded"'), "unknown type of a joint: 'welded'"),
         (
             ('child link="fore"', 'child link="for"'),
-            "names a link that there is not: 'for'\nmend: did you mean 'fore'?",
+            "names a link that there is not: 'for'\nfix: did you mean 'fore'?",
         ),
         (('child link="tool"', 'child link="fore"'), "hangs on two joints"),
         (('parent link="base"', 'parent link="tool"'), "ring of joints"),
@@ -178,10 +178,10 @@ def test_floating_and_planar_joints_have_six_and_three_freedoms(tmp_path):
     ],
 )
 def test_a_wrong_urdf_is_refused_at_its_place(change, what, tmp_path):
-    """file:line:column, what is wrong, how to mend it."""
+    """file:line:column, what is wrong, how to fix it."""
     with pytest.raises(ModelError) as caught:
         robot(tmp_path, ARM.replace(*change, 1))
-    assert what in str(caught.value) and "robot.urdf:" in str(caught.value) and "mend: " in str(caught.value)
+    assert what in str(caught.value) and "robot.urdf:" in str(caught.value) and "fix: " in str(caught.value)
 
 
 def test_a_file_that_is_no_robot_is_refused(tmp_path):
@@ -249,7 +249,8 @@ TIED = """<mujoco><compiler angle="radian"/><default><default class="leg"><joint
 @pytest.mark.slow
 @needs(".mujoco", what="mujoco")
 def test_ties_of_bodies_without_places_and_straight_tendons_mean_what_mujoco_computes(tmp_path):
-    """Points that ties alone ask for are those of their bodies, pivots beside them; T and Q with tendons between two
+    """Points that constraints alone ask for are those of their bodies, pivots beside them; T and Q with tendons
+    between two
     places, slack ones too; a bent tendon is listed."""
     mujoco: Any = importlib.import_module("mujoco")
     found = robot(tmp_path, TIED, "xml")
@@ -274,7 +275,8 @@ def test_ties_of_bodies_without_places_and_straight_tendons_mean_what_mujoco_com
 @pytest.mark.slow
 @needs(".mujoco", what="mujoco")
 def test_mjcf_means_what_mujoco_computes(tmp_path):
-    """M, all forces at random states and controls, and the rows of ties, against MuJoCo; several joints in a body, off
+    """M, all forces at random states and controls, and the rows of constraints, against MuJoCo; several joints in a
+    body, off
     its origin, ball and free joints, springs with slack, motors on joints, tendons and sites."""
     mujoco: Any = importlib.import_module("mujoco")
     found = robot(tmp_path, MJCF, "xml")
@@ -306,8 +308,8 @@ def test_mjcf_means_what_mujoco_computes(tmp_path):
         forces = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
         M, Q = numbers[: n * n].reshape(n, n), numbers[n * n + n : n * n + 2 * n] - numbers[n * n : n * n + n]
         assert np.allclose(M, full[np.ix_(order, order)], atol=1e-11) and np.allclose(Q, forces[order], atol=1e-9)
-        J, tie = numbers[n * n + 2 * n :].reshape(-1, n), data.efc_J.reshape(-1, n)[0][order]
-        assert len(J) == 1 and abs(abs(J[0] @ tie) - np.linalg.norm(J[0]) * np.linalg.norm(tie)) < 1e-10
+        J, constraint = numbers[n * n + 2 * n :].reshape(-1, n), data.efc_J.reshape(-1, n)[0][order]
+        assert len(J) == 1 and abs(abs(J[0] @ constraint) - np.linalg.norm(J[0]) * np.linalg.norm(constraint)) < 1e-10
     assert equations.certify().ok
     assert {each.what for each in found.left_out} == {"geoms that touch", "filters of motors", "softness of equalities"}
 
@@ -507,7 +509,7 @@ def test_names_of_the_exported_links_and_joints_are_each_their_own(tmp_path):
     )
 
 
-FOLLOWING = """<robot name="tie"><link name="base"/>
+FOLLOWING = """<robot name="constraint"><link name="base"/>
 <link name="upper arm"><inertial><origin xyz="0 0 0.2"/><mass value="2.5"/>
   <inertia ixx="0.03" iyy="0.02" izz="0.015" ixy="0" ixz="0" iyz="0"/></inertial></link>
 <link name="hand"><inertial><mass value="1"/>
@@ -520,7 +522,7 @@ FOLLOWING = """<robot name="tie"><link name="base"/>
 
 def test_names_limits_motors_and_a_base_that_stands_come_back(tmp_path):
     """URDF -> TOML -> URDF -> TOML: the same text, its names and limits in remarks, and no world more; of two
-    coordinates in a tie the one without a motor follows, though it comes first."""
+    coordinates in a constraint the one without a motor follows, though it comes first."""
     first = robot(tmp_path, FOLLOWING)
     (tmp_path / "first.toml").write_text(first.text)
     (tmp_path / "again.urdf").write_text(urdf_of(tmp_path / "first.toml").text)

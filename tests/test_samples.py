@@ -327,8 +327,8 @@ def test_a_dwell_of_monotone_cubics_stays_and_one_of_cubics_is_warned_of():
     law = monotone.coordinates["z"].motion.sampled.spline
     values = [law.at(Fraction(k, 100)) for k in range(451)]
     assert max(values) == Fraction(19, 10) and {law.at(Fraction(k, 10)) for k in range(10, 31)} == {Fraction(19, 10)}
-    told = [each.what for each in warnings_of(smooth)]
-    assert len(told) == 1 and "between the equal samples at 1 and 3 s" in told[0]
+    reported = [each.what for each in warnings_of(smooth)]
+    assert len(reported) == 1 and "between the equal samples at 1 and 3 s" in reported[0]
     assert warnings_of(monotone) == ()
 
 
@@ -368,8 +368,8 @@ def test_samples_at_instants_that_no_double_holds_are_met_by_the_proof():
 def test_second_definitions_of_outputs_hold_at_the_first_sample():
     """|v| = l theta', |a|^2 = l^2 (theta''^2 + theta'^4) by differences inside the table."""
     law = "{ motion = { samples = [[0, 0.1], [1, 0.7], [2, 0.4], [3, 0.4]] } }"
-    asked = '[outputs]\nv = "speed(arm.end)"\na = "acceleration(arm.end)"\nseen = "ax(arm.center)"'
-    answers = eomgen.solve(arm(law, asked))
+    requested = '[outputs]\nv = "speed(arm.end)"\na = "acceleration(arm.end)"\nseen = "ax(arm.center)"'
+    answers = eomgen.solve(arm(law, requested))
     theta = CubicSpline([0, 1, 2, 3], [0.1, 0.7, 0.4, 0.4])
     rate, second = float(theta(0, 1)), float(theta(0, 2))
     assert answers["v"].value == pytest.approx(0.8 * abs(rate))

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 from slow_run import usual, usual_models
 
 import eomgen
+from eomgen.documents.equilibrium_picture import rest_picture
 from eomgen.documents.figures import Picture
 from eomgen.documents.letters import NamesArtist, PageBox, room_for
-from eomgen.documents.rest_picture import rest_picture
 from eomgen.documents.space_drawing import sight
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.scene import ROLES, Mark, Scene, drawn_start, frame_at, plain_number
@@ -31,7 +31,7 @@ MODELS = Path(__file__).parent.parent / "models"
 ALL = [str(path.relative_to(MODELS))[:-5] for path in sorted((*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")))]
 SOME = ("double_pendulum", "four_bar", "puma560", "whipple_bicycle")
 HOLDING = usual_models(MODELS / f"{name}.toml" for name in ALL)
-ASKED = sorted({*SOME, *(path.relative_to(MODELS).with_suffix("").as_posix() for path in HOLDING)})
+REQUESTED = sorted({*SOME, *(path.relative_to(MODELS).with_suffix("").as_posix() for path in HOLDING)})
 
 
 class Reader:
@@ -79,7 +79,7 @@ def scene_named(name: str) -> Scene:
     return eomgen.load(MODELS / f"{name}.toml").scene()
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in ASKED])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in REQUESTED])
 def test_a_scene_shows_bodies_where_mechanics_has_them(name):
     """R^T R = 1, det R = 1; p + R r of a body's named points, by the data, is the position that mechanics has.
 
@@ -257,7 +257,7 @@ def test_a_name_finds_its_place_inside_the_picture_or_none():
     assert room_for((50, 50), (140, 10), (), none, (page, page), 1.0) is None
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in ASKED])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in REQUESTED])
 def test_names_do_not_cover_one_another(name):
     """Of the boxes of all names in a model's picture no two meet, none leaves the picture, and there are names."""
     picture = rest_picture(eomgen.load(MODELS / f"{name}.toml"))

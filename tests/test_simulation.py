@@ -108,7 +108,7 @@ def test_no_drift_is_claimed_where_energy_need_not_stay():
 
 
 def test_the_gap_of_a_tie_is_reported():
-    """max |phi| of the pendulum whose rod is a closing tie."""
+    """max |phi| of the pendulum whose rod is a closing constraint."""
     equations = tied_pendulum()
     p = [1.0, 1.0, 9.81]
     gaps = compiled(program_of(equations.phi, equations.symbols), "numpy")
@@ -121,7 +121,7 @@ def test_the_gap_of_a_tie_is_reported():
         energy=energy_of(equations, p),
     )
     assert result.ok and 0 < result.gap < 1e-7 and result.drift < 1e-7
-    assert "Ties open by at most" in result.summary()
+    assert "Constraints open by at most" in result.summary()
 
 
 def test_a_given_input_replaces_the_models_own():
@@ -205,8 +205,8 @@ def test_what_is_too_fast_to_be_looked_at_is_followed_for_a_shorter_time():
     equations = eomgen.derive(eomgen.loads(text))
     run, words = run_of_a_page(equations, None, 11)
     assert run.ok and 1e-6 < run.t[-1] < 1 and run.t[-1] == float(f"{run.t[-1]:.0e}") and f"{run.t[-1]:g} s" in words
-    asked, words = run_of_a_page(equations, 2e-6, 11)
-    assert asked.t[-1] == 2e-6 and not words
+    requested, words = run_of_a_page(equations, 2e-6, 11)
+    assert requested.t[-1] == 2e-6 and not words
 
 
 def test_pages_of_a_motion_that_cannot_go_on_show_it_so_far(tmp_path):
@@ -224,8 +224,8 @@ def test_pages_of_a_motion_that_cannot_go_on_show_it_so_far(tmp_path):
     equations = eomgen.derive(model)
     run, words = run_of_a_page(equations, None, 11)
     assert run.ok and run.t[-1] == 0.5 and "Followed for 0.5 s. Stopped at t = 0.625 s: 'wall'" in words
-    asked, words = run_of_a_page(equations, 1.0, 11)
-    assert asked.ended == "singular" and not asked.ok and not words
+    requested, words = run_of_a_page(equations, 1.0, 11)
+    assert requested.ended == "singular" and not requested.ok and not words
     strip = animate_document(model, output=str(tmp_path / "x.png"), time=None, showing=Showing(frames=2))
     assert not strip.failed and "Followed for 0.5 s" in str(strip.notes)
 
@@ -275,7 +275,7 @@ def test_senseless_questions_are_refused(message):
         run(**BAD[message])
 
 
-# -- ties that come to depend on one another ------------------------------------------------------------
+# -- constraints that come to depend on one another ------------------------------------------------------------
 
 
 def test_a_run_is_carried_across_a_change_point():
@@ -301,7 +301,7 @@ def test_ties_that_stay_independent_end_no_run():
 
 @each("name", ["double_pendulum", "four_bar", "four_cranks", "gyrostat", "spherical_pendulum"])
 def test_the_derivative_of_the_right_hand_side_is_exact(name):
-    """d(x')/dx against central differences: trees, dependent coordinates, redundant ties, quaternions."""
+    """d(x')/dx against central differences: trees, dependent coordinates, redundant constraints, quaternions."""
     equations = eomgen.derive(eomgen.load(MODELS / f"{name}.toml"))
     p, rhs, x = parameter_vector(equations.model), equations.rhs("numpy"), equations.start()
     x = x + 0.01 * np.sin(np.arange(len(x)) + 1.0) * (name != "four_cranks")
@@ -310,7 +310,7 @@ def test_the_derivative_of_the_right_hand_side_is_exact(name):
     columns = [(rhs(0.3, x + h * e, p) - rhs(0.3, x - h * e, p)) / (2 * h) for e in np.eye(len(x))]
     scale = max(1.0, np.abs(found).max())
     assert found[: len(rhs.coordinates)] == pytest.approx(np.column_stack(columns)[: len(rhs.coordinates)], abs=1e-6)
-    if name != "four_cranks":  # off the ties redundant rows contradict one another
+    if name != "four_cranks":  # off the constraints redundant rows contradict one another
         assert found == pytest.approx(np.column_stack(columns), abs=1e-7 * scale)
 
 

@@ -14,7 +14,7 @@ from tools import RUN_HERE, each_target, marked
 import eomgen
 from eomgen.codegen import kernels
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.lowering import lowered
+from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
 from eomgen.codegen.programs import program_of_blocks, slopes_of
 from eomgen.codegen.rhs import compiled
@@ -24,16 +24,17 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.solve.factorization import zeros_of, zeros_with_ties
+from eomgen.symbolic.solve.factorization import zeros_of, zeros_with_constraints
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"
 
 
 def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False) -> EquationsOfMotion:
-    """A plate of three coupled coordinates on legs of two each; two rows tie each leg to it, `twice` says all twice."""
+    """A plate of three coupled coordinates on legs of two each; two rows constraint each leg to it, `twice` says all
+    twice."""
     names = [f"p{i}" for i in range(3)] + [f"l{i}{j}" for i in range(legs) for j in range(2)]
-    s = symbols(" ".join(names), "m", ties=2 * legs * (2 if twice else 1))
+    s = symbols(" ".join(names), "m", constraints=2 * legs * (2 if twice else 1))
     (m,), q, n = s.parameters.values(), s.q, len(names)
     M = [[0] * n for _ in range(n)]
     for i in range(3):
@@ -58,8 +59,8 @@ def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False
 CASES = {
     "legs": {"legs": 4},
     "massless legs": {"legs": 4, "massless": True},
-    "every tie said twice": {"legs": 3, "twice": True},
-    "massless legs, every tie said twice": {"legs": 3, "massless": True, "twice": True},
+    "every constraint said twice": {"legs": 3, "twice": True},
+    "massless legs, every constraint said twice": {"legs": 3, "massless": True, "twice": True},
 }
 each_case = pytest.mark.parametrize("case", CASES.values(), ids=CASES.keys())
 
@@ -168,7 +169,7 @@ def test_the_lists_hold_what_elimination_fills_in(seed):
     M = [[int(i == j or mask[max(i, j), min(i, j)]) for j in range(9)] for i in range(9)]
     rows = touched.astype(int).tolist()
     half = np.where(mask, rng.uniform(0.1, 1, (9, 9)), 0)
-    for zeros, W in ((zeros_of(M, rows), 0.0), (zeros_with_ties(M, rows), 1.0)):
+    for zeros, W in ((zeros_of(M, rows), 0.0), (zeros_with_constraints(M, rows), 1.0)):
         J = np.where(touched, rng.uniform(0.1, 1, (5, 9)), 0)
         numbers = half + half.T + 20 * np.eye(9) + W * J.T @ J
         C = np.linalg.cholesky(numbers)
@@ -236,10 +237,10 @@ def solved_with_counts(n: int) -> tuple[int, int]:
 
 def test_a_loop_more_costs_what_a_loop_costs():
     """A row of n four-bars: as many operations a loop of 20 as of 10, and no fewer are told than are made."""
-    (ten, told), (twenty, told_of_twenty) = solved_with_counts(10), solved_with_counts(20)
+    (ten, reported), (twenty, reported_of_twenty) = solved_with_counts(10), solved_with_counts(20)
     assert twenty / 20 == pytest.approx(ten / 10, rel=0.05)
-    assert told_of_twenty / 20 == pytest.approx(told / 10, rel=0.05)
-    assert 0.8 < ten / told < 1.3
+    assert reported_of_twenty / 20 == pytest.approx(reported / 10, rel=0.05)
+    assert 0.8 < ten / reported < 1.3
 
 
 def test_forty_loops_take_forty_thousand_operations_at_most():
@@ -275,7 +276,7 @@ def test_rows_that_nearly_depend_wait_for_the_others(rows):
 
 def pieces(program: Program) -> int:
     """How many parts C cuts a program into."""
-    return sum(function.apart for function in lowered(program, C, "dx").bodies)
+    return sum(function.apart for function in statements(program, C, "dx").bodies)
 
 
 def long_row(n: int) -> EquationsOfMotion:

@@ -95,6 +95,6 @@ def test_a_state_space_goes_to_python_control(cart):
 
 
 def test_a_state_space_without_inputs_is_refused_by_name():
-    """No input, no transfer function: what is wrong, and what mends it."""
+    """No input, no transfer function: what is wrong, and what fixes it."""
     with pytest.raises(eomgen.EomgenError, match="without inputs"):
         eomgen.linearize(MODELS / "double_pendulum.toml").state_space().to_scipy()

@@ -28,9 +28,9 @@ def test_the_force_on_a_slider_at_nice_angles_is_mass_times_acceleration():
     Formed by hand with 40 digits for r = 0.24, L = 0.35, w = 110, m = 0.9.
     """
     true = {"pi/6": 3407.9598222043, "pi/4": 2163.0166227127, "pi/3": 496.4243187697}
-    asked = [f'a{k} = {{ value = "reaction_x(B)", at = "a = {angle}" }}' for k, angle in enumerate(true)]
-    asked += [f't{k} = {{ value = "reaction_x(B)", at = "t = {angle}/w" }}' for k, angle in enumerate(true)]
-    answers = eomgen.solve(eomgen.loads(SLIDER_CRANK + "\n".join(asked)))
+    requested = [f'a{k} = {{ value = "reaction_x(B)", at = "a = {angle}" }}' for k, angle in enumerate(true)]
+    requested += [f't{k} = {{ value = "reaction_x(B)", at = "t = {angle}/w" }}' for k, angle in enumerate(true)]
+    answers = eomgen.solve(eomgen.loads(SLIDER_CRANK + "\n".join(requested)))
     for k, force in enumerate(true.values()):
         assert answers[f"a{k}"].value == pytest.approx(force, rel=1e-12)
         assert answers[f"t{k}"].value == pytest.approx(force, rel=1e-12)

@@ -28,7 +28,7 @@ from slow_run import beside, in_slow_run
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
-from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
+from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
 from eomgen.sweeps import workers
 from eomgen.sweeps import workers as kernel
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
@@ -159,7 +159,7 @@ def test_values_are_typed_in_the_units_of_the_file_and_in_python_in_si(spring, t
 
 @pytest.mark.slow
 def test_what_is_asked_is_what_the_verbs_give(spring):
-    """Frequency, period, places of rest and reactions of each run: closed forms, and eomgen.simulate at its values."""
+    """Frequency, period, equilibria and reactions of each run: closed forms, and eomgen.simulate at its values."""
     found = eomgen.sweep(
         spring,
         over={"k": "10:90:3", "m": [1, 2]},
@@ -176,7 +176,7 @@ def test_what_is_asked_is_what_the_verbs_give(spring):
     )
     table = found.table
     w = np.sqrt(table["k"] / table["m"])
-    assert list(table) == ["run", "seed", "status", "message", "k", "m", *found.plan.asked]
+    assert list(table) == ["run", "seed", "status", "message", "k", "m", *found.plan.requested]
     assert table["frequency(1)"] == pytest.approx(w, rel=1e-12)
     assert table["period(x)"] == pytest.approx(2 * math.pi / w, rel=1e-8)
     assert table["last(x)"] == pytest.approx(0.1 * np.cos(12 * w), abs=1e-7)
@@ -214,10 +214,11 @@ def test_a_zero_at_an_end_of_a_range_is_critical_and_a_zero_everywhere_is_not(sp
 def test_what_nothing_in_a_sweep_changes_is_said(spring):
     """df/dk = 0 of what is asked, of what is to be critical; and what has one sign has no critical value."""
     found = eomgen.sweep(spring, over={"k": [10, 20, 30]}, ask=("m", "k"), critical="m - 5", time=1)
-    told = (found["m"][0], found["m - 5"][0])
+    reported = (found["m"][0], found["m - 5"][0])
     assert found.remarks == (
-        f"'m' is {told[0]:g} in all runs: nothing that is set changes it",
-        f"'m - 5' changes its sign nowhere along k: 'm - 5' is {told[1]:g} in all runs: nothing that is set changes it",
+        f"'m' is {reported[0]:g} in all runs: nothing that is set changes it",
+        f"'m - 5' changes its sign nowhere along k: 'm - 5' is {reported[1]:g} in all runs: "
+        "nothing that is set changes it",
     )
     (one,) = eomgen.sweep(spring, over={"k": [10, 20]}, critical="k + 1", time=1).remarks
     assert one == "'k + 1' changes its sign nowhere along k: it goes from 11 to 21"
@@ -321,8 +322,8 @@ def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
     monkeypatch.setattr(SweepKernel, "rows", slow)
     words = ["sweep", spring, "--over", "k=10:90:100", "--ask", "last(x)", "--time", "1", "-o", str(folder)]
     ended = CliRunner().invoke(main, [*words, "--no-certify", "--patience", "40"])
-    told = re.search(r"given up after 40 s, (\d+) runs are kept in", ended.stderr)
-    assert ended.exit_code == 3 and told is not None and len(table_at(folder)) == int(told[1]) >= 3
+    reported = re.search(r"given up after 40 s, (\d+) runs are kept in", ended.stderr)
+    assert ended.exit_code == 3 and reported is not None and len(table_at(folder)) == int(reported[1]) >= 3
 
 
 @needs_sh
@@ -383,15 +384,15 @@ def test_any_executor_with_submit_gives_the_same_bits(spring):
         def submit(self, function, *arguments):
             return Polled(function(*arguments))
 
-    asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)", "max(x)"], "time": 1}
-    alone = eomgen.sweep(spring, **asked)
+    requested = {"over": {"k": "10:90:9"}, "ask": ["last(x)", "max(x)"], "time": 1}
+    alone = eomgen.sweep(spring, **requested)
     spawn = multiprocessing.get_context("spawn")  # as on every system but Linux
     for make in (lambda: ThreadPoolExecutor(1), lambda: ProcessPoolExecutor(2, mp_context=spawn)):
         with make() as executor:
-            found = eomgen.sweep(spring, executor=executor, **asked)
+            found = eomgen.sweep(spring, executor=executor, **requested)
         assert list(found.ledger.rows()) == list(alone.ledger.rows())
-    assert list(eomgen.sweep(spring, executor=Plain(), **asked).ledger.rows()) == list(alone.ledger.rows())
-    made = eomgen.sweep(eomgen.load(spring), workers=2, **asked)
+    assert list(eomgen.sweep(spring, executor=Plain(), **requested).ledger.rows()) == list(alone.ledger.rows())
+    made = eomgen.sweep(eomgen.load(spring), workers=2, **requested)
     assert list(made.ledger.rows()) == list(alone.ledger.rows())
 
 
@@ -399,10 +400,10 @@ def test_any_executor_with_submit_gives_the_same_bits(spring):
 def test_dask_gives_the_same_bits(spring):
     """A cluster of processes of dask.distributed on this machine."""
     distributed = pytest.importorskip("distributed")
-    asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
-    alone = eomgen.sweep(spring, **asked)
+    requested = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
+    alone = eomgen.sweep(spring, **requested)
     with distributed.Client(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as client:
-        found = eomgen.sweep(spring, executor=client, **asked)
+        found = eomgen.sweep(spring, executor=client, **requested)
     assert list(found.ledger.rows()) == list(alone.ledger.rows())
 
 
@@ -410,9 +411,9 @@ def test_dask_gives_the_same_bits(spring):
 @pytest.mark.slow
 def test_loky_gives_the_same_bits(spring):
     loky = pytest.importorskip("loky")
-    asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
-    found = eomgen.sweep(spring, executor=loky.get_reusable_executor(2), **asked)
-    assert list(found.ledger.rows()) == list(eomgen.sweep(spring, **asked).ledger.rows())
+    requested = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
+    found = eomgen.sweep(spring, executor=loky.get_reusable_executor(2), **requested)
+    assert list(found.ledger.rows()) == list(eomgen.sweep(spring, **requested).ledger.rows())
 
 
 # -- files -----------------------------------------------------------------------------------------------------
@@ -434,11 +435,11 @@ def test_a_folder_resumes_its_own_plan_alone_and_replays_bit_for_bit(spring, tmp
     other = CliRunner().invoke(main, [*words[:3], "k=10:90:5", *words[4:]])
     assert other.exit_code == 2 and "another plan: over" in other.output
     replay = CliRunner().invoke(main, ["sweep", "--replay", "2", folder, "-o", str(tmp_path / "run.csv"), "--json"])
-    told = json.loads(replay.output)
-    assert replay.exit_code == 0 and told["in_table"] and told["differ"] == []
+    reported = json.loads(replay.output)
+    assert replay.exit_code == 0 and reported["in_table"] and reported["differ"] == []
     with (tmp_path / "run.csv").open() as file:
         rows = list(csv.reader(file))
-    assert float(rows[-1][rows[0].index("x")]) == pytest.approx(told["row"]["last(x)"], abs=1e-12)
+    assert float(rows[-1][rows[0].index("x")]) == pytest.approx(reported["row"]["last(x)"], abs=1e-12)
     assert sweep_at(folder).again(2) == sweep_at(folder).ledger.row(2)
     with sqlite3.connect(tmp_path / "out" / "ledger.sqlite") as ledger:
         ledger.execute('UPDATE runs SET "last(x)" = "last(x)" + 1e-15 WHERE run = 2')
@@ -473,9 +474,9 @@ def test_of_nothing_all_outputs_are_asked_and_the_ledger_is_one_file(spring, tmp
 def test_what_is_asked_may_hold_outputs_by_name():
     """An output of the state stands for its formula; other things of that name stay what they are."""
     text = SPRING + "pull = 'k*x'\nmass = 'k*x/m'\n"
-    asked = ["max(pull-x*k/2)", "max(k*x - x*k/2)", "max(pull + k*x(mass.center))", "max(2*k*x)"]
-    found = eomgen.sweep(eomgen.loads(text), over={"k": [40.0]}, ask=asked, time=2)
-    values = [found[name][0] for name in asked]
+    requested = ["max(pull-x*k/2)", "max(k*x - x*k/2)", "max(pull + k*x(mass.center))", "max(2*k*x)"]
+    found = eomgen.sweep(eomgen.loads(text), over={"k": [40.0]}, ask=requested, time=2)
+    values = [found[name][0] for name in requested]
     assert values[0] == values[1] and values[2] == values[3]
 
 
@@ -514,9 +515,9 @@ def test_pictures_and_proof(spring, tmp_path):
         done = CliRunner().invoke(
             main, ["sweep", spring, *words, "--ask", "max(x')", "--time", "1", "--plot", str(path), "--json"]
         )
-        told = json.loads(done.stdout)
-        assert path.stat().st_size > 5000 and told["certificate"]["ok"] is True
-        names = {check["name"]: check["status"] for check in told["certificate"]["checks"]}
+        reported = json.loads(done.stdout)
+        assert path.stat().st_size > 5000 and reported["certificate"]["ok"] is True
+        names = {check["name"]: check["status"] for check in reported["certificate"]["checks"]}
         assert names["a run made again has the same bits"] == "holds"
         assert names["steps taken again from states of the run end where it came"] == "holds"
         assert names["what is of the whole run holds against its samples"] == "holds"
@@ -566,7 +567,7 @@ def test_what_is_set_and_told_is_of_its_laws(tmp_path):
             assert drawn_otherwise(over, laws, 4, kind, moved).status == "fails", (kind, k)
     columns, right = {"x": [1.0, 2.0, None], "z": [3.0, 3.0, 3.0]}, {"x": (2, 1.0, 1.5, 2.0), "z": (3, 3.0, 3.0, 3.0)}
     same = ("'z' is 3 in all runs: nothing that is set changes it",)
-    assert told_of_all(columns, right, same, "", 1e-9, ["x", "z"]).status == "holds"
-    assert told_of_all(columns, right | {"x": (2, 1.0, 1.4, 2.0)}, same, "", 1e-9, ["x", "z"]).status == "fails"
-    assert told_of_all(columns, right, (), "", 1e-9, ["x", "z"]).status == "fails"
-    assert told_of_all(columns, right, ("'x' is 2 in all runs", *same), "", 1e-9, ["x", "z"]).status == "fails"
+    assert reported_of_all(columns, right, same, "", 1e-9, ["x", "z"]).status == "holds"
+    assert reported_of_all(columns, right | {"x": (2, 1.0, 1.4, 2.0)}, same, "", 1e-9, ["x", "z"]).status == "fails"
+    assert reported_of_all(columns, right, (), "", 1e-9, ["x", "z"]).status == "fails"
+    assert reported_of_all(columns, right, ("'x' is 2 in all runs", *same), "", 1e-9, ["x", "z"]).status == "fails"

@@ -53,7 +53,7 @@ def test_what_is_let_in_is_a_symbol_for_whoever_sets_it(text):
     try:
         symbol = parse_symbol(text)
     except ExpressionError as error:
-        assert 0 <= error.column <= len(text) and error.what and error.mend
+        assert 0 <= error.column <= len(text) and error.what and error.fix
         return
     assert len(symbol.tex) > LONGEST or parse_symbol(symbol.tex) == symbol
     for tex in (symbol.tex, symbol.dotted(2), symbol.with_index("x").tex):
@@ -92,7 +92,7 @@ def test_a_rate_has_its_dot_over_the_letter(text, tex, rate):
 
 
 @each(
-    "text, what, column, mend",
+    "text, what, column, fix",
     [
         (r"\dot\gama", r"unknown command '\gama'", 4, r"did you mean \gamma?"),
         ("a_b_c", "'_' where the letter has an index already", 3, "one pair of { }"),
@@ -108,10 +108,10 @@ def test_a_rate_has_its_dot_over_the_letter(text, tex, rate):
         (" ", "a symbol without a letter", 0, "like 'J_C'"),
     ],
 )
-def test_what_is_no_symbol_says_where_and_how_to_mend_it(text, what, column, mend):
+def test_what_is_no_symbol_says_where_and_how_to_mend_it(text, what, column, fix):
     with pytest.raises(ExpressionError) as caught:
         parse_symbol(text)
-    assert what in caught.value.what and caught.value.column == column and mend in caught.value.mend
+    assert what in caught.value.what and caught.value.column == column and fix in caught.value.fix
 
 
 def test_an_error_stands_at_its_place_in_the_file():

@@ -129,7 +129,7 @@ SYSTEMS = {
     "cart-pole": lambda: cart_pole(F=0),
     "row of springs, in a loop": lambda: spring_row(20),
     "tie": tied_pendulum,
-    "tie said three times": lambda: tied_pendulum(3),
+    "constraint said three times": lambda: tied_pendulum(3),
 }
 
 
@@ -340,10 +340,10 @@ def reactions_written(tmp_path, target):
     equations = eomgen.derive(eomgen.load(MODELS / "double_pendulum.toml"))
     names, reactions = equations.reactions_program
     description = Description("Double pendulum", "made by eomgen", {}, vectors(equations.program, seed=2))
-    told = replace(
+    reported = replace(
         description, vectors=vectors(reactions), role=REACTIONS, outputs=names, remarks=dict.fromkeys(names, "[N]")
     )
-    emitted = reactions, told
+    emitted = reactions, reported
     texts = texts_of("double_pendulum", [(equations.program, description), emitted], targets=[target])
     return files.write_all(tmp_path, texts)
 
@@ -409,8 +409,8 @@ def test_a_remark_uses_no_argument(tmp_path):
     """What a comment names is not read: (void)t stands there all the same, and nothing warns."""
     program = right_hand_side(pendulum())
     remarks = {"theta": "angle at t, from p and c, no inputs"}
-    told = Description("Pendulum", "", remarks, vectors(program))
-    texts = texts_of("pendulum", [(program, told)], targets=["c"])
+    reported = Description("Pendulum", "", remarks, vectors(program))
+    texts = texts_of("pendulum", [(program, reported)], targets=["c"])
     assert "(void)t;" in texts["pendulum_rhs.c"]
     assert self_test(files.write_all(tmp_path, texts)[0]).returncode == 0
 
@@ -509,6 +509,6 @@ def test_files_of_several_targets_lie_each_in_a_folder_of_its_own(tmp_path):
 
 
 def test_an_unknown_target_is_refused_with_those_that_there_are():
-    """mend: the names of ALL."""
+    """fix: the names of ALL."""
     with pytest.raises(UsageError, match="numpy, c"):
         compiled(right_hand_side(pendulum()), "algol")

@@ -89,7 +89,8 @@ SYSTEMS = ["double_pendulum", "n_four_bar", "four_bar", "tumbling_body", "arm3",
 
 @pytest.mark.parametrize("name", usual([*SYSTEMS], 3, 1))
 def test_a_motion_by_series_is_that_of_dop853(name):
-    """The same states between the steps, energy and ties kept; with multipliers, quaternions and given motions."""
+    """The same states between the steps, energy and constraints kept; with multipliers, quaternions and given
+    motions."""
     model = eomgen.load(MODELS / f"{name}.toml")
     how = {"time": 0.7, "samples": 51, "rtol": 1e-10, "atol": 1e-10}
     own, other = (eomgen.simulate(model, method=method, **how) for method in ("taylor", "DOP853"))
@@ -164,8 +165,8 @@ def test_contacts_change_at_instants_that_hold(name, method):
         eomgen.simulate(model, time=6, samples=11, method=each, rtol=tolerance, atol=tolerance)
         for each, tolerance in ((method, 1e-9), ("DOP853", 1e-13))
     )
-    told = [[phase.ended_by.split(" at t")[0] for phase in run.phases] for run in (own, exact)]
-    assert told[0] == told[1] and len(told[0]) > (5 if name == "stick-slip" else 1)
+    reported = [[phase.ended_by.split(" at t")[0] for phase in run.phases] for run in (own, exact)]
+    assert reported[0] == reported[1] and len(reported[0]) > (5 if name == "stick-slip" else 1)
     assert [phase.end for phase in own.phases] == pytest.approx([phase.end for phase in exact.phases], abs=1e-9)
 
 

@@ -12,11 +12,11 @@ from each import each
 
 import eomgen
 from eomgen.model.values import exact_parameters
-from eomgen.proof.run_told import ToldRun, run_told
-from eomgen.proof.small_motions_told import small_motions_told
+from eomgen.proof.run_reported import ReportedRun, run_reported
+from eomgen.proof.small_motions_reported import small_motions_reported
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.simulation.result import Trajectory
-from eomgen.verbs.simulate import _run_payload, _run_statements, _told
+from eomgen.verbs.simulate import _reported, _run_payload, _run_statements
 
 TWO = """
 eomgen = 1
@@ -63,16 +63,16 @@ def run() -> Trajectory:
     return eomgen.simulate(model(), time=2.0, target="numpy")
 
 
-def told() -> ToldRun:
-    return _told(_run_statements(model(), run()), _run_payload(model(), run(), []), None)
+def reported() -> ReportedRun:
+    return _reported(_run_statements(model(), run()), _run_payload(model(), run(), []), None)
 
 
-def wrong_run(of: ToldRun) -> str:
-    return "; ".join(check.detail for check in run_told(run(), model(), of) if check.status == "fails")
+def wrong_run(of: ReportedRun) -> str:
+    return "; ".join(check.detail for check in run_reported(run(), model(), of) if check.status == "fails")
 
 
 def test_what_is_told_of_a_run_holds():
-    assert not wrong_run(told())
+    assert not wrong_run(reported())
     assert run().certify().ok
 
 
@@ -87,7 +87,7 @@ def in_head(rows: Any, old: str, new: str) -> list[Any]:
     return [[row[0].replace(old, new), *row[1:]] for row in rows]
 
 
-RUNS: dict[str, Callable[[ToldRun], ToldRun]] = {
+RUNS: dict[str, Callable[[ReportedRun], ReportedRun]] = {
     "two columns exchanged": lambda of: replace(of, rows=exchanged(of.rows, 1, 2)),
     "a start for an end": lambda of: replace(of, rows=[[a, c, b] for a, b, c in of.rows]),
     "another unit": lambda of: replace(of, rows=in_head(of.rows, "[cm]", "[m]")),
@@ -105,13 +105,13 @@ RUNS: dict[str, Callable[[ToldRun], ToldRun]] = {
 
 @each("change", RUNS)
 def test_what_is_told_otherwise_of_a_run_is_seen(change: str):
-    assert wrong_run(RUNS[change](told()))
+    assert wrong_run(RUNS[change](reported()))
 
 
 def test_a_column_under_the_name_of_another_is_seen():
     """q is the integral of q'."""
     other = replace(run(), speeds=run().speeds[::-1])
-    assert any(check.status == "fails" for check in run_told(other, model(), ToldRun()))
+    assert any(check.status == "fails" for check in run_reported(other, model(), ReportedRun()))
 
 
 @pytest.mark.parametrize("what", ["the instant of an extreme", "the instants of events"])
@@ -119,9 +119,9 @@ def test_an_instant_that_is_elsewhere_is_seen(what: str, monkeypatch: pytest.Mon
     """Samples beside it bound the value that a motion has there."""
     extreme, events = WholeRun.extreme, WholeRun.events
     if what == "the instant of an extreme":
-        monkeypatch.setattr(WholeRun, "extreme", lambda *asked: (extreme(*asked)[0], (0.9,)))
+        monkeypatch.setattr(WholeRun, "extreme", lambda *requested: (extreme(*requested)[0], (0.9,)))
     else:
-        monkeypatch.setattr(WholeRun, "events", lambda *asked: [(k, t + 0.1) for k, t in events(*asked)])
+        monkeypatch.setattr(WholeRun, "events", lambda *requested: [(k, t + 0.1) for k, t in events(*requested)])
     failing = [check.name for check in run().certify().checks if check.status == "fails"]
     assert failing == ["what is of the whole run holds against its samples"]
 
@@ -139,7 +139,7 @@ def wrong_modes(change: Callable[[dict[str, Any]], None]) -> str:
 
     entries = small().entries()
     change(entries)
-    checks = small_motions_told(entries, printed_modes(small().derivation), exact_parameters(model()))
+    checks = small_motions_reported(entries, printed_modes(small().derivation), exact_parameters(model()))
     return "; ".join(check.detail for check in checks if check.status == "fails")
 
 
@@ -203,15 +203,15 @@ pull = { kind = "force", point = "beam.B", force = ["F", 0] }
 
 
 def wrong_sections(change: Callable[[Any, Any], None]) -> str:
-    from eomgen.documents.statics.section_steps import section_payload, section_steps, told_sections
-    from eomgen.proof.sections_told import sections_told
+    from eomgen.documents.statics.section_steps import reported_sections, section_payload, section_steps
+    from eomgen.proof.sections_reported import sections_reported
 
     sections = eomgen.statics(eomgen.loads(BEAM)).sections
-    told = dict(enumerate(told_sections(sections, section_steps(sections), section_payload(sections))))
-    assert len(told) == 2
-    for _, one in told.values():
+    reported = dict(enumerate(reported_sections(sections, section_steps(sections), section_payload(sections))))
+    assert len(reported) == 2
+    for _, one in reported.values():
         change(one.pieces[0], one.extremes[0])
-    return "; ".join(c.detail for c in sections_told(sections.found, told.values(), {}) if c.status == "fails")
+    return "; ".join(c.detail for c in sections_reported(sections.found, reported.values(), {}) if c.status == "fails")
 
 
 def test_section_forces_as_they_are_told_hold():
@@ -272,25 +272,26 @@ def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monk
     assert [check.status for check in checks if check.name == name] == ["fails" if said else "holds"]
 
 
-def told_works(change=lambda told: told) -> str:
+def reported_works(change=lambda reported: reported) -> str:
     """What is wrong with the virtual works of the beam, each changed."""
-    from eomgen.proof.sections_told import works_told
+    from eomgen.proof.sections_reported import works_reported
     from eomgen.proof.structure import state_of
 
     beam = eomgen.statics(eomgen.loads(BEAM))
-    found = works_told(beam.found, state_of(beam.found), map(change, beam._told_works()))
+    found = works_reported(beam.found, state_of(beam.found), map(change, beam._reported_works()))
     return "; ".join(c.detail for c in found if c.status == "fails")
 
 
 def test_virtual_works_that_are_told_are_those_of_the_mechanism():
-    """Only R works along all ties; the loads work what their fields declare; along R + works = 0, R by the balance"""
-    assert not told_works()
-    assert "along" in told_works(lambda x: replace(x, along=f"-({x.along})"))
-    assert "along" in told_works(lambda x: replace(x, blocks=[replace(b, spin=f"-({b.spin})") for b in x.blocks]))
-    assert "works" in told_works(lambda x: replace(x, works=[(name, f"2*({w})") for name, w in x.works]))
-    assert "works" in told_works(lambda x: replace(x, printed=x.printed[1:]))
-    assert "value" in told_works(lambda x: replace(x, last=-x.last))
-    assert "equation" in told_works(lambda x: replace(x, left=x.left + 1))
-    assert "block 1" in told_works(lambda x: replace(x, rows=[replace(r, spin=-r.spin) for r in x.rows]))
-    moved = told_works(lambda x: replace(x, places=[replace(p, shift=[2 * s for s in p.shift]) for p in x.places]))
+    """Only R works along all constraints; the loads work what their fields declare; along R + works = 0, R by the
+    balance"""
+    assert not reported_works()
+    assert "along" in reported_works(lambda x: replace(x, along=f"-({x.along})"))
+    assert "along" in reported_works(lambda x: replace(x, blocks=[replace(b, spin=f"-({b.spin})") for b in x.blocks]))
+    assert "works" in reported_works(lambda x: replace(x, works=[(name, f"2*({w})") for name, w in x.works]))
+    assert "works" in reported_works(lambda x: replace(x, printed=x.printed[1:]))
+    assert "value" in reported_works(lambda x: replace(x, last=-x.last))
+    assert "equation" in reported_works(lambda x: replace(x, left=x.left + 1))
+    assert "block 1" in reported_works(lambda x: replace(x, rows=[replace(r, spin=-r.spin) for r in x.rows]))
+    moved = reported_works(lambda x: replace(x, places=[replace(p, shift=[2 * s for s in p.shift]) for p in x.places]))
     assert "shift" in moved

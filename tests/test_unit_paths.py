@@ -126,8 +126,8 @@ def table() -> str:
     rows = ["| verb | option | typed | taken |", "|---|---|---|---|"]
     for verb, option in paths():
         for typed, taken in TAKEN[option].items():
-            told = "refused" if taken is None else said(taken)
-            rows.append(f"| {verb} | `{option}` | `{typed}` | {told} |")
+            reported = "refused" if taken is None else said(taken)
+            rows.append(f"| {verb} | `{option}` | `{typed}` | {reported} |")
     return head + "\n".join(rows) + "\n"
 
 
@@ -166,14 +166,14 @@ def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_tak
             continue
         assert result.exit_code == 0, result.output
         if isinstance(expected, float):
-            told = json.loads(result.stdout)
-            ended = next((told[key] for key in ("time", "end") if key in told), None)
+            reported = json.loads(result.stdout)
+            ended = next((reported[key] for key in ("time", "end") if key in reported), None)
             assert ended in (None, expected) or ended["t"] == expected
             continue
         name, value, unit, *_ = expected
-        told = json.loads(result.stdout)["taken"][name]
-        assert told["value"] == pytest.approx(value, rel=1e-12)
-        assert told["unit"] == unit
+        reported = json.loads(result.stdout)["taken"][name]
+        assert reported["value"] == pytest.approx(value, rel=1e-12)
+        assert reported["unit"] == unit
         assert f"taken: {said(expected)}" in result.stderr
 
 
@@ -246,7 +246,7 @@ def test_a_rate_that_is_typed_is_the_rate_of_every_verb(pendulum):
 
 
 def test_given_velocities_are_in_the_units_that_the_file_declares():
-    """theta' = 90 of an angle in deg is 90 deg/s; pi/2 is refused with both mends."""
+    """theta' = 90 of an angle in deg is 90 deg/s; pi/2 is refused with both fixes."""
     ending = '\n[given]\nvelocity = ["{}"]\n'
     model = eomgen.loads(PENDULUM + ending.format("theta' = 90"))
     assert model.given.velocity[0].right.evaluate({"pi": 1}) * 2 == 1
@@ -259,7 +259,7 @@ def test_given_velocities_are_in_the_units_that_the_file_declares():
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (("--set", "l=45 dge"), "did you mean 'deg'?"),
         (("--set", "l=5*m*cm"), "unknown name 'cm'"),
@@ -270,10 +270,10 @@ def test_given_velocities_are_in_the_units_that_the_file_declares():
         (("--set", "m=-1"), "negative"),
     ],
 )
-def test_what_is_typed_wrongly_is_refused_with_its_mend(words, told, pendulum):
+def test_what_is_typed_wrongly_is_refused_with_its_mend(words, reported, pendulum):
     """Exit 2, and the nearest right thing."""
     result = CliRunner().invoke(main, ["derive", str(pendulum), *words])
-    assert (result.exit_code, told in result.stderr) == (2, True), result.stderr
+    assert (result.exit_code, reported in result.stderr) == (2, True), result.stderr
 
 
 def test_a_start_that_is_typed_takes_the_place_of_the_guess_of_the_file():
@@ -326,10 +326,10 @@ def test_a_given_motion_in_python_is_si_or_brings_its_unit(pendulum):
 def test_an_instant_that_is_asked_of_many_runs_is_in_the_unit_of_the_file(pendulum):
     """theta' at theta = 10 of an angle in deg is theta' at 10 deg, and its column says so."""
     words = ["sweep", str(pendulum), "--over", "m=1", "--time", "1", "--no-certify", "--json"]
-    told = json.loads(CliRunner().invoke(main, [*words, "--ask", "theta' at theta = 10"]).stdout)
-    asked = "theta' at theta = 10 deg"
-    right = eomgen.sweep(pendulum, over={"m": 1}, ask=asked, time=1)[asked]
-    assert told["table"][asked] == pytest.approx(list(right), rel=1e-14) and abs(right[0]) > 1
+    reported = json.loads(CliRunner().invoke(main, [*words, "--ask", "theta' at theta = 10"]).stdout)
+    requested = "theta' at theta = 10 deg"
+    right = eomgen.sweep(pendulum, over={"m": 1}, ask=requested, time=1)[requested]
+    assert reported["table"][requested] == pytest.approx(list(right), rel=1e-14) and abs(right[0]) > 1
 
 
 @pytest.mark.parametrize("typed", [0.5, "500 ms", (500, "ms"), "1/2", OfPint(0.5, {"[time]": 1.0})])
@@ -352,7 +352,7 @@ def test_a_time_has_its_unit_or_is_in_seconds(typed, pendulum):
 def test_what_is_no_time_is_refused_wherever_one_is_asked(typed, pendulum):
     """The same sentence in Python as on the command line; pages have a time of their own where none is given."""
     pages = (lambda: eomgen.play(pendulum, time=typed), lambda: eomgen.report(pendulum, time=typed))
-    for asked in (
+    for requested in (
         lambda: eomgen.simulate(pendulum, time=typed),
         lambda: eomgen.simulator(pendulum)(typed),
         lambda: eomgen.simulate_many(pendulum, time=typed),
@@ -361,7 +361,7 @@ def test_what_is_no_time_is_refused_wherever_one_is_asked(typed, pendulum):
         *(() if typed is None else pages),
     ):
         with pytest.raises(UsageError, match="is no time"):
-            asked()
+            requested()
 
 
 if __name__ == "__main__":

@@ -86,7 +86,7 @@ def test_units_of_different_dimensions_do_not_fit(one, other):
 
 
 @each(
-    "text, what, column, mend",
+    "text, what, column, fix",
     [
         ("Nm", "there is no unit 'Nm'", 0, "did you mean 'N*m'?"),
         ("cmm", "there is no unit 'cmm'", 0, "did you mean 'mm'?"),
@@ -103,11 +103,11 @@ def test_units_of_different_dimensions_do_not_fit(one, other):
         ("2", "'2' has no place in the unit '2'", 0, "write kg*m^2"),
     ],
 )
-def test_an_unknown_unit_is_an_error_with_its_mend(text, what, column, mend):
+def test_an_unknown_unit_is_an_error_with_its_mend(text, what, column, fix):
     """STYLE 6: culprit, column, the nearest right thing."""
     with pytest.raises(ExpressionError) as caught:
         parse_unit(text)
-    assert (caught.value.what, caught.value.column, caught.value.mend) == (what, column, mend)
+    assert (caught.value.what, caught.value.column, caught.value.fix) == (what, column, fix)
 
 
 def test_every_named_unit_is_read_and_positive():

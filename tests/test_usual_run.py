@@ -26,14 +26,14 @@ def test_the_covering_models_hold_every_feature_so_often(times):
 
 def test_each_failing_case_is_told_under_its_name():
     """No case stops the ones behind it."""
-    asked = []
+    requested = []
 
     @each("a, b", [(1, 2), (3, 4), (5, 6)])
     def sums(a, b):
-        asked.append(a)
+        requested.append(a)
         assert a + b == 7
 
     with pytest.raises(ExceptionGroup, match="2 of 3 cases") as caught:
         sums()
-    assert asked == [1, 3, 5]
+    assert requested == [1, 3, 5]
     assert [failure.__notes__ for failure in caught.value.exceptions] == [["of a=1, b=2"], ["of a=5, b=6"]]

@@ -93,7 +93,7 @@ def test_the_factor_of_an_equation_is_that_by_which_it_was_multiplied(model, equ
 
 
 def test_a_factor_beside_ties_is_of_the_equation_alone():
-    """D = f E + h (J a + gamma): f is the quotient of what the ties do not hold."""
+    """D = f E + h (J a + gamma): f is the quotient of what the constraints do not hold."""
     model = eomgen.loads(WINCH)
     for more in ("0", "5*(y1'' + y2'')", "phi*(y1'' + y2'')"):
         found = eomgen.verify(model, f"2*m1*y1'' + 2*lam(rope, 1) + {more} = 2*m1*g")
@@ -136,7 +136,7 @@ def test_what_is_too_much_in_a_wrong_equation_is_not_zero(equation):
     ],
 )
 def test_a_letter_that_means_nothing_is_no_constant(equation, verdict, unknown):
-    """The symbol that a tie declares for its force is that force; F_S, Q7 are nobody's."""
+    """The symbol that a constraint declares for its force is that force; F_S, Q7 are nobody's."""
     found = eomgen.verify(eomgen.loads(PENDULUM), equation)
     assert (found.verdict, found.unknown) == (verdict, unknown)
 
@@ -225,7 +225,7 @@ acceleration = [0, "-g"]
 """
 
 
-def told_laws(model: eomgen.Model) -> dict[str, str]:
+def reported_laws(model: eomgen.Model) -> dict[str, str]:
     """The laws of motion that `derive` prints."""
     text = eomgen.derive(model).render("text")
     lines = text.partition("Laws of motion\n")[2].partition("\n\n")[0].splitlines() if "Laws of motion" in text else []
@@ -245,7 +245,7 @@ def test_the_start_that_ties_complete_is_one_for_every_verb(text):
     for symbol, value in x0.items():
         assert evaluate((start.exact[symbol],), known, FLOAT)[0] == pytest.approx(value, abs=1e-12)
         assert run[symbol.name][0] == pytest.approx(value, abs=1e-12)
-    laws = told_laws(model)
+    laws = reported_laws(model)
     assert laws.keys() == model.coordinates.keys()
     for q, law in laws.items():
         at = {n: float(x) for n, x in exact_parameters(model).items()}
@@ -297,7 +297,7 @@ def test_a_speed_that_has_no_value_stands_in_the_start_of_the_others():
     )
     assert eomgen.verify(model, "y2 = -v*t - (m1 - m2)*g/(2*(m1 + m2))*t^2").verdict == "right"
     assert eomgen.verify(model, "y2 = -(m1 - m2)*g/(2*(m1 + m2))*t^2").verdict == "wrong"
-    assert "v*t" in told_laws(model)["y2"]
+    assert "v*t" in reported_laws(model)["y2"]
 
 
 LEAVING = """

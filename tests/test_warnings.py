@@ -73,8 +73,8 @@ def test_no_model_of_ours_is_warned_of(path):
     assert warnings_of(eomgen.load(path)) == ()
 
 
-@pytest.mark.parametrize(("old", "new", "told", "mend"), DOUBTFUL.values(), ids=DOUBTFUL)
-def test_what_is_hardly_meant_is_told_with_its_place(old, new, told, mend, tmp_path):
+@pytest.mark.parametrize(("old", "new", "reported", "fix"), DOUBTFUL.values(), ids=DOUBTFUL)
+def test_what_is_hardly_meant_is_told_with_its_place(old, new, reported, fix, tmp_path):
     """In the JSON of a verb that has nothing to do with it, on stderr, and in the exit code with --strict."""
     model = tmp_path / "doubtful.toml"
     text = PENDULUM.replace(old, new, 1)
@@ -82,9 +82,9 @@ def test_what_is_hardly_meant_is_told_with_its_place(old, new, told, mend, tmp_p
     words = ["inertia", str(model), "--json", "--no-certify"]
     result = CliRunner().invoke(main, words)
     (warning,) = json.loads(result.stdout)["warnings"]
-    assert told in warning["what"] and mend in warning["mend"]
+    assert reported in warning["what"] and fix in warning["fix"]
     assert warning["file"] == str(model) and warning["line"] > 1 and warning["column"] >= 1
-    assert told in result.stderr
+    assert reported in result.stderr
     assert (result.exit_code, CliRunner().invoke(main, [*words, "--strict"]).exit_code) == (0, 1)
 
 
@@ -110,15 +110,16 @@ OPEN = PENDULUM.replace(
 
 
 @pytest.mark.parametrize(
-    ("text", "told"), [(TWO_NAMES, "can move together without moving a mass"), (OPEN, "'far' (row 1) does not close")]
+    ("text", "reported"),
+    [(TWO_NAMES, "can move together without moving a mass"), (OPEN, "'far' (row 1) does not close")],
 )
-def test_check_tells_what_derive_or_simulate_would_refuse(text, told, tmp_path):
+def test_check_tells_what_derive_or_simulate_would_refuse(text, reported, tmp_path):
     """Not "no problems found"."""
     model = tmp_path / "wrong.toml"
     model.write_text(text)
     result = CliRunner().invoke(main, ["check", str(model)])
     assert "no problems found" not in result.stdout
-    assert told in result.stderr
+    assert reported in result.stderr
 
 
 def test_check_shows_the_units_that_were_inferred(tmp_path):
@@ -152,17 +153,17 @@ joint = { kind = "revolute", on = "rod.end", angle = "-psi" }
 [constraints.held]
 TIE
 """
-TIES = {
+CONSTRAINTS = {
     "guide": 'kind = "guide"\npoint = "piston.origin"\nalong = [1, 0]',
     "support": 'kind = "support"\npoint = "piston.origin"\nnormal = [0, 1]',
 }
 
 
-@each("guess, tie, told", [("near", "guide", True), ("start", "guide", False)])
-def test_a_guess_that_would_be_geometry_is_told(guess, tie, told):
+@each("guess, constraint, reported", [("near", "guide", True), ("start", "guide", False)])
+def test_a_guess_that_would_be_geometry_is_told(guess, constraint, reported):
     """A guide lies where its point starts: of `near` that is a guess, of `start` what somebody says"""
-    found = warnings_of(eomgen.loads(SLIDER.replace("GUESS", guess).replace("TIE", TIES[tie])))
-    assert ["where 'held' lies follows from where 'psi' starts" in each.what for each in found] == [True] * told
+    found = warnings_of(eomgen.loads(SLIDER.replace("GUESS", guess).replace("TIE", CONSTRAINTS[constraint])))
+    assert ["where 'held' lies follows from where 'psi' starts" in each.what for each in found] == [True] * reported
 
 
 LOCKED = """
@@ -184,25 +185,25 @@ points = ["bar.end", "P"]
 def test_a_model_that_cannot_move_is_told(tmp_path):
     """0 degrees of freedom of a coordinate that nobody drives: not "no problems found"; driven it is meant"""
     model = tmp_path / "locked.toml"
-    for text, told in (
+    for text, reported in (
         (LOCKED, True),
         (LOCKED + '[constraints.drive]\nkind = "motion"\ncoordinate = "phi"\nvalue = "0*t"\n', False),
         (LOCKED.replace("phi = 0", 'phi = { motion = "0*t" }'), False),
     ):
         model.write_text(text)
         result = CliRunner().invoke(main, ["check", str(model)])
-        assert ("nothing can move: the ties leave 'phi' no freedom" in result.stderr) is told, text
-        assert ("no problems found" in result.stdout) is not told
+        assert ("nothing can move: the constraints leave 'phi' no freedom" in result.stderr) is reported, text
+        assert ("no problems found" in result.stdout) is not reported
 
 
 def test_a_body_that_nothing_hangs_is_told(tmp_path):
     """Beside a pendulum a rod without a joint stands in the ground: it is named; a massless frame is meant so."""
     model = tmp_path / "unhung.toml"
     rod = 'shape = { kind = "rod", mass = MASS, length = 1 }'
-    for more, told in ((rod.replace("MASS", "1"), True), (rod.replace("MASS", "0"), False), ("points = {}", False)):
+    for more, reported in ((rod.replace("MASS", "1"), True), (rod.replace("MASS", "0"), False), ("points = {}", False)):
         model.write_text(PENDULUM + f"\n[bodies.rest]\n{more}\n")
         result = CliRunner().invoke(main, ["check", str(model)])
-        assert ("body 'rest' has no joint, and stands still" in result.stderr) is told, result.output
+        assert ("body 'rest' has no joint, and stands still" in result.stderr) is reported, result.output
 
 
 IN_DEGREES = PENDULUM.replace("phi = 0.3", 'phi = { start = 30, unit = "deg" }').replace(

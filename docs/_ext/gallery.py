@@ -106,7 +106,7 @@ def parts_of(model: eomgen.Model) -> Iterator[Callable[[eomgen.Model], str]]:
         yield answers
 
 
-def told(part: Callable[[eomgen.Model], str], model: eomgen.Model) -> str:
+def reported(part: Callable[[eomgen.Model], str], model: eomgen.Model) -> str:
     """A section; where a verb refuses, its own words."""
     try:
         with eomgen.patience(PATIENCE):
@@ -147,7 +147,7 @@ def page(name: str) -> str:
     remarks = (model.about or "", f"Source: {model.source}." if model.source else "")
     blocks = [f"# {markdown.markdown_escaped(model.name)}", *map(markdown.markdown_escaped, filter(None, remarks))]
     blocks += shown(model, PLACE / f"{name}.md")
-    blocks += filter(None, (told(part, model) for part in parts_of(model)))
+    blocks += filter(None, (reported(part, model) for part in parts_of(model)))
     blocks.append(f"## Its file\n\n```{{literalinclude}} {up}models/{name}.toml\n:language: toml\n```")
     blocks.append(f"A copy to work on: `eomgen new mine --example {Path(name).name}`.")
     return "\n\n".join(blocks) + "\n"

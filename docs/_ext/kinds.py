@@ -14,7 +14,7 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from gallery import answer_row, parts_of, told
+from gallery import answer_row, parts_of, reported
 from papers import linked, papers, write
 from reference import PLACE as REFERENCE
 from reference import REGION, SEAMS, fields_table, gist, prose, safe
@@ -67,7 +67,8 @@ def example(kind: str) -> eomgen.Model:
 
 
 def counted(kind: str, model: eomgen.Model) -> str:
-    """What a joint leaves free and what it carries; what a tie asks and carries; of forces and shapes nothing."""
+    """What a joint leaves free and what it carries; what a constraint asks and carries; of forces and shapes
+    nothing."""
     section = kinds()[kind]
     if section in ("Forces", "Shapes"):
         return ""
@@ -80,8 +81,8 @@ def counted(kind: str, model: eomgen.Model) -> str:
         owner, free = links[0].name, len(links[0].s)
         said = f"It leaves {plural(free, 'freedom')}, and carries "
     else:
-        owner = next(name for name, tie in model.constraints.items() if tie.kind == kind)
-        rows = [row for row in system.ties.rows if row.tie == owner]
+        owner = next(name for name, constraint in model.constraints.items() if constraint.kind == kind)
+        rows = [row for row in system.constraints.rows if row.constraint == owner]
         said = f"It is {plural(len(rows), 'row')}, and carries "
     names = [f"`{each.name}`" for each in every if each.owner == owner and each.label != "drive"]
     where = "in the plane" if model.space == "plane" else "in space"
@@ -109,7 +110,7 @@ def page(kind: str, homes: dict[str, str]) -> str:
     blocks += [counted(kind, model), *(linked(text, source, homes, here) for text in sayings(kind, seam))]
     blocks += ["## Keys", fields_table(cls), "## An example"]
     blocks += [f"```{{literalinclude}} ../../examples/{kind}.toml\n:language: toml\n```"]
-    blocks += (re.sub(r"^## ", "### ", told(part, model), flags=re.M) for part in parts_of(model))
+    blocks += (re.sub(r"^## ", "### ", reported(part, model), flags=re.M) for part in parts_of(model))
     return "\n\n".join(filter(None, blocks)) + "\n"
 
 
@@ -123,7 +124,7 @@ FOUND = {
 
 
 @cache
-def asked() -> dict[Path, dict[str, set[str]]]:
+def requested() -> dict[Path, dict[str, set[str]]]:
     """Example -> its outputs by name -> the functions that each calls."""
     models = {path: eomgen.load(path) for path in sorted((EXAMPLES / "outputs").glob("*.toml"))}
     return {
@@ -132,9 +133,9 @@ def asked() -> dict[Path, dict[str, set[str]]]:
     }
 
 
-def asked_in(function: OutputFunction) -> dict[Path, list[str]]:
+def requested_in(function: OutputFunction) -> dict[Path, list[str]]:
     """Example -> the names of its outputs that call a function."""
-    found = {path: [n for n, c in calls.items() if c & {*function.names}] for path, calls in asked().items()}
+    found = {path: [n for n, c in calls.items() if c & {*function.names}] for path, calls in requested().items()}
     return {path: names for path, names in found.items() if names}
 
 
@@ -149,11 +150,13 @@ def function_page(function: OutputFunction, homes: dict[str, str]) -> str:
     ]
     blocks += [f"- called with: {safe(function.arguments)}\n- unit: {safe(function.in_unit)}"]
     blocks += [f"Found from {FOUND[function.source]}.{twice}"]
-    for path, names in asked_in(function).items():
+    for path, names in requested_in(function).items():
         model = eomgen.load(path)
-        asked = "\n".join(line for line in path.read_text("utf-8").splitlines() if line.partition(" = ")[0] in names)
-        blocks += [f"## {safe(model.name)}", f"```{{code-block}} toml\n[outputs]\n{asked}\n```"]
-        blocks += [told(partial(answered, names=names), model)]
+        requested = "\n".join(
+            line for line in path.read_text("utf-8").splitlines() if line.partition(" = ")[0] in names
+        )
+        blocks += [f"## {safe(model.name)}", f"```{{code-block}} toml\n[outputs]\n{requested}\n```"]
+        blocks += [reported(partial(answered, names=names), model)]
         blocks += [
             f"```{{literalinclude}} ../../examples/outputs/{path.name}\n:language: toml\n:caption: the model\n```"
         ]

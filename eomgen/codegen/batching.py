@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.build import function_of, library
-from eomgen.codegen.program import Program, SpherePlaces
+from eomgen.codegen.program import Program, QuaternionPlaces
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.c_lanes import LANES, constants_of, lanes_text, text_of, vector_compiler
 from eomgen.codegen.taylor import series_text
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 STATUS = ("running", "finished", "not finite", "step too small", "too many steps", "stiff")
 ROUNDS = 2000  # of a call: between two calls somebody may have lost patience
@@ -26,7 +26,7 @@ _SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 
 
 @dataclass(frozen=True)
-class Asked:
+class Requested:
     """What is asked of all runs alike.
 
     Args:
@@ -44,7 +44,7 @@ class Asked:
     atol: float
     most_steps: int
     stops: tuple[float, ...] = ()
-    spheres: tuple[SpherePlaces, ...] = ()
+    unit_quaternions: tuple[QuaternionPlaces, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ def _struct(lanes: int) -> Any:
             ("most_steps", _SIZE),
             *_fields(_AT, "instants x0 p x reached status steps stops"),
             ("n_stops", _SIZE),
-            ("spheres", _AT),
+            ("unit_quaternions", _AT),
             *_fields(_SIZE, "n_spheres begun"),
             ("work", _AT),
             ("room", _SIZE),
@@ -131,20 +131,20 @@ class Batch:
 
     def __init__(self, program: Program, defined: Mapping[str, float], order: int | None = None) -> None:
         self.lanes, text = lanes_text(program)
-        told = [f"#define {name} {value!r}" for name, value in {**defined, "LOOKED_AT": LOOKED_AT}.items()]
+        reported = [f"#define {name} {value!r}" for name, value in {**defined, "LOOKED_AT": LOOKED_AT}.items()]
         n = len(program.states)
         if order is None:
             self._room, steps = 23 * n, [text_of("dop853.c"), text_of("batch.c"), text_of("batch_dop853.c")]
         else:
             series, size = series_text(program, LANES if self.lanes > 1 else C, order)
             self._room, steps = (order + 1) * n + size, [series, text_of("batch.c"), text_of("batch_series.c")]
-        made = library("\n".join([text, *told, *steps]), by=vector_compiler())
+        made = library("\n".join([text, *reported, *steps]), by=vector_compiler())
         self._batch = function_of(made, "batch")
         self._batch.argtypes, self._batch.restype = [_AT, _SIZE], ctypes.c_int
         self._constants = constants_of(program)
 
     def runs(
-        self, x0: np.ndarray, p: np.ndarray, asked: Asked, *, threads: int, check: Callable[[], None]
+        self, x0: np.ndarray, p: np.ndarray, requested: Requested, *, threads: int, check: Callable[[], None]
     ) -> FoundRuns:
         """The runs from x0 (runs x n) with parameters p (runs x parameters).
 
@@ -155,35 +155,44 @@ class Batch:
         x0, p = np.ascontiguousarray(x0, dtype=float), np.ascontiguousarray(p, dtype=float)
         runs, n = x0.shape
         found = FoundRuns(
-            np.full((runs, len(asked.instants), n), np.nan),
+            np.full((runs, len(requested.instants), n), np.nan),
             np.zeros(runs, dtype=np.int32),
-            np.full(runs, asked.span[0]),
+            np.full(runs, requested.span[0]),
             np.zeros(runs, dtype=np.uintp),
         )
         pieces = pieces_of(runs, min(threads, -(-runs // self.lanes)))
-        in_threads([partial(self._piece, x0, p, asked, found, piece) for piece in pieces], check)
+        in_threads([partial(self._piece, x0, p, requested, found, piece) for piece in pieces], check)
         return found
 
     def _piece(
         self,
         x0: np.ndarray,
         p: np.ndarray,
-        asked: Asked,
+        requested: Requested,
         found: FoundRuns,
         piece: tuple[int, int],
         stop: threading.Event,
     ) -> None:
         """The runs from one number on to another, in one thread."""
-        n, instants = x0.shape[1], np.ascontiguousarray(asked.instants, dtype=float)
-        stops, spheres = np.array(asked.stops, dtype=float), np.array(asked.spheres, dtype=np.int32).reshape(-1, 4)
+        n, instants = x0.shape[1], np.ascontiguousarray(requested.instants, dtype=float)
+        stops, unit_quaternions = (
+            np.array(requested.stops, dtype=float),
+            np.array(requested.unit_quaternions, dtype=np.int32).reshape(-1, 4),
+        )
         work = _aligned((6 * n + self._room + p.shape[1] + self._constants + 2) * self.lanes)
         b = _struct(self.lanes)(n=n, parameters=p.shape[1], constants=self._constants, samples=len(instants))
-        b.next, b.last, b.start, b.end = *piece, *asked.span
+        b.next, b.last, b.start, b.end = *piece, *requested.span
         b.room = self._room
-        b.rtol, b.atol, b.most_steps = asked.rtol, asked.atol, asked.most_steps
-        b.n_stops, b.n_spheres = len(stops), len(spheres)
+        b.rtol, b.atol, b.most_steps = requested.rtol, requested.atol, requested.most_steps
+        b.n_stops, b.n_unit_quaternions = len(stops), len(unit_quaternions)
         arrays = {"instants": instants, "x0": x0, "p": p, "x": found.x, "reached": found.reached}
-        arrays |= {"status": found.status, "steps": found.steps, "stops": stops, "spheres": spheres, "work": work}
+        arrays |= {
+            "status": found.status,
+            "steps": found.steps,
+            "stops": stops,
+            "unit_quaternions": unit_quaternions,
+            "work": work,
+        }
         for name, array in arrays.items():
             setattr(b, name, array.ctypes.data)
         while not stop.is_set() and self._batch(ctypes.byref(b), ROUNDS):

@@ -21,10 +21,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from eomgen import kept
+from eomgen import disk_cache
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.files import beside
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.numeric.work import time_left
 
 LONG_TEXT = 150_000  # characters, some 8 000 operations: there -O2 takes several seconds
@@ -54,7 +54,7 @@ class Compiler:
         once, usual, long: of a text that is called a few times only, so that it is made soonest; of others; of long.
         patience: seconds of work that it may take; how long a loaded machine needs for them nobody counts.
         trial: a text of nothing, which it takes where it works at all.
-        mend: where it comes from.
+        fix: where it comes from.
     """
 
     language: str
@@ -62,7 +62,7 @@ class Compiler:
     variable: str
     names: tuple[str, ...]
     flags: tuple[str, ...]
-    mend: str
+    fix: str
     zig: str = ""
     last: tuple[str, ...] = ("-lm",)
     once: tuple[str, ...] = ("-O0",)
@@ -83,7 +83,7 @@ class Compiler:
         except ValueError as error:
             raise ToolMissing(
                 f"no {self.language} compiler: {self.variable} is {given!r}: {error}",
-                mend=f"set {self.variable} to a command line, or to none",
+                fix=f"set {self.variable} to a command line, or to none",
             ) from None
         for words in [chosen] if chosen else [[name] for name in self.names]:
             path = shutil.which(words[0])
@@ -91,7 +91,7 @@ class Compiler:
                 return [path, *words[1:]]
         if not chosen and self.zig and importlib.util.find_spec("ziglang"):
             return [sys.executable, "-m", "ziglang", self.zig]
-        raise ToolMissing(f"no {self.language} compiler", mend=self.mend)
+        raise ToolMissing(f"no {self.language} compiler", fix=self.fix)
 
     def flags_of(self, text: str, quickly: bool) -> tuple[str, ...]:
         """The flags for a text; how far it is optimized the environment's command line may say: CC="cc -O3"."""
@@ -126,10 +126,10 @@ def _processor() -> frozenset[str]:
     if platform.machine() not in ("x86_64", "AMD64"):
         return frozenset()
     try:
-        told = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+        reported = Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
         return frozenset()
-    lines = [line for line in told.splitlines() if line.startswith("flags")]
+    lines = [line for line in reported.splitlines() if line.startswith("flags")]
     return frozenset(lines[0].split()) if lines else frozenset()
 
 
@@ -150,11 +150,11 @@ def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDL
         ToolMissing: there is no compiler, or none that starts.
         RunFailed: the compiler does not come back, or makes what is no library; TextRefused: it refuses the text.
     """
-    path = _kept(text, by, quickly)
+    path = _compiled_file(text, by, quickly)
     with suppress(OSError):  # another machine's: made anew below
         return ctypes.CDLL(str(path))
     path.unlink(missing_ok=True)
-    path = _kept(text, by, quickly)
+    path = _compiled_file(text, by, quickly)
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:
@@ -162,7 +162,7 @@ def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDL
         raise RunFailed(
             f"the {by.language} compiler makes no library: {error}",
             shlex.join(by.command()),
-            mend="take --target numpy, or another compiler: CC",
+            fix="take --target numpy, or another compiler: CC",
         ) from None
 
 
@@ -172,19 +172,19 @@ def binary(text: str, by: Compiler) -> bytes:
     Raises:
         ToolMissing, RunFailed: as of `library`.
     """
-    return _kept(text, by, quickly=False).read_bytes()
+    return _compiled_file(text, by, quickly=False).read_bytes()
 
 
-def _kept(text: str, by: Compiler, quickly: bool) -> Path:
+def _compiled_file(text: str, by: Compiler, quickly: bool) -> Path:
     """What the compiler makes of a text, in the cache."""
     command, flags = by.command(), by.flags_of(text, quickly)
     key = "\0".join((text, *command, *flags, platform.platform(), platform.machine()))
-    folder, name = kept.cache_place(), kept.digest(key.encode())
-    for path, _ in kept.contents(folder, name, ".so"):  # half a file kills at load
-        kept.used(path)
+    folder, name = disk_cache.cache_place(), disk_cache.digest(key.encode())
+    for path, _ in disk_cache.contents(folder, name, ".so"):  # half a file kills at load
+        disk_cache.used(path)
         return path
     if name in _GIVEN_UP:
-        raise RunFailed(_GIVEN_UP[name], command[0], mend="take --target numpy, or another compiler: CC")
+        raise RunFailed(_GIVEN_UP[name], command[0], fix="take --target numpy, or another compiler: CC")
     return _compile(text, [*command, *flags], folder, name, by)
 
 
@@ -200,7 +200,7 @@ def function_of(made: ctypes.CDLL, name: str, by: Compiler = C) -> Any:
         raise RunFailed(
             f"the {by.language} compiler makes a library without the function '{name}'",
             by.command()[0],
-            mend="take --target numpy, or another compiler: CC",
+            fix="take --target numpy, or another compiler: CC",
         ) from None
 
 
@@ -215,23 +215,23 @@ def _compile(text: str, command: list[str], folder: Path, name: str, by: Compile
             except TimeoutError as late:
                 _GIVEN_UP[name] = f"the {by.language} compiler {late}"
                 raise RunFailed(
-                    _GIVEN_UP[name], command[0], mend="take --target numpy, or another compiler: CC"
+                    _GIVEN_UP[name], command[0], fix="take --target numpy, or another compiler: CC"
                 ) from None
             if code != 0 or not made.is_file():
-                told = f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}"
+                reported = f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}"
                 refused = IN_THE_TEXT.search(said) and text != by.trial and _works(by)
-                raise (TextRefused if refused else RunFailed)(told, command[0])
-            return kept.put_whole(made, folder, name)
+                raise (TextRefused if refused else RunFailed)(reported, command[0])
+            return disk_cache.put_whole(made, folder, name)
     except OSError as error:
         raise ToolMissing(
-            f"nothing can be compiled: {error}", command[0], mend="take --target numpy, or another compiler: CC"
+            f"nothing can be compiled: {error}", command[0], fix="take --target numpy, or another compiler: CC"
         ) from None
 
 
 def _works(by: Compiler) -> bool:
     """Whether it makes something of a text of nothing."""
     try:
-        return bool(_kept(by.trial, by, quickly=True))
+        return bool(_compiled_file(by.trial, by, quickly=True))
     except (RunFailed, ToolMissing):
         return False
 

@@ -126,7 +126,7 @@ def ranked_number(a: Number) -> RankedText:
     except OverflowError:
         raise DerivationError(
             f"the number {str(a)[:20]}... is too large for a double",
-            mend="scale the parameters: other units, or numbers nearer to 1",
+            fix="scale the parameters: other units, or numbers nearer to 1",
         ) from None
     if Fraction(value) == a or a.denominator > 10_000 or a.numerator > LARGEST_WHOLE:
         return repr(value), ATOM

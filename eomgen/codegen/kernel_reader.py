@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.codegen import kernels
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, held
-from eomgen.codegen.lowered import (
+from eomgen.codegen.statements import (
     CHANGED,
     INDICES,
     INT,

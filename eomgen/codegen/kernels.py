@@ -212,8 +212,8 @@ def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
         for e in range(START[m], last):
             for h in range(e, last):
                 L[REACH[e] * N + REACH[h]] += weight[m] * J[m * N + REACH[e]] * J[m * N + REACH[h]]
-    with_ties = factored(1, ROUNDING, L)
-    if with_ties == 1:
+    with_constraints = factored(1, ROUNDING, L)
+    if with_constraints == 1:
         return 1
     return -1
 

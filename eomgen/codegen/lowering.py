@@ -17,7 +17,8 @@ from typing import Any
 
 from eomgen.codegen.expressions import ExpressionWriter, used_once
 from eomgen.codegen.kernel_reader import kernel
-from eomgen.codegen.lowered import (
+from eomgen.codegen.program import Assign, Program, Solve, identifiers, scheduled
+from eomgen.codegen.statements import (
     CHANGED,
     GIVEN,
     PLACES,
@@ -35,14 +36,13 @@ from eomgen.codegen.lowered import (
     Statement,
     Table,
 )
-from eomgen.codegen.program import Assign, Program, Solve, identifiers, scheduled
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.splines import Sampled, sampled_of
 
 
 @dataclass(frozen=True)
-class Lowered:
+class Statements:
     """A program in the small language.
 
     Args:
@@ -69,9 +69,9 @@ class Lowered:
         return [*(["\n".join(heads)] if heads else []), *functions]
 
 
-def lowered(
+def statements(
     program: Program, language: Language, result: str, prefix: str = "", remarks: Mapping[str, str] | None = None
-) -> Lowered:
+) -> Statements:
     """The functions of a program.
 
     Args:
@@ -82,7 +82,7 @@ def lowered(
     layout = Layout(program, language, result, prefix, remarks or {})
     tables, kernels = _kernels(layout)
     constants = len(layout.kept) + len(layout.inverted)
-    return Lowered(program, constants, layout.ops, tables, kernels, layout.kernels, tuple(_functions(layout)))
+    return Statements(program, constants, layout.ops, tables, kernels, layout.kernels, tuple(_functions(layout)))
 
 
 def _functions(layout: Layout) -> list[Function]:
@@ -191,7 +191,7 @@ def _solved(layout: Layout, writer: ExpressionWriter, number: int) -> list[State
 
 
 def _calls(layout: Layout, arrays: list[str], number: int, n: int, k: int) -> list[Statement]:
-    """The kernels that solve: of several systems with ties the first is preceded by the factors."""
+    """The kernels that solve: of several systems with constraints the first is preceded by the factors."""
     matrix, right = arrays[: 1 + bool(k)], arrays[1 + bool(k) :]
     if layout.solvers[0] != "solve_factors":
         entry = layout.solvers[min(number, len(layout.solvers) - 1)]

@@ -16,15 +16,15 @@ from typing import Any, Literal
 
 import numpy as np
 
-from eomgen.codegen.lowered import INT, Table
+from eomgen.codegen.statements import INT, Table
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
 from eomgen.symbolic.expression.traversal import FREE, Count, Symbols, order
 from eomgen.symbolic.solve import factorization
-from eomgen.symbolic.solve.factorization import PlaceLists, Zeros, zeros_of, zeros_with_ties
+from eomgen.symbolic.solve.factorization import PlaceLists, Zeros, zeros_of, zeros_with_constraints
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 
@@ -75,7 +75,7 @@ class Solve:
     @property
     def zeros(self) -> tuple[Zeros, Zeros]:
         """The same of the matrix, and of matrix + border^T W border."""
-        return self.plain, zeros_with_ties(self.matrix, self.border)
+        return self.plain, zeros_with_constraints(self.matrix, self.border)
 
     @property
     def places(self) -> tuple[frozenset[int], frozenset[int]]:
@@ -304,7 +304,7 @@ def _defaults(needed: Sequence[Node], symbols: Symbols, inputs: Mapping[str, Sca
     used = {x.name for x in needed if x.op == "symbol"}
     silent = [name for name in symbols.inputs if name in used and name not in inputs]
     if silent:
-        raise DerivationError(f"no expression for input {', '.join(map(repr, silent))}", mend="give it one in [inputs]")
+        raise DerivationError(f"no expression for input {', '.join(map(repr, silent))}", fix="give it one in [inputs]")
     return tuple(inputs.get(name, 0) for name in symbols.inputs)
 
 
@@ -347,7 +347,7 @@ def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence
     if strangers:
         raise DerivationError(
             f"not an argument of the program: {', '.join(map(repr, strangers))}",
-            mend="name a coordinate, speed, parameter or input",
+            fix="name a coordinate, speed, parameter or input",
         )
 
 
@@ -528,20 +528,20 @@ def _plain(letter: str) -> str:
 # Program -> the places in its state of quaternions, and states in which these have norm 1.
 
 
-SpherePlaces = tuple[int, ...]
+QuaternionPlaces = tuple[int, ...]
 
 
-def spheres_of(program: Program) -> tuple[SpherePlaces, ...]:
+def unit_quaternions_of(program: Program) -> tuple[QuaternionPlaces, ...]:
     """Of every quaternion among the states, the places of its four numbers."""
     place = {node: k for k, node in enumerate(program.states)}
-    spheres = program.symbols.graph.spheres
-    return tuple(tuple(place[x] for x in symbols) for symbols in spheres if all(x in place for x in symbols))
+    unit_quaternions = program.symbols.graph.unit_quaternions
+    return tuple(tuple(place[x] for x in symbols) for symbols in unit_quaternions if all(x in place for x in symbols))
 
 
-def on_spheres(x: Any, spheres: Sequence[SpherePlaces]) -> Any:
+def at_unit_norms(x: Any, unit_quaternions: Sequence[QuaternionPlaces]) -> Any:
     """The state, or one state a row, with every quaternion over its norm; 0 stays."""
     found = np.array(x, dtype=float)
-    for places in spheres:
+    for places in unit_quaternions:
         four = found[..., list(places)]
         norm = np.sqrt(np.sum(four * four, axis=-1, keepdims=True))
         found[..., list(places)] = four / np.where(norm > 0, norm, 1)

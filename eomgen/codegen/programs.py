@@ -13,16 +13,16 @@ import numpy as np
 from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic_rates, program_in_motion, program_of
 from eomgen.codegen.rhs import GivenMotion, RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.explicit_accelerations import by_determinants, by_factors, regular_rows
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies.named_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.instant.quantities import Quantities, asks_of
+from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.reactions.inverse import FEW, Inverse, by_independent
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS
 from eomgen.model.parts import Output
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, ScalarRows, is_zero
 from eomgen.symbolic.solve import cramer
@@ -33,7 +33,7 @@ from eomgen.symbolic.solve.factorization import factor_solution
 
 
 @dataclass(frozen=True)
-class AskedOutputs:
+class RequestedOutputs:
     """Outputs in q, u, a, t, parameters and inputs [SI], and why the others are none.
 
     Args:
@@ -45,9 +45,9 @@ class AskedOutputs:
     left: dict[str, str] = field(default_factory=dict)
 
 
-def outputs_of_state(system: System) -> AskedOutputs:
+def outputs_of_state(system: System) -> RequestedOutputs:
     """The outputs of the model."""
-    found, quantities, symbols = AskedOutputs(), Quantities(system), system.symbols
+    found, quantities, symbols = RequestedOutputs(), Quantities(system), system.symbols
     unknown = (*symbols.lam, *symbols.unknowns.values())
     for name, output in system.scope.model.outputs.items():
         why = _of_an_instant(output)
@@ -68,9 +68,9 @@ def _of_an_instant(output: Output) -> str:
     """Why an output is no function of the state, "" where it may be one."""
     if output.at is not None or output.from_ is not None or output.side is not None or output.event is not None:
         return "it is asked at an instant"
-    if asks_of(output.value, SMALL_MOTIONS):
+    if requests_of(output.value, SMALL_MOTIONS):
         return "it is of the linearized system"
-    return "it is of a whole run" if asks_of(output.value, OF_A_RUN) else ""
+    return "it is of a whole run" if requests_of(output.value, OF_A_RUN) else ""
 
 
 # -------- inverse ---------------------------------------------------------------------------------------------
@@ -126,7 +126,7 @@ class InverseDynamics:
         """{actuator: its force or torque} as sympy expressions in q, u, a, t, parameters and inputs.
 
         Raises:
-            DerivationError: too many ties hang together for formulas, or they share their forces.
+            DerivationError: too many constraints hang together for formulas, or they share their forces.
         """
         from eomgen.symbolic.print.sympy_form import to_sympy
 
@@ -134,7 +134,7 @@ class InverseDynamics:
 
     @cached_property
     def program(self) -> Program:
-        """tau as a straight-line program: the recursion, and where ties close one solve."""
+        """tau as a straight-line program: the recursion, and where constraints close one solve."""
         symbols = self.graph.system.symbols
         own = {name: node for name, node in symbols.inputs.items() if name in self.graph.inputs}
         return program_of(
@@ -160,7 +160,7 @@ class InverseDynamics:
                 or its values at the instants, through which a cubic spline goes.
             parameters: values that replace the model's [SI].
         Raises:
-            UsageError: a coordinate without a motion, an unknown name; the motion opens the ties.
+            UsageError: a coordinate without a motion, an unknown name; the motion opens the constraints.
         """
         times = np.atleast_1d(np.asarray(t, dtype=float))
         p = parameter_vector(self.graph.system.scope.model, parameters)
@@ -170,7 +170,7 @@ class InverseDynamics:
 
 
 def _least(found: Inverse) -> Solve | None:
-    """The least z of  rows z = right: of ties that follow from others each carries its share.
+    """The least z of  rows z = right: of constraints that follow from others each carries its share.
 
     z - rows^T mu = 0,   rows z = right
     """
@@ -191,7 +191,7 @@ Blocks = Mapping[str, ScalarRows]
 
 
 def matrices_of(equations: EquationsOfMotion) -> dict[str, ScalarRows]:
-    """M and forcing of M a = forcing + J^T lam, and where ties close J and gamma of J a + gamma = 0; by name."""
+    """M and forcing of M a = forcing + J^T lam, and where constraints close J and gamma of J a + gamma = 0; by name."""
     blocks: dict[str, ScalarRows] = {"M": equations.M, "forcing": tuple((x,) for x in equations.forcing)}
     if equations.J:
         blocks |= {"J": equations.J, "gamma": tuple((x,) for x in equations.gamma)}
@@ -216,11 +216,11 @@ class RateSlopes:
 def slopes_of(equations: EquationsOfMotion) -> RateSlopes:
     """The slopes of x' = (N u + nu, a) in x and inputs.
 
-    From the matrix of the motion itself, factored once, with its pivots where ties close:
+    From the matrix of the motion itself, factored once, with its pivots where constraints close:
 
         [[M, -J^T], [J, 0]] [da; dlam] = -d(M a - J^T lam - forcing, J a + gamma) at fixed a, lam
 
-    Where no ties close and it takes fewer operations, those of the accelerations written out.
+    Where no constraints close and it takes fewer operations, those of the accelerations written out.
 
     Raises:
         DerivationError: the mass matrix is singular whatever the state.
@@ -337,7 +337,8 @@ def reactions_program(values: Mapping[str, Scalar], equations: EquationsOfMotion
 # -------- solved equations ------------------------------------------------------------------------------------
 # Equations of motion -> accelerations and multipliers as expressions of q, u and t.
 #
-# Where the equations are few by determinants, where freedoms are few over the independent accelerations, else by
+# Where the equations are few by determinants, where degrees of freedom are few over the independent accelerations,
+# else by
 # factors.
 
 

@@ -11,19 +11,19 @@ from typing import Any, TypeVar
 import numpy as np
 
 from eomgen.codegen.batching import ProgramInLanes
-from eomgen.codegen.program import Program, bordered, program_of, spheres_of
+from eomgen.codegen.program import Program, bordered, program_of, unit_quaternions_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Address, Functions, Target
 from eomgen.codegen.targets.c import c_together
 from eomgen.codegen.taylor import Series, series_of, without_series
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
-from eomgen.mechanics.constraints.rank import rank_of_ties
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
 from eomgen.model.replaced import TypedNumbers, are_several, time_law, typed_values, with_values
 from eomgen.model.values import numeric_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, tangent
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.tolerances import OPEN_GAP, RANK, SHARE
@@ -55,7 +55,7 @@ class RightHandSide:
         self.x0 = None if x0 is None else np.array(x0, dtype=float)
         self.p0 = None if p0 is None else np.array(p0, dtype=float)
         self._functions, self._one = functions, functions.one
-        self.spheres = spheres_of(program)
+        self.unit_quaternions = unit_quaternions_of(program)
         self._states = len(program.moving)
         self._known: tuple[bytes, Any] = (b"none yet", None)
         self._series: dict[int, Series | None] = {}
@@ -86,7 +86,7 @@ class RightHandSide:
         """dx at n states: t n or one number, x n x states, p of all or n x parameters, inputs () or n x inputs."""
         x = np.ascontiguousarray(x, dtype=float)
         if x.ndim != 2 or x.shape[1] != self._states:
-            raise UsageError(f"x is {' x '.join(map(str, x.shape))}, not n x {self._states}", mend="one state a row")
+            raise UsageError(f"x is {' x '.join(map(str, x.shape))}, not n x {self._states}", fix="one state a row")
         t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=float), len(x)))
         given = None
         if np.size(inputs):
@@ -97,7 +97,7 @@ class RightHandSide:
         if p.shape != (len(x), len(self.parameters)):
             raise UsageError(
                 f"p is {' x '.join(map(str, p.shape))}, not {len(x)} x {len(self.parameters)}",
-                mend="one row of parameters for each state",
+                fix="one row of parameters for each state",
             )
         if self.target == "c" and self._in_lanes is not None:
             return self._in_lanes(t, x, p, given)
@@ -205,7 +205,7 @@ def target_named(name: str) -> Target:
     for target in ALL:
         if target.name == name:
             return target
-    raise UsageError(f"unknown target '{name}'", mend=f"targets are {', '.join(target.name for target in ALL)}")
+    raise UsageError(f"unknown target '{name}'", fix=f"targets are {', '.join(target.name for target in ALL)}")
 
 
 def _say(line: str) -> None:
@@ -256,7 +256,7 @@ def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray,
         p: the parameters' values.
     """
     system = equations.system
-    symbols, rows = system.symbols, [row.label for row in system.ties.closing]
+    symbols, rows = system.symbols, [row.label for row in system.constraints.closing]
     names = [f"{u.name}'" for u in symbols.u]
     if not names:
         return Accelerations({}, {})
@@ -265,7 +265,7 @@ def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray,
     values = compiled(program, "numpy")(t, x, p)
     a, lam, J = np.split(values, [len(names), len(names) + len(rows)])
     left = _left(J.reshape(len(rows), len(names)))
-    if len(left) and len(rows) - len(left) < rank_of_ties(system.ties):
+    if len(left) and len(rows) - len(left) < rank_of_constraints(system.constraints):
         return Accelerations(dict.fromkeys(names), dict.fromkeys(rows))
     single = np.max(np.abs(left), axis=0, initial=0.0) < SHARE
     return Accelerations(
@@ -306,12 +306,12 @@ class GivenMotion:
         model = self.system.scope.model
         for name in self.motion:
             if name not in model.coordinates:
-                raise UsageError(f"there is no coordinate '{name}'", mend=nearest(name, model.coordinates))
+                raise UsageError(f"there is no coordinate '{name}'", fix=nearest(name, model.coordinates))
         found = {}
         for name, part in model.coordinates.items():
             law = self.motion.get(name, part.motion)
             if law is None:
-                raise UsageError(f"'{name}' has no motion", mend=f'give an expression of t: {{"{name}": "sin(t)"}}')
+                raise UsageError(f"'{name}' has no motion", fix=f'give an expression of t: {{"{name}": "sin(t)"}}')
             found[name] = self._of(name, law)
         return found
 
@@ -324,7 +324,7 @@ class GivenMotion:
                 values = np.array([typed.number(x) for x in typed_values(law)])
             except (ValueError, TypeError, ExpressionError) as error:
                 what = error.what if isinstance(error, ExpressionError) else "they are no numbers"
-                raise UsageError(f"the values of '{name}': {what}", mend=getattr(error, "mend", "")) from error
+                raise UsageError(f"the values of '{name}': {what}", fix=getattr(error, "fix", "")) from error
             return self._through(name, values)
         scope, symbols = self.system.scope, self.system.symbols
         scalar = scope.value(time_law(model, name, law, "motion").named(name))
@@ -332,7 +332,7 @@ class GivenMotion:
         scalars = (scalar, *rate, *tangent(rate, {symbols.t: 1}))
         strangers = [x.name for x in (*symbols.q, *symbols.u) if depends_on(scalar, (x,))]
         if strangers:
-            raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", mend="give it as a function of t")
+            raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", fix="give it as a function of t")
         program = program_of(scalars, symbols, inputs=self.system.inputs)
         states = np.zeros((len(self.t), len(symbols.q) + len(symbols.u)))
         values = compiled(program, "numpy").many(self.t, states, self.p)
@@ -344,7 +344,7 @@ class GivenMotion:
         if values.shape != self.t.shape or len(values) < 2:
             raise UsageError(
                 f"'{name}' has {values.size} values at {len(self.t)} instants",
-                mend="give one value for each instant of t",
+                fix="give one value for each instant of t",
             )
         spline = CubicSpline(self.t, values)
         return spline(self.t), spline(self.t, 1), spline(self.t, 2)
@@ -354,22 +354,24 @@ class GivenMotion:
         """(q, u), n x states.
 
         Raises:
-            UsageError: a speed that is no rate; ties that are open.
+            UsageError: a speed that is no rate; constraints that are open.
         """
         symbols, columns = self.system.symbols, self._columns
         strange = [u.name for u in symbols.u if u.name.removesuffix("'") not in columns]
         if strange:
             raise UsageError(
-                f"'{strange[0]}' is a speed of its own: the motion gives coordinates", mend="take .function()"
+                f"'{strange[0]}' is a speed of its own: the motion gives coordinates", fix="take .function()"
             )
         places = [columns[q.name][0] for q in symbols.q]
         found = np.column_stack([*places, *(columns[u.name[:-1]][1] for u in symbols.u)])
-        gaps = tuple(row.gap for row in self.system.ties.closing if row.gap is not None)
+        gaps = tuple(row.gap for row in self.system.constraints.closing if row.gap is not None)
         if gaps:
             program = program_of(gaps, symbols, inputs=self.system.inputs)
             open_ = np.abs(compiled(program, "numpy").many(self.t, found, self.p))
             if not np.max(open_, initial=0.0) <= OPEN_GAP:
-                raise UsageError(f"the motion opens the ties by {np.max(open_):.3g}", mend="give one that they allow")
+                raise UsageError(
+                    f"the motion opens the constraints by {np.max(open_):.3g}", fix="give one that they allow"
+                )
         return found
 
     @property

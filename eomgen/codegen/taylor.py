@@ -19,12 +19,12 @@ from dataclasses import field
 from typing import Any
 
 from eomgen.codegen.build import function_of, library
-from eomgen.codegen.lowered import Language
-from eomgen.codegen.lowering import Layout, lowered
+from eomgen.codegen.lowering import Layout, statements
 from eomgen.codegen.program import Assign, Program, Solve
+from eomgen.codegen.statements import Language
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.c_lanes import WIDTH, text_of, vector_compiler
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar
 
 MOST_UNROLLED = 8000  # sums x order^2 that are written out for each order: they take a compiler a second
@@ -413,7 +413,7 @@ def series_of(program: Program, order: int) -> Series | None:
     if without_series(program):
         return None
     text, size = series_text(program, C, order)
-    made = lowered(program, C, "dx", "eomgen_")
+    made = statements(program, C, "dx", "eomgen_")
     kernels = made.texts(C)[: -len(made.bodies)]
     found = library("\n".join(["#include <math.h>\n#include <string.h>", *kernels, text]), by=vector_compiler())
     functions = (function_of(found, f"eomgen_{name}") for name in ("series", "along"))

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.program import Program, Solve, on_spheres, spheres_of, stem_of
+from eomgen.codegen.program import Program, Solve, at_unit_norms, stem_of, unit_quaternions_of
 from eomgen.codegen.rhs import RightHandSide, compiled, target_named
 from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Target, TestVector, header
 from eomgen.errors import DerivationError
@@ -68,7 +68,7 @@ def vectors(
     if not found and not torn:
         raise DerivationError(
             "the equations have no value at any of the states tried for test vectors",
-            mend="give a start, and parameters, at which the equations have values",
+            fix="give a start, and parameters, at which the equations have values",
         )
     if not held:
         found = found or torn
@@ -153,7 +153,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     """A state without its answer; short decimals, for the reader."""
     symbols = program.symbols
     start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
-    x = tuple(on_spheres([round(v + rng.uniform(-1, 1), 3) for v in start], spheres_of(program)).tolist())
+    x = tuple(at_unit_norms([round(v + rng.uniform(-1, 1), 3) for v in start], unit_quaternions_of(program)).tolist())
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)
@@ -287,10 +287,10 @@ def readme(
     lines = [f"# {stem}: {target.about}", ""]
     for line in (*target.use, *uses):
         lines.append(f"    {line.format(stem=stem)}")
-    for program, told in emitted:
-        if not target.writes(told.role):
+    for program, reported in emitted:
+        if not target.writes(reported.role):
             continue
-        lines += ["", *(f"    {line}".rstrip() for line in header(program, told))]
+        lines += ["", *(f"    {line}".rstrip() for line in header(program, reported))]
     lines += ["", "All in SI and radians; without inputs the model's own act. Right answers are in test_vectors.json."]
     lines += [line for note in notes for line in ("", f"Not here: {note}")]
     return "\n".join([*lines, ""])
@@ -312,23 +312,23 @@ def vectors_text(emitted: Sequence[Emitted]) -> str:
         "null: no value there, not a number",
     }
     lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
-    if not any(told.role.name == "reactions" for _, told in emitted):
+    if not any(reported.role.name == "reactions" for _, reported in emitted):
         lines.append(' "reactions": null,')
-    for other, told in emitted:
-        if told.role is not RHS:
-            lines += _other(other, told)
+    for other, reported in emitted:
+        if reported.role is not RHS:
+            lines += _other(other, reported)
     return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
 
 
-def _other(program: Program, told: Description) -> list[str]:
+def _other(program: Program, reported: Description) -> list[str]:
     """The vectors of a function beside the right-hand side."""
-    own: dict[str, object] = {"names": told.outputs}
-    if told.blocks:
-        meant = told.columns or ((),) * len(told.blocks)
+    own: dict[str, object] = {"names": reported.outputs}
+    if reported.blocks:
+        meant = reported.columns or ((),) * len(reported.blocks)
         own = {
             "blocks": [
                 {"name": name, "rows": n, "columns": k, **({"of": of} if of else {})}
-                for (name, n, k), of in zip(told.blocks, meant, strict=True)
+                for (name, n, k), of in zip(reported.blocks, meant, strict=True)
             ]
         }
     if program.accelerations:
@@ -337,7 +337,7 @@ def _other(program: Program, told: Description) -> list[str]:
             "inputs": list(program.symbols.inputs),
         }
     lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
-    return [f' "{told.role.name}": {{', *lines, *_listed(told, "  "), " },"]
+    return [f' "{reported.role.name}": {{', *lines, *_listed(reported, "  "), " },"]
 
 
 def _listed(description: Description, indent: str) -> list[str]:

@@ -22,5 +22,5 @@ def drawn(document: Document, format: str) -> str:
     """As of `rendered`, what steers terminals in it as it is: what is read back."""
     formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
     if format not in formats:
-        raise UsageError(f"unknown format '{format}'", mend=f"one of {', '.join(formats)}")
+        raise UsageError(f"unknown format '{format}'", fix=f"one of {', '.join(formats)}")
     return formats[format](document)

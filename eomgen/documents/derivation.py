@@ -34,10 +34,10 @@ LAGRANGE = Law(
     r"\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{k}} - \frac{\partial T}{\partial q_{k}} = Q_{k}",
 )
 MATRICES = Law("M*a + c = Q", r"M a + c = Q")
-LAGRANGE_WITH_TIES = Law(
+LAGRANGE_WITH_CONSTRAINTS = Law(
     f"{LAGRANGE.text} + (J^T*lam)_k", LAGRANGE.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}"
 )
-MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
+MATRICES_WITH_CONSTRAINTS = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
 
 FROM_THE_START = frozenset(("data", "freedom", "coordinates", "constraints", "along", "laws"))
 """Steps whose formulas hold on the motion from the start alone, or define what the others use."""
@@ -118,7 +118,8 @@ def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step,
 
 
 def _is_integrable(equations: EquationsOfMotion) -> bool:
-    """Whether Lagrange's equations hold in the independent speeds alone, as they do where ties are ones of position."""
+    """Whether Lagrange's equations hold in the independent speeds alone, as they do where constraints are ones of
+    position."""
     _, c = inertia_by_energies(equations.system.motion, kinetic_energy(equations.system.motion))
     return equal_at_random_states(zip(c, equations.c, strict=True)).equal
 
@@ -140,12 +141,13 @@ def _by_energies(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[St
     if momenta.momenta:
         steps = (*steps, energy_steps.derivatives_step(system, reader, momenta))
     sides = _lagrange_sides(equations, momenta, forces)
-    law = LAGRANGE_WITH_TIES if equations.J else LAGRANGE
+    law = LAGRANGE_WITH_CONSTRAINTS if equations.J else LAGRANGE
     return steps, equations_of(equations, reader, sides, ("Lagrange's equations ", law, ":"))
 
 
 def _by_maggi(equations: EquationsOfMotion, free: System, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
-    """Lagrange's equations as if all coordinates were free, put together along the motions that the ties allow."""
+    """Lagrange's equations as if all coordinates were free, put together along the motions that the constraints
+    allow."""
     system = equations.system
     energies = body_energies(free.motion)
     T = _whole(free, reader, energies)
@@ -177,9 +179,9 @@ def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> 
 
 def _lagrange_sides(equations: EquationsOfMotion, momenta: Momenta, forces: tuple[Scalar, ...]) -> list[Sides]:
     """d/dt dT/du - N^T dT/dq = Q + J^T lam"""
-    ties = multiplier_forces(equations)
-    rows = zip(momenta.rates, momenta.held, forces, ties, strict=True)
-    return [Sides(rate - held, force + tie) for rate, held, force, tie in rows]
+    constraints = multiplier_forces(equations)
+    rows = zip(momenta.rates, momenta.held, forces, constraints, strict=True)
+    return [Sides(rate - held, force + constraint) for rate, held, force, constraint in rows]
 
 
 def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
@@ -194,7 +196,7 @@ def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Ste
     if own.Q:
         steps = (*steps, balance_step(own, reader))
     sides = sides_of(equations, own.M, own.c, own.Q)
-    law = MATRICES_WITH_TIES if equations.J else MATRICES
+    law = MATRICES_WITH_CONSTRAINTS if equations.J else MATRICES
     return steps, equations_of(equations, reader, sides, ("The equations ", law, ":"))
 
 
@@ -218,5 +220,5 @@ def printed_formulas(document: Document) -> Printed:
                 constants.append((sides[-1], while_))
             else:
                 formulas.append(sides)
-    told = tuple((side_text(x.sides[0]), side_text(x.sides[-1])) for x in laws)
-    return Printed(tuple(formulas), tuple(constants), laws=told)
+    reported = tuple((side_text(x.sides[0]), side_text(x.sides[-1])) for x in laws)
+    return Printed(tuple(formulas), tuple(constants), laws=reported)

@@ -9,11 +9,11 @@ from typing import Any
 from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
 from eomgen.errors import Problem
+from eomgen.frozen import Pickled, dataclass
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
 from eomgen.model.values import constant_parameters
 from eomgen.proof.check import Certificate
-from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.print.names import Symbol

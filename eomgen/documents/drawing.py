@@ -17,9 +17,9 @@ import numpy as np
 from eomgen.documents.figures import mathtext
 from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.letters import PlacedName
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.records import dataclass
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.strokes import Drawing, Letter, SceneNumbers, Stroke

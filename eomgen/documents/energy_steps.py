@@ -43,6 +43,7 @@ from eomgen.documents.statements import (
     Step,
     prose,
 )
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.pieces import Extent
@@ -67,7 +68,6 @@ from eomgen.mechanics.kinematics.loads import Applied, JointEffort
 from eomgen.mechanics.kinematics.motion import velocity_of
 from eomgen.mechanics.start.exact import known_start
 from eomgen.model.forces.load import Couple, Load, PointForce
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
@@ -269,11 +269,13 @@ def balance_step(equations: EquationsOfMotion, reader: Reader) -> Step:
 
 
 # -------- maggi steps -----------------------------------------------------------------------------------------
-# System with dependent coordinates -> Maggi's equations: Lagrange's of all coordinates, put together along the ties.
+# System with dependent coordinates -> Maggi's equations: Lagrange's of all coordinates, put together along the
+# constraints.
 #
 #     sum_i N_ik (d/dt dT/dq_i' - dT/dq_i - Q_i) = (J^T lam)_k
 #
-# They need no T in which the dependent rates were replaced, and hold where ties restrict velocities only. Source:
+# They need no T in which the dependent rates were replaced, and hold where constraints restrict velocities only.
+# Source:
 # Neimark & Fufaev, Dynamics of Nonholonomic Systems (1972), chapter III.
 
 
@@ -282,7 +284,7 @@ MAGGI = Law(
     r"\sum_{i} N_{ik} \left(\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{i}}"
     r" - \frac{\partial T}{\partial q_{i}}\right) = \sum_{i} N_{ik} Q_{i}",
 )
-WITH_TIES = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}")
+WITH_CONSTRAINTS = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}")
 
 
 def maggi_equations(
@@ -297,16 +299,17 @@ def maggi_equations(
     N = jacobian(free_rates(system, free), system.scope.symbols.u)
     inertia = [rate - held for rate, held in zip(momenta.rates, momenta.held, strict=True)]
     columns = list(zip(*N, strict=True))
-    ties = multiplier_forces(equations)
+    constraints = multiplier_forces(equations)
     sides = [
-        Sides(inner(column, inertia), inner(column, forces) + tie) for column, tie in zip(columns, ties, strict=True)
+        Sides(inner(column, inertia), inner(column, forces) + constraint)
+        for column, constraint in zip(columns, constraints, strict=True)
     ]
     written = readable_equations(reader, equations, sides)
     followers = _followers(system, free, N)
     shown = [(symbol, reader.shown(x)) for symbol, x in followers]
     if written is None or any(isinstance(x, Omitted) for _, x in shown):
         return None
-    law = WITH_TIES if equations.J else MAGGI
+    law = WITH_CONSTRAINTS if equations.J else MAGGI
     words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
     named = with_coefficients_named(system.scope, written, taken_in(equations))
     statements = (

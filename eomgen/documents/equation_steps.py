@@ -27,9 +27,9 @@ from eomgen.documents.reading import (
     with_coefficients_named,
 )
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Piece, Prose, Statement, Step, prose
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies.friction import FrictionContact
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import common_factor, readable, simple_constants
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
@@ -451,7 +451,9 @@ def _senses(letters: Lettered, system: System) -> dict[Node, Node]:
     """A symbol for each sign of a sliding velocity that is more than one rate, on a surface for its magnitude."""
     found: dict[Node, Node] = {}
     for contact in letters.contacts:
-        speed = next((row.sliding for row in system.ties.rows if row.tie == contact.name and row.shares), None)
+        speed = next(
+            (row.sliding for row in system.constraints.rows if row.constraint == contact.name and row.shares), None
+        )
         for node in order((contact.factor, *contact.force)):
             sense = node.op == "sign" and node.args[0] not in system.symbols.u
             if node not in found and (sense or (node is speed and node.op == "sqrt")):

@@ -17,9 +17,9 @@ import numpy as np
 from eomgen import files
 from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.errors import RunFailed, UsageError, visible
+from eomgen.frozen import dataclass
 from eomgen.model.units import OUTPUT
 from eomgen.proof.reports_read import DrawnPanel, panels_of
-from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
@@ -68,7 +68,7 @@ class Picture:
         """`save`, and what the panels of the figure in the file show."""
         path = Path(path)
         if path.suffix.lower() not in FORMATS:
-            raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
+            raise UsageError(f"no picture can be written as '{path.name}'", fix=f"endings are {', '.join(FORMATS)}")
         form = path.suffix.lower()
         undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(form, {})
         page = io.BytesIO()
@@ -211,7 +211,7 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
     if not trajectory.outputs:
         raise RunFailed(
             "the run has no outputs: the model asks none that is a function of the state",
-            mend="ask for one in [outputs], or draw coordinates",
+            fix="ask for one in [outputs], or draw coordinates",
         )
     columns = trajectory.columns()
     named = {
@@ -310,7 +310,7 @@ def _size(trajectory: Trajectory, name: str) -> float:
 
 
 def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) -> None:
-    """One colour a joint or tie, one kind of line a component; of many the largest."""
+    """One colour a joint or constraint, one kind of line a component; of many the largest."""
     from matplotlib import colormaps
 
     owners: dict[str, list[str]] = {}
@@ -330,14 +330,15 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
     panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
     if len(shown) < len(owners):
-        words = f"the largest, at {len(shown)} of {len(owners)} joints and ties"
+        words = f"the largest, at {len(shown)} of {len(owners)} joints and constraints"
         panel.annotate(
             words, (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=9, color="#505050"
         )
 
 
 def largest_reactions(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
-    """The joints and ties with the largest reactions, as many as have their lines in one panel; in their order."""
+    """The joints and constraints with the largest reactions, as many as have their lines in one panel; in their
+    order."""
     size = {owner: max(_size(trajectory, name) for name in names) for owner, names in owners.items()}
     falling = sorted(owners, key=lambda owner: -size[owner])
     lines = np.cumsum([len(owners[owner]) for owner in falling])
@@ -348,11 +349,12 @@ def largest_reactions(trajectory: Trajectory, owners: Mapping[str, list[str]]) -
 def kinds_of_lines(owned: Sequence[Sequence[str]], colors: int) -> dict[str, tuple[int, str]]:
     """{reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike.
 
-    Where that look is taken, by the other string of one tie, say, it is the owner's next kind, then that of a colour
+    Where that look is taken, by the other string of one constraint, say, it is the owner's next kind, then that of a
+    colour
     which nobody has.
 
     Args:
-        owned: the reactions of each joint or tie.
+        owned: the reactions of each joint or constraint.
         colors: how many there are.
     """
     found: dict[str, tuple[int, str]] = {}
@@ -402,7 +404,7 @@ def run_picture(
         RunFailed: the run has nothing of the kind.
     """
     if view not in VIEWS:
-        raise UsageError(f"no view '{view}' of a run", mend=f"one of {', '.join(VIEWS)}")
+        raise UsageError(f"no view '{view}' of a run", fix=f"one of {', '.join(VIEWS)}")
     return VIEWS[view](run, title, units or {})
 
 
@@ -414,7 +416,7 @@ def _phase(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
     names = [q for q in run.coordinates if f"{q}'" in run.speeds][:MOST]
     if not names:
         raise RunFailed(
-            "no coordinate has its rate among the speeds: there is no phase portrait", mend="draw over the time"
+            "no coordinate has its rate among the speeds: there is no phase portrait", fix="draw over the time"
         )
 
     notation = notation_of_run(run)
@@ -437,7 +439,8 @@ def _phase(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
 
 
 def resultants(run: Trajectory) -> dict[str, np.ndarray]:
-    """{joint or tie: |F|} of the forces of the run, sqrt(F_x^2 + F_y^2 + ...), where it has several components."""
+    """{joint or constraint: |F|} of the forces of the run, sqrt(F_x^2 + F_y^2 + ...), where it has several
+    components."""
     found: dict[str, list[str]] = {}
     for name in run.reactions:
         label, _, owner = name.removeprefix("reaction_").partition("(")
@@ -451,7 +454,9 @@ def _resultants(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Pictu
     """The size of each force over time."""
     curves = {owner: size for owner, size in resultants(run).items() if not np.isnan(size).all()}
     if not curves:
-        raise RunFailed("no joint and no tie of the run carries a force of several components", mend="draw the outputs")
+        raise RunFailed(
+            "no joint and no constraint of the run carries a force of several components", fix="draw the outputs"
+        )
 
     def fill(figure: Any) -> None:
         panel = figure.subplots()
@@ -473,7 +478,7 @@ def _polar(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
     hinges = [owner for owner in hinges if f"reaction_z({owner})" not in run.reactions]
     hinges = [owner for owner in hinges if not np.isnan(run[f"reaction_x({owner})"]).all()][:MOST]
     if not hinges:
-        raise RunFailed("no hinge of the run carries a force in the plane", mend="draw the outputs")
+        raise RunFailed("no hinge of the run carries a force in the plane", fix="draw the outputs")
 
     def draw(panel: Any, owner: str) -> None:
         x, y = run[f"reaction_x({owner})"], run[f"reaction_y({owner})"]

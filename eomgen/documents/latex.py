@@ -59,7 +59,7 @@ NARROW = 45  # the same in a table of many columns
 LINE = 95  # characters of words in all columns of a table, in which a formula counts as SIDE
 SIDE = 8
 SHORT = 24  # rows of a table that stays on one page
-_LOWERED = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+_STATEMENTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
     "vx": "v_{x",
@@ -90,7 +90,7 @@ LETTERS = {
 
 def setter_of(document: Document) -> Setter:
     """One notation for the symbols of the whole document."""
-    return Setter(document.notation.told_apart(names_in(document)))
+    return Setter(document.notation.reported_apart(names_in(document)))
 
 
 def names_in(document: Document) -> tuple[str, ...]:
@@ -316,7 +316,7 @@ def unit_latex(unit: str) -> str:
     set_: list[str] = []
     for k, piece in enumerate(pieces):
         if piece and k % 3:
-            set_.append(f"$^{{{piece.translate(_LOWERED)}}}$")
+            set_.append(f"$^{{{piece.translate(_STATEMENTS)}}}$")
         elif piece:
             set_.append(latex_escaped(piece.replace("*", "·")))
     return "".join(set_)

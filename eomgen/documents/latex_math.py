@@ -14,8 +14,8 @@ from dataclasses import field, replace
 from itertools import groupby, pairwise
 
 from eomgen.documents.statements import Law
+from eomgen.frozen import dataclass
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import SUMS, Node, Scalar
 from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
@@ -438,7 +438,7 @@ SPECIAL = {
     "°": r"$^{\circ}$",
     "·": r"$\cdot$",
 }
-_MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
+_MULTIPLIER = re.compile(r"lam\((?P<constraint>.*), (?P<row>\d+)\)")
 
 
 @dataclass(frozen=True)
@@ -447,7 +447,7 @@ class Notation:
 
     Args:
         symbols: the symbols that are declared, by name without primes.
-        indices: how bodies and ties are called in an index, where they declare it.
+        indices: how bodies and constraints are called in an index, where they declare it.
     """
 
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
@@ -461,18 +461,18 @@ class Notation:
         """A symbol of the formulas, dots and index included."""
         multiplier = _MULTIPLIER.fullmatch(name)
         if multiplier:
-            return rf"\lambda_{{{self.index(multiplier['tie'])},{multiplier['row']}}}"
+            return rf"\lambda_{{{self.index(multiplier['constraint'])},{multiplier['row']}}}"
         bare = name.rstrip("'")
         symbol = self.symbols.get(bare) or symbol_of(bare, self.indices)
         return symbol.dotted(len(name) - len(bare))
 
     def index(self, name: str) -> str:
-        """The name of a body, a tie, a force or a point as an index: bar, or what it declares; bar.end."""
+        """The name of a body, a constraint, a force or a point as an index: bar, or what it declares; bar.end."""
         owner, dot, point = name.partition(".")
         found = self.indices.get(owner) or index_latex(owner)
         return f"{found}{dot}{index_latex(point)}" if dot else found
 
-    def told_apart(self, names: Iterable[str]) -> Notation:
+    def reported_apart(self, names: Iterable[str]) -> Notation:
         """With every name set by itself: where two would look alike (theta1, theta_1) the later one is spelt out."""
         bare = list(dict.fromkeys(name.rstrip("'") for name in names))
         taken: dict[str, str] = {}
@@ -488,8 +488,12 @@ def notation_of(model: Model) -> Notation:
     tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns)
     symbols = {name: part.symbol for table in tables for name, part in table.items() if part.symbol is not None}
     indices = {name: body.symbol.tex for name, body in model.bodies.items() if body.symbol is not None}
-    ties = {name: tie.symbol.letter for name, tie in model.constraints.items() if tie.symbol is not None}
-    return Notation(symbols, indices | {name: letter.tex for name, letter in ties.items() if letter is not None})
+    constraints = {
+        name: constraint.symbol.letter
+        for name, constraint in model.constraints.items()
+        if constraint.symbol is not None
+    }
+    return Notation(symbols, indices | {name: letter.tex for name, letter in constraints.items() if letter is not None})
 
 
 def letter_law(text: str) -> Law:

@@ -17,7 +17,7 @@ from matplotlib.artist import Artist
 from matplotlib.text import Text
 
 from eomgen.documents.figures import halo
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 RINGS = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # from the place to the name [points]
 TURNS = tuple(math.pi * k / 8 for k in (2, 1, 14, 6, 3, 13, 10, 5, 0, 4, 12, 8, 15, 7, 11, 9))  # where one looks first

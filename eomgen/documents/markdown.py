@@ -59,10 +59,10 @@ def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str
 def listing_markdown(rows: Sequence[Found], model: Model | None = None) -> str:
     """Quantities in a table, a row each: name, formula and number typeset; what is longer than a line is told short."""
     setter = Setter(Notation() if model is None else notation_of(model))
-    return "\n".join(["| | |", "|---|---|", *(f"| `{row.name}` | {_told(setter, row.quantity)} |" for row in rows)])
+    return "\n".join(["| | |", "|---|---|", *(f"| `{row.name}` | {_reported(setter, row.quantity)} |" for row in rows)])
 
 
-def _told(setter: Setter, found: Quantity) -> str:
+def _reported(setter: Setter, found: Quantity) -> str:
     sides = quantity_sides(Graph(), found)
     shown = [side_latex(setter, side) for side in sides if setter_width(setter, side) <= LINE]
     parts = [f"${' = '.join(shown)}$".replace("|", r"\vert ")] if shown else []

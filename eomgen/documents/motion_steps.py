@@ -130,20 +130,20 @@ def spins(system: System, body: str, spin: Vector) -> list[Pair]:
 
 def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
     """The constraints: those that the coordinates satisfy, the gaps that must stay zero, and the dependent rates."""
-    away = [tie for tie, mode in system.modes.items() if not mode.closed]
-    if not system.ties.rows and not away:
+    away = [constraint for constraint, mode in system.modes.items() if not mode.closed]
+    if not system.constraints.rows and not away:
         return ()
-    satisfied = [row for row in system.ties.rows if row.identical]
+    satisfied = [row for row in system.constraints.rows if row.identical]
     statements: list[Statement] = [
-        prose(f"{row.tie}, row {row.number}: satisfied by the coordinates.") for row in satisfied
+        prose(f"{row.constraint}, row {row.number}: satisfied by the coordinates.") for row in satisfied
     ]
-    statements += [prose(f"{tie}: open at the start, and left out.") for tie in away]
+    statements += [prose(f"{constraint}: open at the start, and left out.") for constraint in away]
     held = _held(system)
     if held:
         statements += [prose("These must vanish along the motion:"), *page(reader, held, then=(0,))]
     if system.free is not None and system.elimination is not None:
         statements += _dependent(system, system.free, reader)
-    if system.ties.closing:
+    if system.constraints.closing:
         statements.append(_multipliers(system))
     return (Step("constraints", "Constraints", tuple(statements)),)
 
@@ -151,7 +151,7 @@ def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
 def _held(system: System) -> list[Pair]:
     """Of each row that closes its gap or its rate, every coordinate free."""
     free = system.free or system
-    return [_closing(row) for row in free.ties.closing]
+    return [_closing(row) for row in free.constraints.closing]
 
 
 def _dependent(system: System, free: System, reader: Reader) -> list[Statement]:
@@ -168,8 +168,8 @@ def _dependent(system: System, free: System, reader: Reader) -> list[Statement]:
 
 
 def _multipliers(system: System) -> Table:
-    named = zip(system.ties.closing, system.symbols.lam, strict=True)
-    rows = tuple(Meaning(lam, f"multiplier of {row.tie}, row {row.number}") for row, lam in named)
+    named = zip(system.constraints.closing, system.symbols.lam, strict=True)
+    rows = tuple(Meaning(lam, f"multiplier of {row.constraint}, row {row.number}") for row, lam in named)
     return Table(("multiplier", "meaning", "unit", ""), rows)
 
 
@@ -179,7 +179,7 @@ def _closing(row: Row) -> Pair:
 
 
 def _gap_name(row: Row) -> Name:
-    return Name("gap", f"{row.tie}, {row.number}")
+    return Name("gap", f"{row.constraint}, {row.number}")
 
 
 # -------- setting steps ---------------------------------------------------------------------------------------
@@ -199,8 +199,8 @@ def setting_steps(system: System) -> tuple[Step, ...]:
 
 def assumption_steps(assumptions: Sequence[str]) -> tuple[Step, ...]:
     """What had to be assumed, as a first step; none where nothing was."""
-    told = tuple(prose(f"{what}.") for what in assumptions)
-    return (Step("assumptions", "Assumptions", told),) if told else ()
+    reported = tuple(prose(f"{what}.") for what in assumptions)
+    return (Step("assumptions", "Assumptions", reported),) if reported else ()
 
 
 def listed_symbols(symbols: tuple[Node, ...]) -> tuple[Piece, ...]:
@@ -252,7 +252,7 @@ def _in_unit(value: Any, part: Quantified) -> str:
 
 def _freedom(system: System) -> Step:
     """How many coordinates, how many of them are driven, how many rows close."""
-    symbols, closing = system.symbols, system.ties.closing
+    symbols, closing = system.symbols, system.constraints.closing
     dependent = len(dependent_coordinates(system.scope))
     driven = sum(part.driven for part in system.scope.model.coordinates.values())
     others = [f"{number} of them {kind}" for number, kind in ((driven, "driven"), (dependent, "dependent")) if number]
@@ -263,18 +263,18 @@ def _freedom(system: System) -> Step:
             ".",
         )
     ]
-    identical = [row for row in system.ties.rows if row.identical]
+    identical = [row for row in system.constraints.rows if row.identical]
     if identical:
-        ties = ", ".join(dict.fromkeys(row.tie for row in identical))
+        constraints = ", ".join(dict.fromkeys(row.constraint for row in identical))
         statements.append(
             prose(
                 f"The coordinates satisfy {count(len(identical), 'equation')} of the constraints by themselves "
-                f"({ties}): they carry reactions and take no freedom."
+                f"({constraints}): they carry reactions and take no freedom."
             )
         )
-    eliminated = [row for row in system.ties.rows if row.status == "eliminated"]
+    eliminated = [row for row in system.constraints.rows if row.status == "eliminated"]
     if eliminated:
-        ties = ", ".join(dict.fromkeys(row.tie for row in eliminated))
+        constraints = ", ".join(dict.fromkeys(row.constraint for row in eliminated))
         statements.append(
             prose(
                 f"{count(len(eliminated), 'equation')} of the constraints ",
@@ -282,7 +282,7 @@ def _freedom(system: System) -> Step:
                 " the rate of the dependent coordinate"
                 if dependent == 1
                 else " the rates of the dependent coordinates",
-                f" ({ties}).",
+                f" ({constraints}).",
             )
         )
     if closing:
@@ -305,12 +305,15 @@ def _freedom(system: System) -> Step:
 def _velocities(system: System) -> list[Statement]:
     """Which conditions on velocities are holonomic, and what these keep at zero."""
     try:
-        found = integrability_of((system.free or system).ties)
-    except (DerivationError, MissingValues):  # the ties do not close near the start: whoever needs a state says so
+        found = integrability_of((system.free or system).constraints)
+    except (
+        DerivationError,
+        MissingValues,
+    ):  # the constraints do not close near the start: whoever needs a state says so
         return []
     statements: list[Statement] = []
     for row in () if found is None else found.rows:
-        condition = f"The condition on velocities of '{row.tie}' (row {row.number}) "
+        condition = f"The condition on velocities of '{row.constraint}' (row {row.number}) "
         if not row.integrable:
             statements.append(prose(condition, "cannot be integrated: it restricts no position (Frobenius)."))
         elif row.integral is None:
@@ -373,20 +376,20 @@ def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
 
 
 def _begun(system: System) -> dict[str, str]:
-    """Of each coordinate and speed that does not start as it is written where it does, so that the ties hold."""
+    """Of each coordinate and speed that does not start as it is written where it does, so that the constraints hold."""
     start = ExactStart(system)
     try:
         moved = start.moved
-    except (DerivationError, MissingValues):  # the ties do not close there: whoever needs a state says so
+    except (DerivationError, MissingValues):  # the constraints do not close there: whoever needs a state says so
         return {}
-    coordinates, told = system.scope.model.coordinates, dict[str, str]()
+    coordinates, reported = system.scope.model.coordinates, dict[str, str]()
     for x in (x for x in (*system.symbols.q, *system.symbols.u) if x.name in moved):
         part = coordinates.get(x.name.removesuffix("'"))
         if start.numbers:
-            told[x.name] = _in_unit(start.numbers[x], part)
+            reported[x.name] = _in_unit(start.numbers[x], part)
         elif x in start.exact:
-            told[x.name] = to_text(start.exact[x])
-    return told
+            reported[x.name] = to_text(start.exact[x])
+    return reported
 
 
 def _speeds(system: System, begun: Mapping[str, str]) -> list[Meaning]:

@@ -25,10 +25,10 @@ from eomgen.documents.drawing import artist_of, limits
 from eomgen.documents.figures import STYLE
 from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.linearization.modes import Mode, Modes
-from eomgen.model.findings import nearest
-from eomgen.records import dataclass
+from eomgen.model.diagnostics import nearest
 from eomgen.scene.making import named_points, scene_of_system
 from eomgen.scene.phase_frames import phase_frames
 from eomgen.scene.plane_strokes import plane_drawing
@@ -201,7 +201,7 @@ def mp4(movies: Sequence[Movie], fps: float, progress: Progress | None = None) -
             lines = said.decode(errors="replace").strip().splitlines()
             raise RunFailed(
                 f"ffmpeg failed: {lines[-1] if lines else f'exit code {running.returncode}'}",
-                mend="write a .gif or an .html",
+                fix="write a .gif or an .html",
             )
         return (place / "movie.mp4").read_bytes()
 
@@ -218,7 +218,7 @@ def ffmpeg() -> str:
         from imageio_ffmpeg import get_ffmpeg_exe
     except ImportError:
         what = "no ffmpeg is on this machine, which writes .mp4"
-        raise ToolMissing(what, mend="pip install 'eomgen[video]', or write a .gif") from None
+        raise ToolMissing(what, fix="pip install 'eomgen[video]', or write a .gif") from None
     return str(get_ffmpeg_exe())
 
 
@@ -310,10 +310,10 @@ def frame_times(end: float, fps: float, speed: float) -> np.ndarray:
     count = np.floor(end * fps / speed * (1 + COMPUTED)) + 1
     if count > MOST_FRAMES:
         what = f"{count:g} frames are more than {MOST_FRAMES}"
-        raise UsageError(what, mend="take a shorter --time, fewer frames with --fps, or a larger --speed")
+        raise UsageError(what, fix="take a shorter --time, fewer frames with --fps, or a larger --speed")
     if count < 2:
         what = f"{end:g} s are over before a second frame comes, {speed / fps:g} s of the motion after the first"
-        raise UsageError(what, mend="take a longer --time, more frames with --fps, or a smaller --speed")
+        raise UsageError(what, fix="take a longer --time, more frames with --fps, or a smaller --speed")
     return np.arange(count) * speed / fps
 
 
@@ -324,9 +324,9 @@ def refuse_rates(fps: float, speed: float = 1.0) -> None:
         UsageError: they are no numbers, or too small or large.
     """
     if not (isinstance(fps, Real) and FPS[0] <= fps <= FPS[1]):
-        raise UsageError(f"{fps} frames a second make no moving picture", mend=f"from {FPS[0]} to {FPS[1]}")
+        raise UsageError(f"{fps} frames a second make no moving picture", fix=f"from {FPS[0]} to {FPS[1]}")
     if not (isinstance(speed, Real) and 0 < speed < math.inf):
-        raise UsageError(f"a speed of {speed} makes no sense", mend="give a positive number: 1 is as fast as it moves")
+        raise UsageError(f"a speed of {speed} makes no sense", fix="give a positive number: 1 is as fast as it moves")
 
 
 def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), forces: bool = False) -> Movie:
@@ -339,7 +339,7 @@ def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), f
         UsageError: a point that is not there; a run whose equations nobody knows.
     """
     if not run.phases or run.phases[0].model is None:
-        raise UsageError("nothing is known of the bodies of this run", mend="take eomgen.simulate(model)")
+        raise UsageError("nothing is known of the bodies of this run", fix="take eomgen.simulate(model)")
     numbers = phase_frames(run, times, forces=forces)
     fine = np.interp(np.arange(FINE * (len(times) - 1) + 1) / FINE, np.arange(len(times)), times)
     return _movie(numbers, times, _trails(run, fine, trail, dict(numbers.scene.points)))
@@ -351,7 +351,7 @@ def _trails(
     """The places of named points."""
     for name in names:
         if name not in points:
-            raise UsageError(f"there is no point '{name}'", mend=nearest(name, points))
+            raise UsageError(f"there is no point '{name}'", fix=nearest(name, points))
     if not names:
         return {}
 
@@ -379,10 +379,10 @@ def mode_movies(modes: Modes, count: int, frames: int) -> list[Movie]:
     """
     reference = modes.small.reference
     if not reference.valued:
-        raise UsageError("modes are shown with values of all parameters", mend="give them values in [parameters]")
+        raise UsageError("modes are shown with values of all parameters", fix="give them values in [parameters]")
     shown = [mode for mode in modes.spectrum.modes if mode.frequency][:count]
     if not shown:
-        raise UsageError("the model has no mode that swings", mend="show a run: leave the mode out")
+        raise UsageError("the model has no mode that swings", fix="show a run: leave the mode out")
     return [_mode_movie(modes, mode, k, frames) for k, mode in enumerate(shown, start=1)]
 
 

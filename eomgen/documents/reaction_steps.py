@@ -43,7 +43,7 @@ def letters_of(system: System) -> Lettered | str:
     try:
         return lettered(reactions_of(shown_system(system), short=True), system.scope.names)
     except DerivationError as error:
-        return f"{error.what}; {error.mend}" if error.mend else error.what
+        return f"{error.what}; {error.fix}" if error.fix else error.what
 
 
 def reactions_step(
@@ -241,7 +241,9 @@ def reactions_table_step(letters: Lettered) -> Step:
         f"{count(len(balance.equations), 'equation')} for {count(n, 'reaction')} and the motion."
     )
     if not n:
-        return Step("unknowns", "Unknown reactions", (prose("Nothing reacts: no body is held by joints or ties."),))
+        return Step(
+            "unknowns", "Unknown reactions", (prose("Nothing reacts: no body is held by joints or constraints."),)
+        )
     return Step("unknowns", "Unknown reactions", (prose(words), letters.table()))
 
 
@@ -365,13 +367,13 @@ def kinetostatic_steps(
 
 
 def _multipliers(system: System, letters: Lettered) -> tuple[Step, ...]:
-    """What the multipliers are of the ties that the coordinates do not satisfy: their reactions."""
+    """What the multipliers are of the constraints that the coordinates do not satisfy: their reactions."""
     statements: list[Statement] = []
-    for row, lam in zip(system.ties.closing, system.symbols.lam, strict=True):
+    for row, lam in zip(system.constraints.closing, system.symbols.lam, strict=True):
         reaction = letters.of_row(row)
         if reaction is not None:
             statements.append(Formula((lam, reaction)))
     if not statements:
         return ()
-    words = prose("Ties that the coordinates do not satisfy stay in the equations of motion by their reactions:")
-    return (Step("multipliers", "Reactions of the ties that close", (words, *statements)),)
+    words = prose("Constraints that the coordinates do not satisfy stay in the equations of motion by their reactions:")
+    return (Step("multipliers", "Reactions of the constraints that close", (words, *statements)),)

@@ -24,6 +24,7 @@ from eomgen.documents.reading import (
 )
 from eomgen.documents.statements import Meaning, Table
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import is_placed
 from eomgen.mechanics.constraints.rows import Row
 from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
@@ -38,7 +39,6 @@ from eomgen.mechanics.reactions.reactions import Reactions, determinate_sums, re
 from eomgen.model.constraints.link import trusses_of
 from eomgen.model.forces.load import PointForce
 from eomgen.model.kinds import ReactionSymbols
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.signs import never_vanishes
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -222,7 +222,7 @@ class Lettered:
         symbols: one for each component, in order.
         contacts: those with friction.
         frictions: a symbol for the friction of each, along each direction in which it slides.
-        declared: how they are set in LaTeX, of joints and ties that say so, by name.
+        declared: how they are set in LaTeX, of joints and constraints that say so, by name.
     """
 
     reactions: Reactions
@@ -254,7 +254,7 @@ class Lettered:
     def of_row(self, row: Row) -> Scalar | None:
         """The multiplier of a row as a reaction, sign included; None where no reaction belongs to it."""
         for component, symbol in zip(self.balance.components, self.symbols, strict=True):
-            if component.kind == "tie" and (component.owner, component.number) == (row.tie, row.number):
+            if component.kind == "constraint" and (component.owner, component.number) == (row.constraint, row.number):
                 return -symbol if _is_turned(row, component) else symbol
         return None
 
@@ -300,7 +300,7 @@ def reaction_name(label: str, owner: str, *more: str) -> str:
 
 
 def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[str], *, alone: bool) -> Symbol | None:
-    """How a joint or a tie calls a reaction in LaTeX; None where it does not say so.
+    """How a joint or a constraint calls a reaction in LaTeX; None where it does not say so.
 
     Args:
         more: what its name has behind the owner: a side, a number.
@@ -321,7 +321,7 @@ def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[st
 
 
 def own_symbol(balance: Balance, named: NamedReaction) -> Symbol | None:
-    """The symbol that a joint or a tie gives a reaction of its own; None of sums, and where it gives none."""
+    """The symbol that a joint or a constraint gives a reaction of its own; None of sums, and where it gives none."""
     if len(named.combination) != 1 or not is_zero(named.given):
         return None
     ((j, factor),) = named.combination.items()
@@ -332,7 +332,7 @@ def own_symbol(balance: Balance, named: NamedReaction) -> Symbol | None:
 
 
 def _declared(balance: Balance, component: Component, label: str, more: tuple[str, ...]) -> Symbol | None:
-    """The symbol of a component, or of its friction along a direction, where its joint or tie gives one."""
+    """The symbol of a component, or of its friction along a direction, where its joint or constraint gives one."""
     model = balance.system.scope.model
     part = model.constraints.get(component.owner) or getattr(model.bodies.get(component.owner), "joint", None)
     mine = [c for c in balance.components if c.owner == component.owner and c.kind == component.kind]
@@ -360,16 +360,18 @@ def _more(balance: Balance, component: Component) -> tuple[str, ...]:
 
 def _strand(balance: Balance, component: Component) -> str:
     """The number of the first strand that has this tension, of a string that has several; else ""."""
-    tie = balance.system.scope.model.constraints.get(component.owner)
-    rows = () if tie is None or component.label != "tension" else tie.strand_rows()
+    constraint = balance.system.scope.model.constraints.get(component.owner)
+    rows = () if constraint is None or component.label != "tension" else constraint.strand_rows()
     return str(rows.index(component.number) + 1) if max(rows, default=1) > 1 else ""
 
 
 def _couple(balance: Balance, component: Component) -> str:
-    """Of a tie with several couples x, y, z where all are along axes of the body, else the number; else ""."""
-    if component.label != "couple" or component.kind != "tie":
+    """Of a constraint with several couples x, y, z where all are along axes of the body, else the number; else ""."""
+    if component.label != "couple" or component.kind != "constraint":
         return ""
-    couples = [c for c in balance.components if c.kind == "tie" and c.owner == component.owner and c.label == "couple"]
+    couples = [
+        c for c in balance.components if c.kind == "constraint" and c.owner == component.owner and c.label == "couple"
+    ]
     if len(couples) == 1:
         return ""
     axes = [axis for c in couples for axis, e in zip(AXES, EACH_AXIS, strict=True) if c.effects[0].couple == e]
@@ -433,7 +435,7 @@ def _on(balance: Balance, component: Component) -> str:
     links = balance.system.motion.links
     first, *others = dict.fromkeys(effect.link for effect in component.effects)
     body, other = (links[first].name, links[others[0]].name if others else "the ground")
-    if component.kind != "tie":
+    if component.kind != "constraint":
         where = "place" if is_placed(links[first]) else "joint"
         return f"on {body} in its {where}, from {other}"
     if component.side:
@@ -442,7 +444,7 @@ def _on(balance: Balance, component: Component) -> str:
 
 
 def _axis(balance: Balance, component: Component, label: str) -> str:
-    """Ground axes in the plane and of ties, else those of the body whose joint it is."""
+    """Ground axes in the plane and of constraints, else those of the body whose joint it is."""
     own = balance.system.scope.model.space != "plane" and component.kind == "joint"
     return f"{label} of its own axes" if own else label
 
@@ -454,8 +456,8 @@ def _sense(balance: Balance, component: Component) -> str:
 
 
 def _direction(balance: Balance, component: Component) -> str:
-    """Along the tie's own normal; of a joint across the way on which it slides."""
-    if component.kind == "tie":
+    """Along the constraint's own normal; of a joint across the way on which it slides."""
+    if component.kind == "constraint":
         return ", along the normal"
     if balance.system.scope.model.space == "plane":
         return ", to the left of its way"
@@ -503,7 +505,7 @@ def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> di
         readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
         names = named_reactions(readings.ways[0].balance)
     except DerivationError as error:
-        message = f"{error.what}; {error.mend}" if error.mend else error.what
+        message = f"{error.what}; {error.fix}" if error.fix else error.what
         return {"reactions": {}, "reaction_null_space": [], "reactions_message": message}
     values = [_value(readings, named) for named in names]
     spaces = _null_space(readings, names)
@@ -612,7 +614,7 @@ def _formula(readings: Readings, named: NamedReaction) -> ReactionFormula:
     try:
         readings.ways[0].combined(named.combination, named.name)
     except Indeterminate as error:
-        return ReactionFormula(None, message=f"{error.what}; {error.mend}")
+        return ReactionFormula(None, message=f"{error.what}; {error.fix}")
     with_a = readings.with_accelerations(named.combination, named.given)
     without = readings.without(named.combination, named.given)
     if without is not None and length_in_print(without) <= min(SHORT, CLEARER * length_in_print(with_a)):

@@ -40,6 +40,7 @@ from eomgen.documents.statements import (
     parts_of,
 )
 from eomgen.errors import ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.proof.check import Check, checked, differing, unchecked
 from eomgen.proof.pages_read import (
     GREEK_LETTERS,
@@ -59,7 +60,6 @@ from eomgen.proof.pages_read import (
     unlike_words,
     worth,
 )
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
@@ -190,7 +190,7 @@ class PageComparison:
     @cached_property
     def notation(self) -> Notation:
         """How its symbols are set."""
-        return self.document.notation.told_apart(_names_in(self.document))
+        return self.document.notation.reported_apart(_names_in(self.document))
 
     @cached_property
     def letters(self) -> SetLetters:
@@ -229,30 +229,30 @@ class PageComparison:
         """
         if len(wanted) != len(blocks):
             kinds = next((k for k, (w, b) in enumerate(zip(wanted, blocks, strict=False)) if w.kind != b.kind), -1)
-            where = f", {_told(wanted[kinds])} is not where it belongs" if 0 <= kinds < len(wanted) else ""
+            where = f", {_reported(wanted[kinds])} is not where it belongs" if 0 <= kinds < len(wanted) else ""
             raise Unlike(f"{len(blocks)} things stand on the page for {len(wanted)}{where}")
         for want, block in zip(wanted, blocks, strict=True):
             if want.kind != block.kind:
-                raise Unlike(f"where {_told(want)} belongs stands a {block.kind}")
+                raise Unlike(f"where {_reported(want)} belongs stands a {block.kind}")
             self._of_one(want, block)
 
     def _of_one(self, want: Wanted, block: PageBlock) -> None:
         if want.kind in ("heading", "words"):
-            self._pieces(want.pieces, block.words, _told(want))
+            self._pieces(want.pieces, block.words, _reported(want))
         elif want.kind == "formula":
             self._formula(want, block)
         elif want.kind == "lines":
             if spoken("".join(want.lines)) != spoken("".join(block.lines)):
-                raise Unlike(f"other lines than {_told(want)}")
+                raise Unlike(f"other lines than {_reported(want)}")
         else:
             self._table(want, block)
 
     def _table(self, want: Wanted, block: PageBlock) -> None:
         if len(want.rows) != len(block.rows):
-            raise Unlike(f"a table of {len(block.rows)} lines for {len(want.rows)} below {_told(want)}")
+            raise Unlike(f"a table of {len(block.rows)} lines for {len(want.rows)} below {_reported(want)}")
         for cells, row in zip(want.rows, block.rows, strict=True):
             if len(cells) != len(row):
-                raise Unlike(f"{len(row)} columns for {len(cells)} below {_told(want)}")
+                raise Unlike(f"{len(row)} columns for {len(cells)} below {_reported(want)}")
             for head, cell, line in zip(want.rows[0], cells, row, strict=True):
                 self._cell(cell, line, f"{_said(cells[0])}, {_said(head)}")
 
@@ -296,12 +296,12 @@ class PageComparison:
     def _formula(self, want: Wanted, block: PageBlock) -> None:
         self.read += sum(map(len, block.sides))
         if self.read > READ_BACK:
-            self.left.setdefault("the page is too long to be read back whole", []).append(_told(want))
+            self.left.setdefault("the page is too long to be read back whole", []).append(_reported(want))
             return
         if isinstance(want.sides[0], Quantity):
-            self._quantity(want.sides[0], list(block.sides), _told(want))
+            self._quantity(want.sides[0], list(block.sides), _reported(want))
         else:
-            self._sides(want.sides, list(block.sides), _told(want))
+            self._sides(want.sides, list(block.sides), _reported(want))
 
     def _quantity(self, found: Quantity, sides: list[Tokens], where: str) -> None:
         """exact = number unit"""
@@ -548,7 +548,7 @@ def _digits(text: str) -> list[str]:
     return [x.lstrip("0") for x in re.findall(r"\d+(?:\.\d+)?", re.sub(r"(?<=\d)e[-+]?(?=\d)", " 10 ", plain))]
 
 
-def _told(wanted: Wanted) -> str:
+def _reported(wanted: Wanted) -> str:
     """What is wanted, for a message."""
     pieces = wanted.pieces or wanted.sides or (wanted.rows[0] if wanted.rows else ()) or wanted.lines[:1]
     return f"'{' '.join(map(_said, pieces))[:SHOWN]}'"

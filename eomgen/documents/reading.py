@@ -11,10 +11,10 @@ from itertools import count
 from typing import TypeGuard
 
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Side, Statement, Step
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import common_factor, normal_form, readable

@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.documents.drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
 from eomgen.documents.latex_math import Notation
 from eomgen.documents.letters import PlacedName
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.scene.strokes import Drawing, Stroke, corners_of
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)

@@ -13,7 +13,7 @@ from dataclasses import field
 from functools import cached_property
 from typing import Any
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.traversal import operations
 
@@ -366,10 +366,10 @@ class Quantity:
 
     def as_dict(self) -> dict[str, Any]:
         """For `--json`; without what nobody says: unit, method and message."""
-        told: dict[str, Any] = {"exact": self.exact, "value": self.value}
-        told |= {} if self.unit is None else {"unit": self.unit}
-        told |= {"method": self.method, "message": self.message} if self.method or self.message else {}
-        return told | dict(self.beside)
+        reported: dict[str, Any] = {"exact": self.exact, "value": self.value}
+        reported |= {} if self.unit is None else {"unit": self.unit}
+        reported |= {"method": self.method, "message": self.message} if self.method or self.message else {}
+        return reported | dict(self.beside)
 
     def _repr_markdown_(self) -> str:
         parts = [f"`{self.exact}`" if self.exact is not None else "", self.number]

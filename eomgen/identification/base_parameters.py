@@ -7,8 +7,10 @@ it is left out: W_j = sum K_ij W_i, and with it the parameter of each column i t
 
     pi_i + sum_j K_ij pi_j
 
-Without closing ties the states are random points of a prime field: the rank is exact, and so is K, made of monomials
-of the lengths of the model and then proven at further points. With closing ties the states keep the ties, with 50
+Without closing constraints the states are random points of a prime field: the rank is exact, and so is K, made of
+monomials
+of the lengths of the model and then proven at further points. With closing constraints the states keep the
+constraints, with 50
 digits, and W is what is left along the motions that they allow.
 Source: Gautier & Khalil, Direct calculation of minimum set of inertial parameters of serial robots, 1990; Gautier,
 Numerical calculation of the base inertial parameters of robots, 1991.
@@ -27,19 +29,19 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.identification.tied_rows import (
+from eomgen.frozen import dataclass
+from eomgen.identification.constrained_rows import (
     MORE,
     Reduced,
     columns_along,
+    constrained_states,
     echelon_in_digits,
     in_50_digits,
     sampled_rows,
-    tied_states,
 )
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import velocity_of
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
@@ -127,7 +129,7 @@ def base_of(system: System, names: Sequence[str], rows: Sequence[ScalarRow], see
     """The base parameters of a regressor."""
     moving = [j for j in range(len(names)) if not all(is_zero(row[j]) for row in rows)]
     entries = tuple(row[j] for row in rows for j in moving)
-    closed = system.ties.closing or system.scope.quaternions
+    closed = system.constraints.closing or system.scope.quaternions
     kept, states = (None, 0) if closed else _kept_in_field(system, entries, moving, seed)
     found = _numbers(system, rows, moving, seed, kept or ())
     exact = found.kept == kept
@@ -279,7 +281,7 @@ def _polynomial(terms: LengthTerms) -> str:
 def _numbers(
     system: System, rows: Sequence[ScalarRow], moving: list[int], seed: int, kept: Sequence[int] = ()
 ) -> Dependence:
-    """By states that keep the ties, with 50 digits; the columns of `kept` are looked at first."""
+    """By states that keep the constraints, with 50 digits; the columns of `kept` are looked at first."""
     order = [*kept, *(j for j in range(len(moving)) if j not in set(kept))]
     W, state = sampled_rows(system, rows, [moving[j] for j in order], seed)
     sizes = [max(map(abs, column)) for column in zip(*W, strict=True)]
@@ -354,7 +356,7 @@ def by_transfers(
     found: list[dict[int, Scalar]] = []
     reduced = Reduced({})
     try:
-        tried = list(islice(tied_states(system, Random(SHAKEN), shaken=True), TRIALS))
+        tried = list(islice(constrained_states(system, Random(SHAKEN), shaken=True), TRIALS))
         Y = [columns_along(system, rows, moving, state, along) for state, along in tried]
         for said in chain(_of_columns(transfers_of(system, [state for state, _ in tried]), place), plain):
             transfer = {j: x for j, x in said.items() if x is not None}

@@ -2,7 +2,7 @@
 
 Measured motions -> parameters: least squares of the base parameters, then bodies that there can be.
 
-    applied = Y pi + y0        (along the motions that the ties allow)
+    applied = Y pi + y0        (along the motions that the constraints allow)
 
 The base parameters are fitted first: they are all that the data tell. Of the parameters of the bodies those are given
 that fit as well and that bodies of positive density can have, near the model's where the data do not tell.
@@ -27,13 +27,13 @@ from scipy.optimize import least_squares
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
 from eomgen.identification.proof_of_groups import StackedSamples, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.dynamics.system import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.pipeline import derive
 from eomgen.proof.check import Certificate, Check, checked
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.traversal import Symbols
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -116,15 +116,15 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
     kept = [found.parameters.index(group.name) for group in base.groups]
     W = stacked.W[:, kept]
     if len(W) < len(kept):
-        raise UsageError(f"{len(W)} equations do not tell {len(kept)} parameters", mend="give more samples")
+        raise UsageError(f"{len(W)} equations do not tell {len(kept)} parameters", fix="give more samples")
     lengths = np.linalg.norm(W, axis=0)
     if not lengths.all():
         names = ", ".join(base.groups[k].name for k in np.flatnonzero(lengths == 0))
-        raise UsageError(f"this motion does not excite {names}", mend="move every coordinate, with accelerations")
+        raise UsageError(f"this motion does not excite {names}", fix="move every coordinate, with accelerations")
     if not stacked.b.any():
         raise UsageError(
             "nothing known acts in this motion: it tells the ratios of the parameters, and all fit it that are 0",
-            mend="measure a motion with a force or couple of known size: an input, a spring, a load",
+            fix="measure a motion with a force or couple of known size: an input, a spring, a load",
         )
     scaled = W / lengths
     beta = np.linalg.lstsq(scaled, stacked.b, rcond=None)[0]
@@ -212,12 +212,12 @@ def noise_of(t: np.ndarray, y: np.ndarray) -> float:
 
 
 def stacking_of(found: Regressor) -> Stacking:
-    """data -> W and b, along the motions that the ties allow; UsageError where a coordinate has no samples."""
+    """data -> W and b, along the motions that the constraints allow; UsageError where a coordinate has no samples."""
     system, symbols = found.system, found.system.symbols
     still = dict.fromkeys(symbols.inputs.values(), 0)
     Q = generalized_forces(system.loads)
     applied = tuple(x - y for x, y in zip(Q, substituted(Q, still), strict=True))
-    J = tuple(x for row in system.ties.J for x in row)
+    J = tuple(x for row in system.constraints.J for x in row)
     outputs = (*(x for row in found.rows for x in row), *found.known, *applied, *J)
     function = compiled(program_of(outputs, symbols, inputs=system.inputs, accelerations=symbols.a), "numpy")
     size, width, p = len(symbols.u), len(found.parameters), parameter_vector(found.model)
@@ -228,8 +228,11 @@ def stacking_of(found: Regressor) -> Stacking:
         Y = values[:, : size * width].reshape(-1, size, width)
         known = values[:, size * width : size * width + size]
         pushed = values[:, size * width + size : size * width + 2 * size]
-        ties = values[:, size * width + 2 * size :].reshape(len(values), -1, size)
-        parts = [(_along(J_k, size), Y_k, p_k - k_k) for J_k, Y_k, p_k, k_k in zip(ties, Y, pushed, known, strict=True)]
+        constraints = values[:, size * width + 2 * size :].reshape(len(values), -1, size)
+        parts = [
+            (_along(J_k, size), Y_k, p_k - k_k)
+            for J_k, Y_k, p_k, k_k in zip(constraints, Y, pushed, known, strict=True)
+        ]
         W, b = np.vstack([Z @ Y_k for Z, Y_k, _ in parts]), np.concatenate([Z @ b for Z, _, b in parts])
         return Stacked(W, b, tuple(len(Z) for Z, _, _ in parts))
 
@@ -248,13 +251,13 @@ def _measured(symbols: Symbols, data: Data) -> tuple[np.ndarray, np.ndarray, Any
     given = {name: np.asarray(data[name], dtype=float) for name in names if name in data}
     if given and len(given) < len(names):
         missing = next(name for name in names if name not in given)
-        raise UsageError(f"the data have no column '{missing}'", mend="give all inputs, or none")
+        raise UsageError(f"the data have no column '{missing}'", fix="give all inputs, or none")
     inputs: Any = np.column_stack([given[name] for name in names]) if given else ()
     return t, np.column_stack([columns[x.name] for x in (*symbols.q, *symbols.u, *symbols.a)]), inputs
 
 
 def _along(J: np.ndarray, size: int) -> np.ndarray:
-    """A basis of the motions that the ties allow, a row each."""
+    """A basis of the motions that the constraints allow, a row each."""
     if not len(J):
         return np.eye(size)
     _, s, Vt = np.linalg.svd(J)
@@ -265,7 +268,7 @@ def _along(J: np.ndarray, size: int) -> np.ndarray:
 
 def _column(data: Data, name: str) -> Any:
     if name not in data:
-        raise UsageError(f"the data have no column '{name}'", mend=f"columns are {', '.join(map(str, data))}")
+        raise UsageError(f"the data have no column '{name}'", fix=f"columns are {', '.join(map(str, data))}")
     return data[name]
 
 
@@ -275,7 +278,7 @@ def _rate(data: Data, t: np.ndarray, name: str, columns: Mapping[str, np.ndarray
         return np.asarray(data[name], dtype=float)
     of = name[:-1]
     if of not in columns:
-        raise UsageError(f"the data have no column '{name}'", mend="give it: it is no rate of another column")
+        raise UsageError(f"the data have no column '{name}'", fix="give it: it is no rate of another column")
     rate: np.ndarray = CubicSpline(t, columns[of])(t, 1)
     return rate
 

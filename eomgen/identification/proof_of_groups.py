@@ -1,10 +1,11 @@
 """Regressor, fit -> whether they are what they claim, by the equations of motion and by numbers that share nothing.
 
 Y pi + y0 = M a + c - Q without inputs              exactly
-Y pi = Y_base K pi                                  of any pi, at states that keep the ties, along their motions
+Y pi = Y_base K pi                                  of any pi, at states that keep the constraints, along their motions
 factor as printed, read back = its number
 W^T (b - W beta) = 0                                of the samples: nothing of what is left is along a column
-Z^T (M a - forcing) = W pi - b                      of some samples, pi the model's, Z the motions that the ties allow
+Z^T (M a - forcing) = W pi - b                      of some samples, pi the model's, Z the motions that the constraints
+allow
 """
 
 from __future__ import annotations
@@ -19,14 +20,14 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.certificate import certify
+from eomgen.frozen import dataclass
 from eomgen.identification.base_parameters import BaseParameters, Group
-from eomgen.identification.tied_rows import columns_along, in_50_digits, tied_states
+from eomgen.identification.constrained_rows import columns_along, constrained_states, in_50_digits
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.node import ScalarRow
@@ -78,7 +79,7 @@ def _other_forces(found: LinearForces, equations: EquationsOfMotion) -> str:
 def groups_checked(found: LinearForces) -> Iterator[Check]:
     """Y pi against Y_base K pi, and the texts of K."""
     tally = Tally("base parameters give the forces that all parameters give", "50 digits, any parameters")
-    for k, (state, along) in enumerate(islice(tied_states(found.system, Random(SEED)), STATES)):
+    for k, (state, along) in enumerate(islice(constrained_states(found.system, Random(SEED)), STATES)):
         tally.add(f"state {k + 1}", partial(_another_force, found, state, along, Random(SEED + k)))
     yield from tally.checks()
     yield attempted(
@@ -114,7 +115,7 @@ def _followers(found: LinearForces) -> str:
     rows: list[np.ndarray] = []
     due = enough = ENOUGH * len(leads)
     few = len(leads)
-    for k, (state, along) in enumerate(islice(tied_states(found.system, Random(SEED + STATES)), enough + 1)):
+    for k, (state, along) in enumerate(islice(constrained_states(found.system, Random(SEED + STATES)), enough + 1)):
         rows += [*columns_along(found.system, found.rows, leads, state, along)]
         if rows and (len(rows) > due or k == enough):
             due = 2 * len(rows)
@@ -166,7 +167,7 @@ class StackedSamples:
 
     Args:
         t, states, inputs: of each q, u and a, and what the data give of inputs, a name each.
-        rows: of each W and b, along the motions that the ties allow there.
+        rows: of each W and b, along the motions that the constraints allow there.
         pi: the model's own parameters, p those of its symbols.
     """
 
@@ -194,7 +195,7 @@ def _left_otherwise(motion: PhaseMotion, samples: StackedSamples, k: int) -> str
     left, terms = here.M @ a - here.forcing, np.abs(here.M) @ np.abs(a) + np.abs(here.forcing)
     W, b = samples.rows[k]
     due, size = W @ samples.pi - b, 1 + float(np.max(terms, initial=0.0))
-    if len(here.J):  # the length of what is left along the ties is that in any axes
+    if len(here.J):  # the length of what is left along the constraints is that in any axes
         along = left - here.J.T @ np.linalg.lstsq(here.J.T, left, rcond=RANK_NEARBY)[0]
         due, left = np.array([np.linalg.norm(due)]), np.array([np.linalg.norm(along)])
     worst = int(np.argmax(np.abs(due - left)))

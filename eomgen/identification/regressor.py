@@ -17,6 +17,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameters, base_of, named_entries
 from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.mechanics.dynamics.system import System, force_row
@@ -27,7 +28,6 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.proof.check import Certificate
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
 from eomgen.symbolic.expression.spatial import (
@@ -113,7 +113,8 @@ def regressor(model: ModelOrPath) -> Regressor:
     """The regressor of a mechanism.
 
     Raises:
-        DerivationError: Coulomb friction of a tie, whose normal force is no linear function of the parameters; nothing
+        DerivationError: Coulomb friction of a constraint, whose normal force is no linear function of the parameters;
+            nothing
             moves.
     """
     return regressor_of(derive(model).system)

@@ -13,13 +13,13 @@ from dataclasses import replace
 from itertools import chain
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
-from eomgen.judge.balances import Balances, asks_reactions
+from eomgen.judge.balances import Balances, requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import BELIEVED, PLAINEST
+from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
-from eomgen.judge.mends import Authored, Mends
 from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
@@ -35,7 +35,7 @@ from eomgen.symbolic.print.text import to_text
 SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing else is looked at
 
 
-def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+def requested(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
     """The verdict on an equation about an instant, rest, small motions or a structure."""
     if unknown := case.unknown_names(written):
         return of_unknown(case, written, kind, unknown)
@@ -50,8 +50,8 @@ def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
     number, whole = int(call.args[0].text), _motions_of_the_whole(case, written, at)
     if not whole:
         return _answered(case, written, "frequency", at)
-    told = "the motions of the whole, whose frequency is 0, not counted"
-    ways = [("", written), (told, _with_frequency(written, number + whole))]
+    reported = "the motions of the whole, whose frequency is 0, not counted"
+    ways = [("", written), (reported, _with_frequency(written, number + whole))]
     verdicts = []
     for up_to, each in ways if number > whole else reversed(ways):
         verdicts.append(found := _answered(case, each, "frequency", at))
@@ -151,15 +151,15 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
     causes: tuple[Cause, ...] = ()
     true = case.exact(left)
-    mends = [] if true is None or len(written.left.code) != 1 else [Mends(Authored(case, written, kind, true=true))]
-    place = _place(case, written, at) if kind == "statics" or asks_reactions(written) else None
+    fixes = [] if true is None or len(written.left.code) != 1 else [Fixes(Authored(case, written, kind, true=true))]
+    place = _place(case, written, at) if kind == "statics" or requests_reactions(written) else None
     balances = (
         ()
         if place is None
         else tuple(Balances(case, written, finely, place) for finely in (False, True)[: 1 if place else 2])
     )
     implied = chain(balances[:1], implied_by(case, written, kind, at, left, right), balances[1:])
-    target, found = simplest_explanation(implied, mends, at_once=SURE if balances else BELIEVED)
+    target, found = simplest_explanation(implied, fixes, at_once=SURE if balances else BELIEVED)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
         causes = causes_of(case, found, moving=False, rooted=isinstance(target, Comparison) and target.squared)

@@ -19,6 +19,7 @@ from itertools import chain, combinations, product
 import numpy as np
 
 from eomgen.errors import EomgenError
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import EXTRA, excess, remainder
 from eomgen.judge.cut_bodies import (
@@ -42,15 +43,15 @@ from eomgen.judge.diagnosis import (
     TERMS,
     USUAL,
     WHOLE,
-    Corruption,
     Explanation,
+    Mistake,
     Samples,
     Search,
     Share,
     explained,
     samples_of,
 )
-from eomgen.judge.mends import Authored
+from eomgen.judge.fixes import Authored
 from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
@@ -59,7 +60,6 @@ from eomgen.mechanics.free_bodies.balance import balance_of
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.section_forces import KINDS
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.formula import Call, over, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -77,7 +77,7 @@ MOST_TERMS = 8  # of an equation, each of which may be too many
 SHORT = 40  # characters of a factor that is told
 
 
-def asks_reactions(written: HandEquation) -> bool:
+def requests_reactions(written: HandEquation) -> bool:
     """Whether reactions stand in an equation."""
     return any(FUNCTION_KINDS.get(call.name) == "reaction" for call in written.calls)
 
@@ -88,7 +88,7 @@ class InBalance:
 
     left: Scalar
     value: Scalar
-    is_asked: bool
+    is_requested: bool
     others: int
 
 
@@ -114,31 +114,31 @@ class Balances:
             return []
         with suppress(EomgenError):
             found = explained(self._searches, self.proves, number, self._dearer)
-            return [replace(x, shares=tuple(map(self._told, x.shares))) for x in found]
+            return [replace(x, shares=tuple(map(self._reported, x.shares))) for x in found]
         return []
 
-    def _told(self, share: Share) -> Share:
+    def _reported(self, share: Share) -> Share:
         """A share with the factor by which the true item differs from what stands there, where that is short."""
-        corruption, (row,) = share.corruption, share.corruption.rows
-        value = self._wholes[corruption].value
-        if not corruption.text.endswith((FULL, DISTANT)):
+        mistake, (row,) = share.mistake, share.mistake.rows
+        value = self._wholes[mistake].value
+        if not mistake.text.endswith((FULL, DISTANT)):
             return share
         positive = self.case.system.scope.positive
         ratio = short_text(over(value, value + row), positive)
         if not ratio or len(ratio) > SHORT:
             return share
-        told = replace(corruption, text=f"{corruption.text}: the factor {ratio} is missing")
-        self._wholes[told] = self._wholes[corruption]
-        return replace(share, corruption=told)
+        reported = replace(mistake, text=f"{mistake.text}: the factor {ratio} is missing")
+        self._wholes[reported] = self._wholes[mistake]
+        return replace(share, mistake=reported)
 
     def _dearer(self, explanation: Explanation) -> float:
         """Infinity where a factor is unusual, or what the author speaks of is missing, or all else is."""
-        open_ = [share for share in explanation.shares if share.corruption.open and not share.unit]
-        gone = [self._wholes[share.corruption] for share in open_ if share.factor == 0]
+        open_ = [share for share in explanation.shares if share.mistake.open and not share.unit]
+        gone = [self._wholes[share.mistake] for share in open_ if share.factor == 0]
         usual = {abs(share.factor) for share in open_} <= {0, *(x for some, _ in USUAL for x in some)}
         left = len(gone) < 2 or len(gone) < gone[0].others
         near = not self.finely or explanation.cost < FAR_FETCHED
-        possible = near and usual and left and not any(each.is_asked for each in gone)
+        possible = near and usual and left and not any(each.is_requested for each in gone)
         return TURNED * (len(explanation.shares) - len(gone)) if possible else float("inf")
 
     def difference(self, explanation: Explanation) -> str:
@@ -149,7 +149,7 @@ class Balances:
         """Whether the balance holds with these mistakes, the answer put in, exactly."""
         pi = self.case.system.scope.graph.pi
         total = sum((share.added(pi)[0] for share in explanation.shares), start=self._left(explanation))
-        _, answer, true = self._asked
+        _, answer, true = self._requested
         (put,) = substituted(substituted((total,), true), answer)
         (put,) = substituted((put,), self.place) if self.place else (put,)
         put = put if self._is_free or self.place else self.case.phase.eliminated(put)
@@ -157,10 +157,10 @@ class Balances:
 
     def _left(self, explanation: Explanation) -> Scalar:
         """The sum of the items."""
-        return self._wholes[explanation.shares[0].corruption].left
+        return self._wholes[explanation.shares[0].mistake].left
 
     @cached_property
-    def _wholes(self) -> dict[Corruption, InBalance]:
+    def _wholes(self) -> dict[Mistake, InBalance]:
         """Of each change in what it is made."""
         return {}
 
@@ -218,22 +218,22 @@ class Balances:
         return substituted((scalar,), dict(zip(symbols, self._mine, strict=True)))[0]
 
     @cached_property
-    def _asked(self) -> tuple[tuple[Node, ...], dict[Node, Scalar], dict[Node, Scalar]]:
+    def _requested(self) -> tuple[tuple[Node, ...], dict[Node, Scalar], dict[Node, Scalar]]:
         """(the reactions of the author's equation, one of them by it, true values of the others)."""
         scalar = self._scalar
-        asked = tuple(x for x in (*self._mine, *self._sections) if depends_on(scalar, (x,)))
-        true = {x: value for x, value in self._values.items() if x not in asked}
-        for x in asked:
+        requested = tuple(x for x in (*self._mine, *self._sections) if depends_on(scalar, (x,)))
+        true = {x: value for x, value in self._values.items() if x not in requested}
+        for x in requested:
             slope = derivative(scalar, x)
-            if not depends_on(slope, asked) and not is_zero(slope):
+            if not depends_on(slope, requested) and not is_zero(slope):
                 (rest,) = substituted((scalar,), {x: 0})
-                return asked, {x: over(-rest, slope)}, true
+                return requested, {x: over(-rest, slope)}, true
         return (), {}, true
 
     @cached_property
     def _samples(self) -> Samples:
         """The same with the answer put in."""
-        _, answer, _ = self._asked
+        _, answer, _ = self._requested
         return self._before.with_values(_at(self._before, answer))
 
     @cached_property
@@ -241,105 +241,107 @@ class Balances:
         """States with the reactions: those that stand in the equation anything, the others true."""
         assert self._free is not None
         samples, random = self._free.samples, np.random.default_rng(7)
-        asked, _, true = self._asked
+        requested, _, true = self._requested
         if self._is_free:
             a = self.case.system.symbols.a
             samples = samples.with_values({x: random.uniform(0.4, 2, samples.values[x].shape) for x in a})
         samples = samples.with_values(_at(samples, true))
-        sizes = samples.flat([self._values.get(x, 1) for x in asked])
-        return samples.with_values(dict(zip(asked, sizes * random.uniform(0.4, 2, sizes.shape), strict=True)))
+        sizes = samples.flat([self._values.get(x, 1) for x in requested])
+        return samples.with_values(dict(zip(requested, sizes * random.uniform(0.4, 2, sizes.shape), strict=True)))
 
     @property
     def _is_free(self) -> bool:
         """Whether the author's accelerations may be any: he speaks of them by their names."""
         accelerations = self.case.system.symbols.a
-        return not self.case.closing and depends_on(next(iter(self._asked[1].values())), accelerations)
+        return not self.case.closing and depends_on(next(iter(self._requested[1].values())), accelerations)
 
     # -- the balances ------------------------------------------------------------------------------------
 
     @cached_property
     def _searches(self) -> tuple[Search, ...]:
-        if self._free is None or not self._asked[0]:
+        if self._free is None or not self._requested[0]:
             return ()
-        found = [self._of_whole(*self._asked[0])] if not self.finely and len(self._asked[0]) == 1 else []
+        found = [self._of_whole(*self._requested[0])] if not self.finely and len(self._requested[0]) == 1 else []
         found += [self._at_limit(self._free)] if not self.finely else []
-        found += [self._search(self._free, cut) for cut in self._free.cuts(self._asked[0])]
+        found += [self._search(self._free, cut) for cut in self._free.cuts(self._requested[0])]
         return tuple(search for search in found if search is not None)
 
-    def _of_whole(self, asked: Node) -> Search | None:
+    def _of_whole(self, requested: Node) -> Search | None:
         """All of what is asked, with a factor; None: it has no value."""
-        true = self._values.get(asked)
+        true = self._values.get(requested)
         if true is None:
             return None
-        whole = Corruption(f"{WHOLE} {asked.name}", "factor", (true,), SHARED - 1)
-        self._wholes[whole] = InBalance(true - asked, true, False, 1)
-        numbers = self._samples.of([true - asked, true])
+        whole = Mistake(f"{WHOLE} {requested.name}", "factor", (true,), SHARED - 1)
+        self._wholes[whole] = InBalance(true - requested, true, False, 1)
+        numbers = self._samples.of([true - requested, true])
         return Search(None, numbers[0], numbers[1:], [whole], 0)
 
     def _at_limit(self, free: FreeBodies) -> Search | None:
         """Friction that is taken as large as it can be, mu N, where balance needs another; None: there is none."""
-        ((asked, _),) = self._asked[1].items()
-        true, owners = self._values.get(asked), {each.symbol: each.force for each in free.acting}
+        ((requested, _),) = self._requested[1].items()
+        true, owners = self._values.get(requested), {each.symbol: each.force for each in free.acting}
         dimensions = self.case.parts.dimensions
         numbers = [x for x in self.case.edits.also if not (d := dimensions.get(x.name)) or d.unknowns]
-        others = [x for x, owner in owners.items() if x is not None and x is not asked and owner == owners.get(asked)]
+        others = [
+            x for x, owner in owners.items() if x is not None and x is not requested and owner == owners.get(requested)
+        ]
         if true is None or not numbers or not others:
             return None
-        known = {x: x if x in self._asked[0] else self._values.get(x, x) for x in others}
+        known = {x: x if x in self._requested[0] else self._values.get(x, x) for x in others}
         limits = []
         for mu, x, k in product(numbers, others, (1, -1)):
-            for friction, normal, value in ((asked, x, mu * known[x]), (x, asked, over(known[x], mu))):
+            for friction, normal, value in ((requested, x, mu * known[x]), (x, requested, over(known[x], mu))):
                 text = (
                     f"{friction.name} is taken at its limit, {mu.name}*{normal.name}: at rest it is what balance needs"
                 )
                 row = (k * value - true,)
-                limits.append(Corruption(friction.name, "wrong_formula", row, SHARED, open=False, text=text))
-        self._wholes.update(dict.fromkeys(limits, InBalance(true - asked, true, False, 1)))
-        values = self._samples.of([true - asked, *(each.rows[0] for each in limits)])
+                limits.append(Mistake(friction.name, "wrong_formula", row, SHARED, open=False, text=text))
+        self._wholes.update(dict.fromkeys(limits, InBalance(true - requested, true, False, 1)))
+        values = self._samples.of([true - requested, *(each.rows[0] for each in limits)])
         return Search(None, values[0], values[1:], limits, 0)
 
-    def _extra(self, cut: CutBalance, left: Scalar) -> Iterator[Corruption]:
+    def _extra(self, cut: CutBalance, left: Scalar) -> Iterator[Mistake]:
         """The author's own terms, each of which may be none of this balance."""
-        ((x, _),) = self._asked[1].items()
+        ((x, _),) = self._requested[1].items()
         ours, slope = derivative(left, x), derivative(self._scalar, x)
         terms = terms_of(self._scalar, frozenset(self.case.system.scope.positive)) if not is_zero(ours) else ()
         for term in terms if 2 < len(terms) <= MOST_TERMS else ():
             if not depends_on(term, (x,)):
                 text = f"the term {term_text(term)} does not belong in {cut.name}"
-                yield Corruption(text, "extra_term", (over(term * ours, slope),), EXTRA, open=False, text=text)
+                yield Mistake(text, "extra_term", (over(term * ours, slope),), EXTRA, open=False, text=text)
 
     def _search(self, free: FreeBodies, cut: CutBalance) -> Search | None:
         """One balance in numbers; None: nothing that is asked stands in it, or more than is known."""
-        asked, seen = self._asked[0], [(each, pushes) for each in free.acting if (pushes := each.on(cut.parts))]
+        requested, seen = self._requested[0], [(each, pushes) for each in free.acting if (pushes := each.on(cut.parts))]
         values = [sum(map(cut.value, pushes), start=0) for _, pushes in seen]
         sizes = np.abs(self._before.flat(values)).max(axis=1, initial=0)
         there = sizes > CARRIED * sizes.max(initial=0)
         items = [
-            Item(each, pushes, value, is_there, each.symbol in asked and not each.follows)
+            Item(each, pushes, value, is_there, each.symbol in requested and not each.follows)
             for (each, pushes), value, is_there in zip(seen, values, there, strict=True)
         ]
         known = {item.acting.symbol for item in items if item.there and item.acting.symbol is not None}
-        if not known & {*asked} or not known <= {*asked, *self._asked[2]}:
+        if not known & {*requested} or not known <= {*requested, *self._requested[2]}:
             return None
-        dear = self._dearness(free, cut, items, known - {*asked})
+        dear = self._dearness(free, cut, items, known - {*requested})
         if self.finely and dear > FINEST:
             return None
-        wrong, left = WrongItems(self.case, free, cut, self._samples, len(asked) == 1), sum(values, start=0)
-        others = sum(item.there and not item.is_asked for item in items)
+        wrong, left = WrongItems(self.case, free, cut, self._samples, len(requested) == 1), sum(values, start=0)
+        others = sum(item.there and not item.is_requested for item in items)
         apart = wrong.throughout(left) if self.finely else chain(wrong.strangers, self._extra(cut, left))
         found = [(each, InBalance(left, 0, False, others)) for each in apart]
         for item in items:
             changes = wrong.changes(item) if not self.finely else wrong.edits(item) if item.there else ()
-            found += [(each, InBalance(left, item.value, item.is_asked, others)) for each in changes]
-        corruptions = [replace(each, rank=each.rank + dear) for each, _ in found]
-        self._wholes.update(zip(corruptions, (whole for _, whole in found), strict=True))
-        numbers = self._samples.of([left, *(each.rows[0] for each in corruptions)])
-        return Search(None, numbers[0], numbers[1:], corruptions, 0)
+            found += [(each, InBalance(left, item.value, item.is_requested, others)) for each in changes]
+        mistakes = [replace(each, rank=each.rank + dear) for each, _ in found]
+        self._wholes.update(zip(mistakes, (whole for _, whole in found), strict=True))
+        numbers = self._samples.of([left, *(each.rows[0] for each in mistakes)])
+        return Search(None, numbers[0], numbers[1:], mistakes, 0)
 
     def _dearness(self, free: FreeBodies, cut: CutBalance, items: list[Item], known: set[Node]) -> float:
         """How much less it is believed that somebody wrote this balance."""
-        asked = [item for item in items if item.acting.symbol in self._asked[0]]
-        couples = {item.acting.force for item in asked if all(push.is_couple for push in item.pushes)}
+        requested = [item for item in items if item.acting.symbol in self._requested[0]]
+        couples = {item.acting.force for item in requested if all(push.is_couple for push in item.pushes)}
         sisters = {item.acting.symbol for item in items if item.acting.force in couples} & known
         more, truss = len(cut.parts) - 1, free.is_truss(cut.parts)
         larger = LARGER * (min(more, 1) if truss or more + 1 == len(self.case.system.motion.links) else more)
@@ -387,7 +389,7 @@ class Item:
     pushes: tuple[PlacedPush, ...]
     value: Scalar
     there: bool
-    is_asked: bool
+    is_requested: bool
 
 
 @dataclass(frozen=True)
@@ -416,10 +418,10 @@ class WrongItems:
     samples: Samples = field(repr=False)
     alone: bool = False
 
-    def changes(self, item: Item) -> Iterator[Corruption]:
+    def changes(self, item: Item) -> Iterator[Mistake]:
         """Of an item, as a vector at its place."""
         what, pushes = f"{item.acting.name} in {self.cut.name}", item.pushes
-        if item.there and not (item.is_asked and self.alone):
+        if item.there and not (item.is_requested and self.alone):
             yield self._of(item.acting, what, pushes[0], item.value, PLAIN)
         positive = self.case.system.scope.positive
         terms = terms_of(item.value, positive) if item.acting.kind == "inertia" else ()
@@ -442,12 +444,12 @@ class WrongItems:
         rank: float,
         kind: str = "factor",
         text: str = "",
-    ) -> Corruption:
+    ) -> Mistake:
         body = self.free.system.motion.links[push.body].name
-        told = f"{name} {text}" if text else ""
-        return Corruption(name, kind, (by,), rank, body, acting.force, open=not text, text=told)
+        reported = f"{name} {text}" if text else ""
+        return Mistake(name, kind, (by,), rank, body, acting.force, open=not text, text=reported)
 
-    def _otherwise(self, item: Item, push: PlacedPush, what: str) -> Iterator[Corruption]:
+    def _otherwise(self, item: Item, push: PlacedPush, what: str) -> Iterator[Mistake]:
         true, others = self.cut.value(push), [*self._values(item.acting, push), *self._components(push)]
         own, *numbers = np.nan_to_num(self.samples.flat([true, *(other.value for other in others)]))
         dear = (0 if item.there else 1) + OF_REACTION * (item.acting.kind == "reaction")
@@ -464,23 +466,23 @@ class WrongItems:
         """What may be taken for what a push adds."""
         F, e, p = push.force, self.cut.along, self.cut.about
         if e is not None:
-            told = "stands with its other component: sin and cos are exchanged"
-            yield Otherwise("wrong_axis", SHARED, told, cross(F, e)[2], is_size=True)
+            reported = "stands with its other component: sin and cos are exchanged"
+            yield Otherwise("wrong_axis", SHARED, reported, cross(F, e)[2], is_size=True)
             yield Otherwise("factor", SHARED, FULL, self._strength(acting, push), is_size=True)
         elif p is not None and push.place is not None and not push.is_couple:
             d = minus(push.place, p)
-            told = "has the other lever arm: sin and cos are exchanged"
-            yield Otherwise("wrong_axis", SHARED, told, dot(d, F), is_size=True)
+            reported = "has the other lever arm: sin and cos are exchanged"
+            yield Otherwise("wrong_axis", SHARED, reported, dot(d, F), is_size=True)
             yield Otherwise("factor", SHARED, DISTANT, _size(d) * self._strength(acting, push), is_size=True)
             for k, value in enumerate((d[0] * F[1], -d[1] * F[0])):
-                told = f"stands with its component along {'yx'[k]} alone"
-                yield Otherwise("missing_term", PLACED + SHORTER, told, value)
+                reported = f"stands with its component along {'yx'[k]} alone"
+                yield Otherwise("missing_term", PLACED + SHORTER, reported, value)
             for where, q, share in self._places(acting, push):
-                told = f"acts at {where}: its lever arm is wrong"
+                reported = f"acts at {where}: its lever arm is wrong"
                 if share != 1:
-                    told = f"stands with the factor {share} at {where}: its size and its lever arm are wrong"
+                    reported = f"stands with the factor {share} at {where}: its size and its lever arm are wrong"
                 value = share * cross(minus(q, p), F)[2] + push.couple
-                yield Otherwise("wrong_point", PLACED + (share != 1), told, value)
+                yield Otherwise("wrong_point", PLACED + (share != 1), reported, value)
 
     def _strength(self, acting: ActingForce, push: PlacedPush) -> Scalar:
         """The size of a force; of a reaction in one direction with its sign."""
@@ -495,8 +497,8 @@ class WrongItems:
             value = self.cut.value(push)
             for angle in self.free.angles:
                 for wave in (angle.graph.call(op, angle) for op in ("sin", "cos")):
-                    told = f"stands with a factor {term_text(wave)} that does not belong there"
-                    yield Otherwise("factor", PIECES, told, value * wave)
+                    reported = f"stands with a factor {term_text(wave)} that does not belong there"
+                    yield Otherwise("factor", PIECES, reported, value * wave)
 
     def _places(self, acting: ActingForce, push: PlacedPush) -> Iterator[tuple[str, Vector, Fraction]]:
         """(where, place, how much of it) a force may be thought to act: points of its body, parts of its line."""
@@ -513,16 +515,16 @@ class WrongItems:
                     yield f"{where} of its line", q, much
 
     @property
-    def strangers(self) -> Iterator[Corruption]:
+    def strangers(self) -> Iterator[Mistake]:
         """What does not act on the cut bodies, or on both sides inside of them, and is counted."""
         for each in self.free.acting:
             mine = tuple(push for push in each.pushes if push.part in self.cut.parts)
             inner = mine and not each.on(self.cut.parts)
-            told = "is counted, and is an inner force" if inner else "is counted, and acts elsewhere"
+            reported = "is counted, and is an inner force" if inner else "is counted, and acts elsewhere"
             others = mine if inner else () if each.kind != "load" else self._beyond(each) if mine else each.pushes
             for push in others:
                 what, by = f"{each.name} in {self.cut.name}", self.cut.value(push)
-                yield self._of(each, what, push, by, TERMS if inner else PIECES, "extra_term", told)
+                yield self._of(each, what, push, by, TERMS if inner else PIECES, "extra_term", reported)
 
     def _beyond(self, each: ActingForce) -> tuple[PlacedPush, ...]:
         """What stands of a line load on the other part of a beam that is cut."""
@@ -531,14 +533,14 @@ class WrongItems:
             push for push in each.pushes if min(self.cut.parts) >= cut and cut <= push.part not in self.cut.parts
         )
 
-    def throughout(self, left: Scalar) -> Iterator[Corruption]:
+    def throughout(self, left: Scalar) -> Iterator[Mistake]:
         """Of the whole balance: angles from the other axes, names that are exchanged."""
         parameters = tuple(self.case.system.symbols.parameters.values())
         for each in WrongTerms(self.case.edits, parameters, ()).throughout((left,)):
             text = each.text.replace("in everything", f"in {self.cut.name}", 1)
             yield replace(each, name=self.cut.name, text=text, rank=each.rank + SINGLE)
 
-    def edits(self, item: Item) -> Iterator[Corruption]:
+    def edits(self, item: Item) -> Iterator[Mistake]:
         """Of an item, as a formula; of a reaction what it is multiplied by."""
         what, edits, push = f"{item.acting.name} in {self.cut.name}", self.case.edits, item.pushes[0]
         symbol = item.acting.symbol
@@ -592,16 +594,16 @@ class Unsupported:
 
     def difference(self, explanation: Explanation) -> str:
         """What is missing."""
-        return excess(self.case, sum((x.corruption.rows[0] for x in explanation.shares if x.factor == 0), start=0))
+        return excess(self.case, sum((x.mistake.rows[0] for x in explanation.shares if x.factor == 0), start=0))
 
     def _proves(self, explanation: Explanation) -> bool:
         pi = self.case.system.scope.graph.pi
-        total = self._wholes[explanation.shares[0].corruption]
-        total = total + sum((x.added(pi)[0] for x in explanation.shares if x.corruption not in self._wholes), start=0)
+        total = self._wholes[explanation.shares[0].mistake]
+        total = total + sum((x.added(pi)[0] for x in explanation.shares if x.mistake not in self._wholes), start=0)
         return bool(self.case.follows(self.scalar, (total,)).holds)
 
     @cached_property
-    def _wholes(self) -> dict[Corruption, Scalar]:
+    def _wholes(self) -> dict[Mistake, Scalar]:
         """Of what is left out the sum of the other items."""
         return {}
 
@@ -642,13 +644,13 @@ class Unsupported:
         assert free is not None
         whole = sum((item.value for item in left), start=0)
         missing = [self._missing(cut, item) for item in gone]
-        self._wholes.update({share.corruption: whole for share in missing})
+        self._wholes.update({share.mistake: whole for share in missing})
         cost = PLAINEST + SHARED + KNOWN * (len(gone) - 1) + LARGER * (len(cut.parts) - 1)
         wrong = WrongItems(self.case, free, cut, free.samples)
         known = [each for item in left for each in wrong.changes(item)] if number == 2 else []
         numbers = free.samples.of([whole, *(each.rows[0] for each in known)])
         if number == 1:
-            if Search(D, numbers[0], numbers[:1], [missing[0].corruption], 0).misfit < SAME_EIGENVALUE:
+            if Search(D, numbers[0], numbers[:1], [missing[0].mistake], 0).misfit < SAME_EIGENVALUE:
                 yield Explanation(tuple(missing), 0, cost)
             return
         for each in Search(D, numbers[0], numbers[1:], known, 0).explanations(1):
@@ -657,7 +659,7 @@ class Unsupported:
     def _missing(self, cut: CutBalance, item: Item) -> Share:
         name = f"in {cut.name} {item.acting.name}"
         body = self.case.system.motion.links[item.pushes[0].body].name
-        return Share(Corruption(name, "factor", (item.value,), SHARED, body, item.acting.force), Fraction(0))
+        return Share(Mistake(name, "factor", (item.value,), SHARED, body, item.acting.force), Fraction(0))
 
 
 def unsupported(case: Case, scalar: Scalar) -> Iterator[Unsupported]:

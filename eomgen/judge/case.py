@@ -9,9 +9,10 @@ from functools import cached_property
 
 from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
+from eomgen.frozen import dataclass
 from eomgen.judge.contributions import Contributions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
-from eomgen.judge.mistakes import Corruptions
+from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics.formulations import free_rates
@@ -33,7 +34,6 @@ from eomgen.questions import answers
 from eomgen.questions.answers import Answer
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import has_phases
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.formula import Call, Expression, Reference, inner
@@ -125,12 +125,12 @@ class Case:
         return {q: scope.value(law) for q, law in motions.items() if law is not None}
 
     @cached_property
-    def tied_rates(self) -> tuple[ScalarRow, ScalarRow]:
-        """J u + sigma and J a + gamma of every tie."""
-        ties, symbols = self.system.ties, self.system.symbols
+    def constrained_rates(self) -> tuple[ScalarRow, ScalarRow]:
+        """J u + sigma and J a + gamma of every constraint."""
+        constraints, symbols = self.system.constraints, self.system.symbols
         found = []
-        for unknowns, bias in ((symbols.u, ties.sigma), (symbols.a, ties.gamma)):
-            found.append(tuple(inner(J, unknowns) + b for J, b in zip(ties.J, bias, strict=True)))
+        for unknowns, bias in ((symbols.u, constraints.sigma), (symbols.a, constraints.gamma)):
+            found.append(tuple(inner(J, unknowns) + b for J, b in zip(constraints.J, bias, strict=True)))
         return found[0], found[1]
 
     @property
@@ -167,7 +167,7 @@ class Case:
 
     @property
     def rests(self) -> bool:
-        """Whether a place of rest is found."""
+        """Whether an equilibrium is found."""
         return bool(self._equilibria)
 
     @property
@@ -194,15 +194,13 @@ class Case:
         return self.parts.edits
 
     @cached_property
-    def _corruptions(self) -> dict[tuple[str, tuple[str, ...]], Corruptions]:
+    def _mistakes(self) -> dict[tuple[str, tuple[str, ...]], Mistakes]:
         return {}
 
-    def corruptions(
-        self, what: str, of: tuple[str, ...] = (), start: Mapping[Node, Scalar] | None = None
-    ) -> Corruptions:
+    def mistakes(self, what: str, of: tuple[str, ...] = (), start: Mapping[Node, Scalar] | None = None) -> Mistakes:
         """What may be wrong in its equations, energies or forces, found once for all equations that are judged."""
-        found = Corruptions(self.parts, what, of, start or {})
-        return self._corruptions.setdefault((what, of), found)
+        found = Mistakes(self.parts, what, of, start or {})
+        return self._mistakes.setdefault((what, of), found)
 
     @cached_property
     def rows(self) -> ScalarRow:
@@ -275,7 +273,7 @@ class Case:
         return side_value(expression, names, called, lambda x: self.system.scope.with_accelerations((x,))[0])
 
     def called(self, call: Call) -> Scalar:
-        """A function of the outputs, or a multiplier by its name: lam(tie, 1)."""
+        """A function of the outputs, or a multiplier by its name: lam(constraint, 1)."""
         if call.name == MULTIPLIER and (multiplier := self._multiplier(call)) is not None:
             return multiplier
         if call.name == SLOPE:
@@ -288,7 +286,7 @@ class Case:
                 if isinstance(error, (DerivationError, ModelError))
                 else f"'{call}' names nothing of the model"
             )
-            raise ExpressionError(what, max(call.column, 0), getattr(error, "mend", ""), len(call.name)) from error
+            raise ExpressionError(what, max(call.column, 0), getattr(error, "fix", ""), len(call.name)) from error
         return self.solved(found)
 
     def solved(self, x: Scalar) -> Scalar:
@@ -356,7 +354,7 @@ class Case:
         return None
 
     def follows(self, scalar: Scalar, rows: ScalarRow | None = None, *, within: bool = False) -> Follows:
-        """Whether a scalar is_zero_everywhere by the equations of motion and the ties.
+        """Whether a scalar is_zero_everywhere by the equations of motion and the constraints.
 
         Args:
             rows: equations in place of the model's own.
@@ -387,7 +385,7 @@ class Case:
 
     @cached_property
     def by_momenta(self) -> tuple[dict[Node, Scalar], Extent] | None:
-        """(the speeds that the momenta from the start and the ties give by one of them, where); None: none."""
+        """(the speeds that the momenta from the start and the constraints give by one of them, where); None: none."""
         if self.equations is None or not self.start:
             return None
         with suppress(DerivationError, MissingValues, ModelError):
@@ -404,11 +402,11 @@ class Case:
             ExpressionError: a side has no meaning, or no dimension.
         """
         from_ = "rest" if self.at_rest and isinstance(at, WrittenEquation) else None
-        asked = {
+        requested = {
             "left": Output(value=written.left, at=at, from_=from_),
             "right": Output(value=written.right, at=at, from_=from_),
         }
-        found = answers.solve(_asking(self.model, asked))
+        found = answers.solve(_asking(self.model, requested))
         return found["left"], found["right"]
 
     def exact(self, answer: Answer) -> Scalar | None:
@@ -444,4 +442,4 @@ def _asking(model: Model, outputs: Mapping[str, Output]) -> Model:
     try:
         return replace(model, outputs=Table(outputs))
     except ModelError as error:
-        raise ExpressionError(error.what.partition(" in the ")[0], 0, error.mend) from error
+        raise ExpressionError(error.what.partition(" in the ")[0], 0, error.fix) from error

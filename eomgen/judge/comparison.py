@@ -11,6 +11,7 @@ from itertools import permutations
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.diagnosis import (
@@ -19,8 +20,8 @@ from eomgen.judge.diagnosis import (
     SHORTER,
     TERMS,
     WHOLE,
-    Corruption,
     Explanation,
+    Mistake,
     Samples,
     Search,
     explained,
@@ -32,7 +33,6 @@ from eomgen.judge.inertias import Inertias
 from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS, other_calls
 from eomgen.judge.wrong_terms import Term, WrongTerms
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Call, over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
@@ -52,7 +52,8 @@ class Comparison:
         case: the model.
         scalar: of an equation of motion its left minus its right side; else what the author's value is too much.
         rows: the model's equations of motion; else its value alone.
-        what: "motion"; "ties", of the rates that these allow; "energy", what T + V have gained since the start; "T",
+        what: "motion"; "constraints", of the rates that these allow; "energy", what T + V have gained since the start;
+            "T",
             "V", "Q", or "" of other values.
         call: what the value is of.
         of: of which body, force or coordinate an energy or a force is asked; () of the whole.
@@ -68,7 +69,7 @@ class Comparison:
     what: str
     call: Call | None = None
     of: tuple[str, ...] = ()
-    more: Callable[[], Iterable[Corruption]] | None = None
+    more: Callable[[], Iterable[Mistake]] | None = None
     squared: bool = False
     sizes: Mapping[Node, Scalar] = field(default_factory=dict)
     near: Mapping[Node, Scalar] = field(default_factory=dict)
@@ -79,18 +80,18 @@ class Comparison:
         return replace(self, scalar=scalar, rows=tuple(rows), sizes={**self.sizes, **known})
 
     @cached_property
-    def corruptions(self) -> tuple[Corruption, ...]:
+    def mistakes(self) -> tuple[Mistake, ...]:
         """What may be wrong, the most believable first."""
         system = self.case.system
         if self.more is not None:
             return tuple(self.more())
-        structural: list[Corruption] = []
-        if self.what == "ties":
+        structural: list[Mistake] = []
+        if self.what == "constraints":
             pass
         elif self.what:
             structural += self._structural()
             if self.what == "motion" and self.case.closing:
-                structural += self._of_ties()
+                structural += self._of_constraints()
             if self.sizes:
                 structural = [replace(x, rows=substituted(x.rows, self.sizes)) for x in structural]
             if self.near:
@@ -99,11 +100,17 @@ class Comparison:
             structural += self._other_arguments()
             structural += self._classes()
             if self.call is not None and FUNCTION_KINDS.get(self.call.name) == "inertia":
-                structural += Inertias(self.case, self.call).corruptions
+                structural += Inertias(self.case, self.call).mistakes
         if not self._is_equation:
-            asked = self.call
-            what = "it" if asked is None else str(asked) if asked.args else f"the {asked.name.replace('_', ' ')}"
-            structural.append(Corruption(f"{WHOLE} {what}", "factor", self.rows, 1))
+            requested = self.call
+            what = (
+                "it"
+                if requested is None
+                else str(requested)
+                if requested.args
+                else f"the {requested.name.replace('_', ' ')}"
+            )
+            structural.append(Mistake(f"{WHOLE} {what}", "factor", self.rows, 1))
         if self.is_long:
             return tuple(structural)
         concerned, known = self._concerned, tuple(system.symbols.parameters.values())
@@ -118,8 +125,8 @@ class Comparison:
     @property
     def _known_terms(self) -> Collection[Term]:
         """Terms that are looked at as those of a contribution."""
-        known = self.what and self.what not in ("ties", "Q") and not self.sizes and not self.near
-        return self.case.corruptions(self.what, self.of).terms if known else ()
+        known = self.what and self.what not in ("constraints", "Q") and not self.sizes and not self.near
+        return self.case.mistakes(self.what, self.of).terms if known else ()
 
     @property
     def _concerned(self) -> tuple[Scalar, ...]:
@@ -132,26 +139,27 @@ class Comparison:
     @property
     def _is_equation(self) -> bool:
         """Whether the author may have multiplied it by anything."""
-        return self.what in ("motion", "ties", "energy")
+        return self.what in ("motion", "constraints", "energy")
 
     @cached_property
     def is_long(self) -> bool:
         """Whether nobody would look at it term by term."""
         return operations((self.scalar, *self.rows)).total > LONGEST
 
-    def _structural(self) -> Iterator[Corruption]:
+    def _structural(self) -> Iterator[Mistake]:
         """What may be wrong with contributions."""
         speeds = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
         start = self.case.start if self.what == "energy" else {}
-        for each in self.case.corruptions(self.what, () if self.what == "Q" else self.of, start).all:
+        for each in self.case.mistakes(self.what, () if self.what == "Q" else self.of, start).all:
             if self.what != "Q":
                 yield each
             elif self.of[0] in speeds:
                 yield replace(each, rows=(each.rows[speeds.index(self.of[0])],))
 
-    def _of_ties(self) -> Iterator[Corruption]:
-        """What is forgotten of ties differentiated twice to eliminate accelerations: gamma of J a + gamma = 0."""
-        e, ties = self.case.equations, self.case.system.ties.closing
+    def _of_constraints(self) -> Iterator[Mistake]:
+        """What is forgotten of constraints differentiated twice to eliminate accelerations: gamma of J a + gamma =
+        0."""
+        e, constraints = self.case.equations, self.case.system.constraints.closing
         assert e is not None
         gone = [j for j, a in enumerate(e.symbols.a) if not depends_on(self.scalar, (a,))]
         if len(gone) != len(e.J) or len(gone) > 2:
@@ -161,15 +169,17 @@ class Comparison:
         if is_zero(det):
             return
         adjugate = [[1]] if len(J) == 1 else [[J[1][1], -J[0][1]], [-J[1][0], J[0][0]]]
-        for i, (tie, gamma) in enumerate(zip(ties, e.gamma, strict=True)):
+        for i, (constraint, gamma) in enumerate(zip(constraints, e.gamma, strict=True)):
             terms = terms_of(gamma, self.case.system.scope.positive)
             for part in (*terms, *([gamma] if len(terms) > 1 else [])):
                 by = [-over(line[i] * part, det) for line in adjugate]
                 rows = tuple(sum((M[j] * x for j, x in zip(gone, by, strict=True)), start=0) for M in e.M)
                 what = f"the term {term_text(part)}" if part is not gamma else "all that holds products of speeds"
-                yield Corruption(f"{what} in the tie {tie.tie} differentiated twice", "factor", rows, PIECES)
+                yield Mistake(
+                    f"{what} in the constraint {constraint.constraint} differentiated twice", "factor", rows, PIECES
+                )
 
-    def _classes(self) -> Iterator[Corruption]:
+    def _classes(self) -> Iterator[Mistake]:
         """What of a value accelerations do, what speeds, what is there at rest."""
         symbols, (value,) = self.case.system.symbols, self.rows
         u, a = (tuple(x for x in some if depends_on(value, (x,))) for some in (symbols.u, symbols.a))
@@ -179,22 +189,22 @@ class Comparison:
         for name, some in classes if u or a else ():
             with suppress(DerivationError):
                 (left,) = substituted((value,), dict.fromkeys(some, 0))
-                yield Corruption(name, "factor", (value - left,), SHARED + 2 * SHORTER)
+                yield Mistake(name, "factor", (value - left,), SHARED + 2 * SHORTER)
                 if len(some) == len(u) + len(a):
-                    yield Corruption("all that is there at rest", "factor", (left,), SHARED + 2 * SHORTER)
+                    yield Mistake("all that is there at rest", "factor", (left,), SHARED + 2 * SHORTER)
 
-    def _other_arguments(self) -> Iterator[Corruption]:
-        """The same function of another point, body or tie."""
+    def _other_arguments(self) -> Iterator[Mistake]:
+        """The same function of another point, body or constraint."""
         for call in other_calls(self.case, self.call) if self.call is not None else ():
             try:
                 other = self.case.called(call)
             except ExpressionError:
                 continue
             text = f"it is {call} that stands there, and {self.call} that is asked"
-            yield Corruption(str(self.call), "wrong_point", (other - self.rows[0],), SHARED, open=False, text=text)
+            yield Mistake(str(self.call), "wrong_point", (other - self.rows[0],), SHARED, open=False, text=text)
 
     @cached_property
-    def extra(self) -> tuple[Corruption, ...]:
+    def extra(self) -> tuple[Mistake, ...]:
         """The author's own terms, each of which may be one too many."""
         if self.is_long:
             return ()
@@ -204,25 +214,27 @@ class Comparison:
         for term in terms_of(own, self.case.system.scope.positive):
             if term not in known:
                 text = f"the term {term_text(term)} does not belong there"
-                found.append(Corruption(text, "extra_term", (term,) * len(self.rows), EXTRA, open=False, text=text))
+                found.append(Mistake(text, "extra_term", (term,) * len(self.rows), EXTRA, open=False, text=text))
         return tuple(found)
 
     @cached_property
     def _samples(self) -> tuple[Samples, bool] | None:
-        """States of the comparison, and whether they lie on ties."""
+        """States of the comparison, and whether they lie on constraints."""
         case = self.case
-        tied = self.what != "ties" and bool(case.closing) and not depends_on(self.scalar, case.system.symbols.lam)
+        constrained = (
+            self.what != "constraints" and bool(case.closing) and not depends_on(self.scalar, case.system.symbols.lam)
+        )
         flat = [self.scalar, *self.rows]
-        found = samples_of(case.system, flat, on_ties=tied and self.what == "motion")
-        return None if found is None else (found, tied)
+        found = samples_of(case.system, flat, on_constraints=constrained and self.what == "motion")
+        return None if found is None else (found, constrained)
 
     @cached_property
     def searches(self) -> tuple[Search, ...]:
         """The comparison with every equation, and with the combination that the author's accelerations make."""
         if self._samples is None:
             return ()
-        samples, tied = self._samples
-        known, n = self.corruptions, len(self.rows)
+        samples, constrained = self._samples
+        known, n = self.mistakes, len(self.rows)
         scalars = self._moving([self.scalar, *self.rows, *(x for each in known for x in each.rows)])
         flat = samples.of(scalars)
         D, E, C = flat[0], flat[1 : n + 1], flat[n + 1 :].reshape(len(known), n, *flat.shape[1:])
@@ -233,20 +245,20 @@ class Comparison:
         if not self._is_equation:
             more = samples.of(self._moving([each.rows[0] for each in self.extra]))
             return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0, E[0]),)
-        found = [] if tied else [Search(D, E[k], C[:, k], known, k) for k in range(n)]
+        found = [] if constrained else [Search(D, E[k], C[:, k], known, k) for k in range(n)]
         if n > 1 and self.what == "motion":
             mixed = self._mixed(samples)
             if mixed is not None:
                 whole = np.einsum("kpv,kpv->pv", mixed, E)
                 found.append(Search(D, whole, np.einsum("kpv,ckpv->cpv", mixed, C), known, -1))
-        elif tied:
+        elif constrained:
             found = [Search(D, E[0], C[:, 0], known, 0)]
         more = samples.of([each.rows[0] for each in self.extra])
         if len(more):
             for search in tuple(found):
                 found.append(Search(search.E, D, -more, self.extra, search.row))
                 for sign in (1, -1):
-                    both, all_ = np.concatenate([search.C, sign * more]), (*search.corruptions, *self.extra)
+                    both, all_ = np.concatenate([search.C, sign * more]), (*search.mistakes, *self.extra)
                     found.append(Search(None, search.E - sign * D, both, all_, search.row, opposite=sign < 0))
         return tuple(found)
 
@@ -287,16 +299,16 @@ class Comparison:
         case = self.case
         if not self._is_consistent(explanation):
             return False
-        extra = [share for share in explanation.shares if share.corruption.kind == "extra_term"]
+        extra = [share for share in explanation.shares if share.mistake.kind == "extra_term"]
         added = [share.added(case.system.scope.graph.pi) for share in explanation.shares if share not in extra]
-        scalar = self.scalar - sum((share.corruption.rows[0] for share in extra), start=0)
+        scalar = self.scalar - sum((share.mistake.rows[0] for share in extra), start=0)
         if self.what == "energy":
             return self._is_multiple(scalar, self.rows[0] + sum((x[0] for x in added), start=0))
         if not self._is_equation:
             total = sum((x[0] for x in added), start=0)
             return bool(is_zero_everywhere(case.system, *self._moving([scalar - total])).holds)
         rows = tuple(row + sum((x[k] for x in added), start=0) for k, row in enumerate(self.rows))
-        if self.what == "ties":
+        if self.what == "constraints":
             moving = (*case.system.symbols.u, *case.system.symbols.a)
             row, *others = (linear_row(x, moving)[0] for x in (scalar, *rows))
             return bool(combination(case.system, row, others).holds)
@@ -307,10 +319,10 @@ class Comparison:
 
         Nor has all of it a number for its factor beside another number of a part.
         """
-        factors = [(x.corruption.name.startswith(WHOLE), x.factor) for x in explanation.shares if x.corruption.open]
+        factors = [(x.mistake.name.startswith(WHOLE), x.factor) for x in explanation.shares if x.mistake.open]
         if any(whole and abs(x) != 1 for whole, x in factors) and any(x and not whole for whole, x in factors):
             return False
-        gone = [share.corruption for share in explanation.shares if share.corruption.open and share.factor == 0]
+        gone = [share.mistake for share in explanation.shares if share.mistake.open and share.factor == 0]
         for part, whole in permutations(gone, 2):
             if part.rank >= PIECES and whole.name.removeprefix("the ") in part.name:
                 return False
@@ -355,12 +367,12 @@ class Comparison:
         return excess(case, self.scalar - factor * row), f", beside the equation of {name}"
 
 
-def changed_answers(case: Case, answer: ScalarRow) -> Iterator[Corruption]:
+def changed_answers(case: Case, answer: ScalarRow) -> Iterator[Mistake]:
     """What people make of an answer as it is written: its nodes changed, all of it turned over or without its root."""
     answer = case.edits.written(answer)
     for each in case.edits.of_answer(answer):
         by = tuple(x - y for x, y in zip(each.to, answer, strict=True))
-        yield Corruption(each.text, each.kind, by, each.rank, open=False, text=f"in the answer {each.text}")
+        yield Mistake(each.text, each.kind, by, each.rank, open=False, text=f"in the answer {each.text}")
 
 
 def linearized(rows: ScalarRow, place: Mapping[Node, Scalar]) -> ScalarRow:
@@ -377,7 +389,7 @@ def linearized(rows: ScalarRow, place: Mapping[Node, Scalar]) -> ScalarRow:
     return tuple(found)
 
 
-def _linearized(known: Iterable[Corruption], place: Mapping[Node, Scalar]) -> Iterator[Corruption]:
+def _linearized(known: Iterable[Mistake], place: Mapping[Node, Scalar]) -> Iterator[Mistake]:
     for each in known:
         with suppress(DerivationError):
             yield replace(each, rows=linearized(each.rows, place))

@@ -44,13 +44,15 @@ def _integrals(case: Case) -> Iterator[tuple[str, Scalar, list[str]]]:
     T = sum((operator.energy(part.T) for part in parts), start=0)
     V = sum((part.V for part in parts), start=0)
     driven = [f"what drives {name} does work" for name, q in case.model.coordinates.items() if q.driven]
-    works = [f"{part.name} does work" for part in parts if _acts(part) and part.kind != "tie"]
+    works = [f"{part.name} does work" for part in parts if _acts(part) and part.kind != "constraint"]
     yield "the energy", T + V, driven + works
     if not is_zero(V):
         falls = [f"{part.name} does work" for part in parts if not is_zero(part.V)]
         yield "the kinetic energy", T, driven + works + falls
     for k, u in enumerate(symbols.u):
-        along = [f"{part.name} acts along it" for part in parts if part.kind != "tie" and _changes(case, part, k)]
+        along = [
+            f"{part.name} acts along it" for part in parts if part.kind != "constraint" and _changes(case, part, k)
+        ]
         q = u.name.removesuffix("'")
         yield f"the momentum of {q}", derivative(T, u), along
 

@@ -15,6 +15,7 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import EXCHANGED, ODD, PLACED, SHARED, SHORTER, TERMS
 from eomgen.judge.terms import LONG, Edits, angles_in, term_text, turned_angles, wrong_parameters
 from eomgen.mechanics.dynamics.formulations import free_rates
@@ -34,7 +35,6 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.model.forces.load import BodyPoint, Couple, Load, PointForce, UniformField
 from eomgen.model.shapes.base import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.dimensions import Dimension
@@ -57,9 +57,9 @@ class Contribution:
         T, V: its share of the energies.
         Q: its generalized forces of what has no potential, one for each speed of the free system.
         kind: "translation", "rotation", "weight", "constant" (a force whose work is that of a potential, which the
-            model's V does not hold), "force", "friction" or "tie".
+            model's V does not hold), "force", "friction" or "constraint".
         load: what acts, and where.
-        row: its share of the equations, where it is no energy and no load: friction, ties.
+        row: its share of the equations, where it is no energy and no load: friction, constraints.
     """
 
     name: str
@@ -252,16 +252,24 @@ class Contributions:
         return (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values(), *(symbols.unknowns or {}).values())
 
     def _others(self) -> list[Contribution]:
-        """Friction, and what the ties do."""
+        """Friction, and what the constraints do."""
         if self.equations is None:
             return []
         found, e = [], self.equations
         if e.friction:
             row = tuple(-x for x in e.friction)
             found.append(Contribution("the friction of the contacts", kind="friction", row=row))
-        for tie, J, lam in zip(self.system.ties.closing, e.J, e.symbols.lam, strict=True):
+        for constraint, J, lam in zip(self.system.constraints.closing, e.J, e.symbols.lam, strict=True):
             row = tuple(-x * lam for x in J)
-            found.append(Contribution(f"the force of the tie {tie.tie}", "", tie.tie, kind="tie", row=row))
+            found.append(
+                Contribution(
+                    f"the force of the constraint {constraint.constraint}",
+                    "",
+                    constraint.constraint,
+                    kind="constraint",
+                    row=row,
+                )
+            )
         return found
 
 
@@ -519,14 +527,14 @@ class _Substitutions:
         """Sines and cosines of one angle."""
         formulas = (part.T, part.V, *part.Q)
         for angle in angles_in(formulas):
-            told = term_text(angle)
+            reported = term_text(angle)
             for kind, mapping, what in turned_angles(angle, formulas):
                 rank = PLACED if is_zero(part.T) else EXCHANGED
                 if part.name == EVERYTHING or what.endswith("as zero"):
                     rank = ODD
                 elif kind in ("factor", "approximation"):
                     rank = max(rank, TERMS if kind == "approximation" else EXCHANGED)
-                yield from self._change(part, kind, mapping, f"in {part.name} {what.format(told)}", rank)
+                yield from self._change(part, kind, mapping, f"in {part.name} {what.format(reported)}", rank)
 
     def motions(self, part: Contribution) -> Iterator[Altered]:
         """Speeds and coordinates."""

@@ -10,6 +10,7 @@ from itertools import combinations
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import Samples
 from eomgen.judge.terms import angles_in
 from eomgen.mechanics.dynamics.system import System
@@ -23,7 +24,6 @@ from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformFiel
 from eomgen.model.outputs.base import name_at
 from eomgen.model.outputs.forces import distance_of
 from eomgen.model.trusses import is_node
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import Call, over
@@ -83,7 +83,7 @@ class ActingForce:
     Args:
         name: in words.
         pushes: on each body; an inner force acts on two.
-        force: the load or the tie that it is.
+        force: the load or the constraint that it is.
         symbol: of a component of a reaction.
         spread: of a line load where it is.
         kind: "reaction", "load" or "inertia".
@@ -245,19 +245,19 @@ class FreeBodies:
     beams: tuple[CutBalance, ...]
     samples: Samples = field(repr=False)
 
-    def cuts(self, asked: Sequence[Node]) -> Iterator[CutBalance]:
+    def cuts(self, requested: Sequence[Node]) -> Iterator[CutBalance]:
         """The balances in which something that is asked may stand."""
-        mine = [each for each in self.acting if each.symbol in asked]
+        mine = [each for each in self.acting if each.symbol in requested]
         for bodies in self._parts():
             if any(each.on(bodies) for each in mine):
                 name = self._called(bodies)
-                for told, e in self._directions(bodies):
-                    yield CutBalance(bodies, f"the balance of forces {told} of {name}", along=e)
+                for reported, e in self._directions(bodies):
+                    yield CutBalance(bodies, f"the balance of forces {reported} of {name}", along=e)
                 around = bodies | (self._beyond(bodies) if self.is_truss(bodies) else set())
                 for spot in self.spots:
                     if spot.bodies & around:
-                        told = f"the balance of moments about {spot.name} of {name}"
-                        yield CutBalance(bodies, told, about=spot.place)
+                        reported = f"the balance of moments about {spot.name} of {name}"
+                        yield CutBalance(bodies, reported, about=spot.place)
         yield from self.beams
 
     def _beyond(self, bodies: frozenset[int]) -> set[int]:
@@ -283,8 +283,8 @@ class FreeBodies:
             near = (x for x in found if np.allclose(numbers, x.numbers, rtol=CARRIED, atol=CARRIED))
             if (spot := next(near, None)) is None:
                 body = _short(link.name)
-                told = name if name not in GENERIC else body if is_node(link.name) else f"{body}.{name}"
-                found.append(spot := Spot(told, place, numbers, set()))
+                reported = name if name not in GENERIC else body if is_node(link.name) else f"{body}.{name}"
+                found.append(spot := Spot(reported, place, numbers, set()))
             spot.bodies.add(i)
         return tuple(found)
 
@@ -350,13 +350,13 @@ class FreeBodies:
         own += [(f"the axis of {x.name}", vector_of(row[0] for row in x.pose.R)) for x in links if not is_node(x.name)]
         axes: list[tuple[str, Vector]] = [("along x", (1, 0, 0)), ("along y", (0, 1, 0))]
         known = [self._numbers(e) for _, e in axes]
-        for told, along in own:
+        for reported, along in own:
             for how, e in (("along", along), ("across", (-along[1], along[0], 0))):
                 numbers = self._numbers(e)
                 numbers = numbers / np.maximum(np.linalg.norm(numbers, axis=0), CARRIED)
                 if all(np.abs(np.sum(numbers * x, axis=0)).min() < 1 - CARRIED for x in known):
                     known.append(numbers)
-                    yield f"{how} {told}", e
+                    yield f"{how} {reported}", e
         yield from axes
 
 
@@ -423,9 +423,9 @@ def cut_beam(quantities: Quantities, call: Call, acting: Sequence[ActingForce], 
         ("moments about the section", None, place),
     )
     cuts = tuple(
-        CutBalance(frozenset((p,)), f"the balance of {told} of {body} (the part {of} it)", along, about)
+        CutBalance(frozenset((p,)), f"the balance of {reported} of {body} (the part {of} it)", along, about)
         for p, of in ((part, "before"), (part + 1, "after"))
-        for told, along, about in ways
+        for reported, along, about in ways
     )
     return CutBeam(tuple(found), cuts, true)
 

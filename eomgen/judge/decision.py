@@ -1,7 +1,8 @@
 """Scalars of a system -> whether they vanish, and of which equations an equation is a combination, decided.
 
 At random exact states of a prime field; where roots or functions have no meaning there, at real states of 50 digits in
-the model's own domain: parameters that are sizes positive, coordinates and speeds of either sign; on the ties where
+the model's own domain: parameters that are sizes positive, coordinates and speeds of either sign; on the constraints
+where
 these restrict the coordinates. What no state decides stays undecided: nothing is taken for true that was not. What
 vanishes with 50 digits is looked at once more in balls: a kinetic energy of 1e-293 J is small, and is not 0.
 """
@@ -16,11 +17,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.pieces import NOWHERE, Extent, division_of
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, holds_op, linear_terms
@@ -49,7 +50,7 @@ from eomgen.symbolic.numeric.tolerances import (
 STATES = 3
 REAL_STATES = 6  # where roots and sizes may hold on one side only: signs are shared out among so many
 TRIES = 40
-STEPS = 30  # of Newton's method to the ties
+STEPS = 30  # of Newton's method to the constraints
 NumberRow = list[Any]
 
 
@@ -61,14 +62,14 @@ class Follows:
         holds: yes, no, or None: no state decided it.
         rows: which of the rows stand in the combination, by their places.
         way: "prime field" or "50 digits".
-        on_ties: it holds only where the ties do.
+        on_ties: it holds only where the constraints do.
         held: of what has pieces and does not hold in all of them, in which it does, where that was asked.
     """
 
     holds: bool | None
     rows: tuple[int, ...] = ()
     way: str = ""
-    on_ties: bool = False
+    on_constraints: bool = False
     held: Extent = NOWHERE
 
 
@@ -134,7 +135,7 @@ def combination(
     system: System,
     row: Sequence[Scalar],
     rows: Sequence[Sequence[Scalar]],
-    tied: Sequence[Sequence[Scalar]] = (),
+    constrained: Sequence[Sequence[Scalar]] = (),
     *,
     within: bool = False,
 ) -> Follows:
@@ -142,13 +143,14 @@ def combination(
 
     Args:
         row: its entries, scalars of the system's graph; with no others it is asked whether they vanish.
-        tied: further rows, which hold on the ties alone: apart from these redundant ones contradict one another.
+        constrained: further rows, which hold on the constraints alone: apart from these redundant ones contradict one
+            another.
         within: of what does not hold in all pieces it is asked in which it does.
     """
-    found = _at_random(system, row, rows, tied)
+    found = _at_random(system, row, rows, constrained)
     if found.holds is not True and not (within and found.holds is False):
         return found
-    held = _in_pieces(system, row, rows, tied, on_ties=found.on_ties)
+    held = _in_pieces(system, row, rows, constrained, on_constraints=found.on_constraints)
     if held is None or (held.everywhere and found.holds):
         return found
     return Follows(False, (), found.way, held=NOWHERE if held.everywhere else held)
@@ -158,16 +160,19 @@ def _in_pieces(
     system: System,
     row: Sequence[Scalar],
     rows: Sequence[Sequence[Scalar]],
-    tied: Sequence[Sequence[Scalar]],
+    constrained: Sequence[Sequence[Scalar]],
     *,
-    on_ties: bool,
+    on_constraints: bool,
 ) -> Extent | None:
     """In which pieces it is one; None: there are none, or nobody knows them all."""
-    flat = [x for each in (row, *rows, *(tied if on_ties else ())) for x in each]
+    flat = [x for each in (row, *rows, *(constrained if on_constraints else ())) for x in each]
     if not any(holds_op(x, *PIECEWISE) for x in flat):
         return None
     try:
-        known, key = system.scope.graph.found(_in_pieces), (system.symbols.u, system.ties.J, system.ties.sigma)
+        known, key = (
+            system.scope.graph.found(_in_pieces),
+            (system.symbols.u, system.constraints.J, system.constraints.sigma),
+        )
         if key not in known:
             known[key] = equations_of_motion(system)
         division = division_of(known[key], flat)
@@ -180,9 +185,9 @@ def _in_pieces(
     def holds(piece: Choices) -> bool:
         there = as_chosen(flat, nodes, piece)
         table = [there[k : k + width] for k in range(0, len(there), width)]
-        if not on_ties:
+        if not on_constraints:
             return _at_random(system, table[0], table[1:], ()).holds is True
-        state = _at_tied_speeds(system, dict(division.found[piece]))
+        state = _at_constrained_speeds(system, dict(division.found[piece]))
         if state is None:
             return True  # nothing contradicts it
         try:
@@ -202,7 +207,7 @@ def _others(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> dict[Node, 
 
 
 def _at_random(
-    system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], tied: Sequence[Sequence[Scalar]]
+    system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], constrained: Sequence[Sequence[Scalar]]
 ) -> Follows:
     """The same at random states."""
     if not row:
@@ -210,13 +215,13 @@ def _at_random(
     flat = [x for each in (row, *rows) for x in each]
     found = _combined(row, rows, _exact_states(flat), IN_FIELD)
     if found.holds is None:
-        found = _combined_in_digits(system, row, rows, flat, on_ties=False)
-    closes = bool(system.ties.J or _gaps(system, flat))
+        found = _combined_in_digits(system, row, rows, flat, on_constraints=False)
+    closes = bool(system.constraints.J or _gaps(system, flat))
     if found.holds is True or not closes:
         return found
-    flat += [x for each in tied for x in each]
-    held = _combined_in_digits(system, row, (*rows, *tied), flat, on_ties=True)
-    return replace(held, on_ties=held.holds is True)
+    flat += [x for each in constrained for x in each]
+    held = _combined_in_digits(system, row, (*rows, *constrained), flat, on_constraints=True)
+    return replace(held, on_constraints=held.holds is True)
 
 
 def is_zero_everywhere(system: System, *scalars: Scalar) -> Follows:
@@ -244,9 +249,9 @@ def vanish_at(scalars: Sequence[Scalar], numbers: Mapping[Node, float]) -> bool 
 
 
 def vanish_nearly(system: System, scalars: Sequence[Scalar]) -> bool:
-    """Whether scalars that hold rounded numbers are 0 at real states, on the ties, against their terms."""
+    """Whether scalars that hold rounded numbers are 0 at real states, on the constraints, against their terms."""
     arithmetic, found = fifty_digits(), 0
-    for state in states_of(system, scalars, on_ties=bool(system.ties.J or _gaps(system, scalars))):
+    for state in states_of(system, scalars, on_constraints=bool(system.constraints.J or _gaps(system, scalars))):
         try:
             for f in scalars:
                 terms = linear_terms(f)
@@ -277,11 +282,14 @@ def _combined_in_digits(
     rows: Sequence[Sequence[Scalar]],
     flat: Sequence[Scalar],
     *,
-    on_ties: bool,
+    on_constraints: bool,
 ) -> Follows:
     """The same at real states; what 50 digits take for 0 must be able to vanish in balls."""
-    found = _combined(row, rows, _real_states(system, flat, on_ties=on_ties), IN_DIGITS)
-    if found.holds and _combined(row, rows, _sure_states(system, flat, on_ties=on_ties), IN_BALLS).holds is False:
+    found = _combined(row, rows, _real_states(system, flat, on_constraints=on_constraints), IN_DIGITS)
+    if (
+        found.holds
+        and _combined(row, rows, _sure_states(system, flat, on_constraints=on_constraints), IN_BALLS).holds is False
+    ):
         return Follows(False, (), IN_BALLS.name)
     return found
 
@@ -346,11 +354,11 @@ def _exact_states(flat: Sequence[Scalar]) -> Iterator[NumberRow]:
             return
 
 
-def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> Iterator[NumberRow]:
+def _real_states(system: System, flat: Sequence[Scalar], *, on_constraints: bool) -> Iterator[NumberRow]:
     """NumberRow at real states with 50 digits."""
     _, flat = united(list(flat))
     arithmetic, found = fifty_digits(), 0
-    for state in states_of(system, flat, on_ties=on_ties):
+    for state in states_of(system, flat, on_constraints=on_constraints):
         try:
             yield evaluate(flat, state, arithmetic)
             found += 1
@@ -360,24 +368,25 @@ def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> It
             return
 
 
-def _sure_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> Iterator[NumberRow]:
-    """NumberRow in balls at the first such state where all have values; on the ties as far as these are closed."""
+def _sure_states(system: System, flat: Sequence[Scalar], *, on_constraints: bool) -> Iterator[NumberRow]:
+    """NumberRow in balls at the first such state where all have values; on the constraints as far as these are
+    closed."""
     _, flat = united(list(flat))
-    for state in states_of(system, flat, on_ties=on_ties):
-        moved = {*system.symbols.q, *system.symbols.u} if on_ties else set()
+    for state in states_of(system, flat, on_constraints=on_constraints):
+        moved = {*system.symbols.q, *system.symbols.u} if on_constraints else set()
         values = evaluate(flat, {x: (v, v * 0 + (ZERO_AT_50 if x in moved else 0)) for x, v in state.items()}, BALLS)
         if not any(x != x for x, _ in values):
             yield [SureNumber(each) for each in values]
 
 
 def states_of(
-    system: System, flat: Sequence[Scalar] = (), *, on_ties: bool, seed: int = 11
+    system: System, flat: Sequence[Scalar] = (), *, on_constraints: bool, seed: int = 11
 ) -> Iterator[dict[Node, Any]]:
     """Random real states of a system with 50 digits, near the values of its file at first, then further away.
 
     Args:
         flat: whose other symbols get values too.
-        on_ties: coordinates and speeds are such that the ties hold.
+        on_ties: coordinates and speeds are such that the constraints hold.
     """
     rng, symbols, arithmetic = Random(seed), system.symbols, fifty_digits()
     own = {symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
@@ -385,7 +394,7 @@ def states_of(
     others = tuple(x for x in symbols_of(flat) if x not in known)
     gaps, timed = _gaps(system, flat), symbols.t in symbols_of(flat)
     for attempt in range(TRIES):
-        spread = 0.1 if on_ties and attempt < TRIES // 2 else 0.6
+        spread = 0.1 if on_constraints and attempt < TRIES // 2 else 0.6
         state: dict[Node, Any] = {}
         for x in symbols.parameters.values():
             size = own.get(x, 1.0) or 1.0
@@ -393,7 +402,9 @@ def states_of(
             state[x] = sign * abs(size) * rng.uniform(1 - spread, 1 + spread)
         for q in symbols.q:
             near = known.get(q, 0.0)
-            state[q] = near + rng.uniform(-0.2, 0.2) * (1 + abs(near)) if on_ties else _either(rng, near, attempt)
+            state[q] = (
+                near + rng.uniform(-0.2, 0.2) * (1 + abs(near)) if on_constraints else _either(rng, near, attempt)
+            )
         moving = (*symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), *symbols.unknowns.values())
         for k, x in enumerate(moving):
             state[x] = rng.uniform(0.3, 2) * _sign(k, attempt)
@@ -406,10 +417,10 @@ def states_of(
         for four in system.scope.quaternions:
             length = arithmetic.functions["sqrt"](sum(exact[e] ** 2 for e in four))
             exact |= {e: exact[e] / length for e in four}
-        if on_ties:
+        if on_constraints:
             key = (states_of, seed, attempt, timed, others)  # all that the state depends on
             if key not in system.found:
-                system.found[key] = _tied(system, exact, gaps)
+                system.found[key] = _constrained(system, exact, gaps)
             if system.found[key] is None:
                 continue
             exact = system.found[key]
@@ -447,16 +458,18 @@ def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
 
 
 def _gaps(system: System, flat: Sequence[Scalar]) -> list[Scalar]:
-    """What vanishes of coordinates: on ties, and of driven ones by their law, where time stands in the scalars too."""
-    found = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
+    """What vanishes of coordinates: on constraints, and of driven ones by their law, where time stands in the
+    scalars too."""
+    found = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if system.symbols.t in symbols_of(flat):
         driven = {q: system.scope.model.coordinates[q.name].motion for q in system.symbols.q}
         found += [q - system.scope.value(law) for q, law in driven.items() if law is not None]
     return found
 
 
-def _tied(system: System, state: dict[Node, Any], gaps: Sequence[Scalar]) -> dict[Node, Any] | None:
-    """The state moved onto the ties: first its coordinates, by Newton's method, then its speeds; None: it fails."""
+def _constrained(system: System, state: dict[Node, Any], gaps: Sequence[Scalar]) -> dict[Node, Any] | None:
+    """The state moved onto the constraints: first its coordinates, by Newton's method, then its speeds; None: it
+    fails."""
     q, arithmetic = system.symbols.q, fifty_digits()
     slopes = [gradient(gap, q) for gap in gaps]
     flat = [*gaps, *(x for row in slopes for x in row)]
@@ -468,7 +481,7 @@ def _tied(system: System, state: dict[Node, Any], gaps: Sequence[Scalar]) -> dic
             return None
         left = values[: len(gaps)]
         if max(map(abs, left), default=0) < CLOSED_AT_50:
-            return _at_tied_speeds(system, state)
+            return _at_constrained_speeds(system, state)
         matrix = [values[len(gaps) + k * len(q) : len(gaps) + (k + 1) * len(q)] for k in range(len(gaps))]
         step = _least_step(matrix, left)
         if step is None:
@@ -477,16 +490,16 @@ def _tied(system: System, state: dict[Node, Any], gaps: Sequence[Scalar]) -> dic
     return None
 
 
-def _at_tied_speeds(system: System, state: dict[Node, Any]) -> dict[Node, Any] | None:
+def _at_constrained_speeds(system: System, state: dict[Node, Any]) -> dict[Node, Any] | None:
     """The state with speeds that the closing rows allow: J u + sigma = 0."""
-    ties, u = system.ties, system.symbols.u
-    if not ties.J:
+    constraints, u = system.constraints, system.symbols.u
+    if not constraints.J:
         return state
     try:
-        values = evaluate([*(x for row in ties.J for x in row), *ties.sigma], state, fifty_digits())
+        values = evaluate([*(x for row in constraints.J for x in row), *constraints.sigma], state, fifty_digits())
     except (NoValue, ZeroDivisionError):
         return None
-    n, k = len(u), len(ties.J)
+    n, k = len(u), len(constraints.J)
     rows, bias = [values[i * n : (i + 1) * n] for i in range(k)], values[k * n :]
     left = [b + sum(x * state[y] for x, y in zip(row, u, strict=True)) for row, b in zip(rows, bias, strict=True)]
     step = _least_step(rows, left)

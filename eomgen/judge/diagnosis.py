@@ -19,9 +19,9 @@ from random import Random
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.dynamics.system import System
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import SECOND, Dimension
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow
@@ -80,17 +80,17 @@ class Share:
         unit: the name of the factor of a wrong unit, "".
     """
 
-    corruption: Corruption
+    mistake: Mistake
     factor: Fraction
     unit: str = ""
 
     def added(self, graph_pi: Scalar) -> tuple[Scalar, ...]:
         """y C_j, of each row."""
-        y: Scalar = self.factor if not self.corruption.open else self.factor - 1
+        y: Scalar = self.factor if not self.mistake.open else self.factor - 1
         if self.unit:
             number, power = UNITS[self.unit][1]
             y = number * (graph_pi if power == 1 else over(1, graph_pi) if power == -1 else 1) - 1
-        return tuple(y * x for x in self.corruption.rows)
+        return tuple(y * x for x in self.mistake.rows)
 
 
 @dataclass(frozen=True)
@@ -134,15 +134,15 @@ class Samples:
 
 
 def samples_of(
-    system: System, flat: Sequence[Scalar], *, on_ties: bool = False, places: int = PLACES
+    system: System, flat: Sequence[Scalar], *, on_constraints: bool = False, places: int = PLACES
 ) -> Samples | None:
-    """States at which the scalars can be compared; on the ties where these restrict coordinates or speeds."""
+    """States at which the scalars can be compared; on the constraints where these restrict coordinates or speeds."""
     rng = Random(3)
     rows: list[dict[Node, float]] = []
     found = 0
-    for state in islice(states_of(system, flat, on_ties=on_ties, seed=5), places):
+    for state in islice(states_of(system, flat, on_constraints=on_constraints, seed=5), places):
         plain = {x: float(value) for x, value in state.items()}
-        variants = [_variant(system, plain, rng, on_ties) for _ in range(VARIANTS)]
+        variants = [_variant(system, plain, rng, on_constraints) for _ in range(VARIANTS)]
         rows += variants
         found += 1
     if not found:
@@ -183,24 +183,27 @@ def fitting(ours: np.ndarray, others: np.ndarray, given: int, rows: int) -> np.n
         first = np.where(np.abs(largest) > COMPUTED * np.abs(ours[:given]).max(), ratios, 0.0)[:, 0]
         alike = np.all(np.abs(others - ratios * ours) <= CARRIED * np.abs(ratios * largest), axis=1) | (first == 0)
     factors = np.where(alike, first, np.nan)
-    equation, corruptions = factors[given - rows : given], factors[given:].reshape(-1, rows)
+    equation, mistakes = factors[given - rows : given], factors[given:].reshape(-1, rows)
     if np.isnan(factors[:given]).any():
-        return np.ones(len(corruptions), dtype=bool)
-    same = np.abs(corruptions - equation) <= CARRIED * np.abs(equation)
-    fits: np.ndarray = np.all(same | (corruptions == 0) | (equation == 0), axis=1)
+        return np.ones(len(mistakes), dtype=bool)
+    same = np.abs(mistakes - equation) <= CARRIED * np.abs(equation)
+    fits: np.ndarray = np.all(same | (mistakes == 0) | (equation == 0), axis=1)
     return fits
 
 
-def _variant(system: System, state: dict[Node, float], rng: Random, on_ties: bool) -> dict[Node, float]:
-    symbols, ties = system.symbols, system.ties
+def _variant(system: System, state: dict[Node, float], rng: Random, on_constraints: bool) -> dict[Node, float]:
+    symbols, constraints = system.symbols, system.constraints
     moving = (*symbols.u, *symbols.a, *symbols.lam)
     state = state | {x: rng.uniform(0.4, 2) * rng.choice((-1, 1)) for x in moving}
-    if not (on_ties and ties.J):
+    if not (on_constraints and constraints.J):
         return state
-    for unknowns, bias in ((symbols.u, ties.sigma), (symbols.a, ties.gamma)):
-        flat = [*(x for row in ties.J for x in row), *bias]
+    for unknowns, bias in ((symbols.u, constraints.sigma), (symbols.a, constraints.gamma)):
+        flat = [*(x for row in constraints.J for x in row), *bias]
         values = np.array([float(x) for x in evaluate(flat, {k: np.float64(v) for k, v in state.items()}, ARRAYS)])
-        J, rest = values[: len(ties.J) * len(unknowns)].reshape(len(ties.J), -1), values[len(ties.J) * len(unknowns) :]
+        J, rest = (
+            values[: len(constraints.J) * len(unknowns)].reshape(len(constraints.J), -1),
+            values[len(constraints.J) * len(unknowns) :],
+        )
         x = np.array([state[each] for each in unknowns])
         x = x - np.linalg.lstsq(J, J @ x + rest, rcond=None)[0]
         state |= dict(zip(unknowns, x.tolist(), strict=True))
@@ -224,7 +227,7 @@ class Search:
     D: np.ndarray | None
     E: np.ndarray
     C: np.ndarray
-    corruptions: Sequence[Corruption]
+    mistakes: Sequence[Mistake]
     row: int
     true: np.ndarray | None = None
     resisting: tuple[np.ndarray, np.ndarray] | None = None
@@ -247,7 +250,7 @@ class Search:
 
     def _beside_usual(self, left: np.ndarray, A: np.ndarray, kept: list[int]) -> Iterator[tuple[int, int, float]]:
         """(i, j, y_i): beside a whole contribution that is missing or turned one more mistake, though both do alike."""
-        plain = [k for k, i in enumerate(kept) if self.corruptions[i].open and self.corruptions[i].rank == PLAIN]
+        plain = [k for k, i in enumerate(kept) if self.mistakes[i].open and self.mistakes[i].rank == PLAIN]
         for k in plain[:MOST_PLAIN]:
             i = kept[k]
             for y in (-1.0, -2.0):
@@ -269,8 +272,8 @@ class Search:
         )
         alike = np.round(A * np.sign(leading), ALIKE) + 0.0
         found: dict[tuple[bytes, float], int] = {}
-        for k in sorted(range(len(kept)), key=lambda k: self.corruptions[kept[k]].rank):
-            often = 0.0 if self.corruptions[kept[k]].open else float(f"{lengths[k] * np.sign(leading[k, 0]):.6g}")
+        for k in sorted(range(len(kept)), key=lambda k: self.mistakes[kept[k]].rank):
+            often = 0.0 if self.mistakes[kept[k]].open else float(f"{lengths[k] * np.sign(leading[k, 0]):.6g}")
             found.setdefault((alike[k].tobytes(), often), k)
         return list(found.values())
 
@@ -364,10 +367,10 @@ class Search:
             return None
         y = y / lengths if first is None else np.concatenate([[first], y / lengths])
         y = y[: len(chosen)]
-        shares = _shares([self.corruptions[i] for i in chosen], y.tolist())
+        shares = _shares([self.mistakes[i] for i in chosen], y.tolist())
         if shares is None:
             return None
-        if not self._is_there([share.corruption.kind != "extra_term" for share in shares], C, y):
+        if not self._is_there([share.mistake.kind != "extra_term" for share in shares], C, y):
             return None
         if self.resisting is not None:
             whole, each = self.resisting
@@ -375,8 +378,8 @@ class Search:
             if not np.all(np.abs(left) > CARRIED * np.abs(whole)):
                 return None
         scaled, dear = self._scale(C, y)
-        gone = any(x.corruption.open and not x.unit and x.factor == 0 for x in shares)
-        instead = INSTEAD if gone and any(x.corruption.kind == "extra_term" for x in shares) else 0
+        gone = any(x.mistake.open and not x.unit and x.factor == 0 for x in shares)
+        instead = INSTEAD if gone and any(x.mistake.kind == "extra_term" for x in shares) else 0
         cost = sum(map(cost_of, shares)) + dear + instead + (MIXED if self.row < 0 else 0)
         return Explanation(tuple(shares), self.row, cost, scaled)
 
@@ -406,40 +409,40 @@ class Search:
         return "function", 1.0 if np.mean(sigma) > 0 else 1.3
 
 
-def _shares(corruptions: Sequence[Corruption], factors: Sequence[float]) -> list[Share] | None:
+def _shares(mistakes: Sequence[Mistake], factors: Sequence[float]) -> list[Share] | None:
     """The corruptions with their factors, where these are such as people write; None where one is not."""
     found: dict[int, Share] = {}
-    for k in sorted(range(len(corruptions)), key=lambda k: not corruptions[k].open):
-        whole = [x.factor for x in found.values() if x.corruption.open and x.corruption.name == corruptions[k].name]
-        share = _share(corruptions[k], factors[k], [1, *whole])
+    for k in sorted(range(len(mistakes)), key=lambda k: not mistakes[k].open):
+        whole = [x.factor for x in found.values() if x.mistake.open and x.mistake.name == mistakes[k].name]
+        share = _share(mistakes[k], factors[k], [1, *whole])
         if share is None:
             return None
         found[k] = share
-    return [found[k] for k in range(len(corruptions))]
+    return [found[k] for k in range(len(mistakes))]
 
 
-def _share(corruption: Corruption, y: float, often: Sequence[Fraction | int]) -> Share | None:
+def _share(mistake: Mistake, y: float, often: Sequence[Fraction | int]) -> Share | None:
     """The corruption with its factor.
 
     Args:
         often: how often a change may be there.
     """
-    if corruption.name.startswith(WHOLE) and abs(1 + y) < SAME_EIGENVALUE:
+    if mistake.name.startswith(WHOLE) and abs(1 + y) < SAME_EIGENVALUE:
         return None  # something else would have to be there in its place
-    if not corruption.open:
+    if not mistake.open:
         times = next((x for x in often if x and abs(y - x) < SAME_EIGENVALUE), None)
-        return None if times is None else Share(corruption, Fraction(times))
+        return None if times is None else Share(mistake, Fraction(times))
     for name, (number, _) in UNITS.items():
         if abs(1 + y - number) < SAME_EIGENVALUE * number:
-            return Share(corruption, Fraction(1), name)
+            return Share(mistake, Fraction(1), name)
     factor = simple_factor(1 + y)
     if (
-        corruption.name.startswith(WHOLE)
+        mistake.name.startswith(WHOLE)
         and factor is not None
         and max(abs(factor.numerator), factor.denominator) > WELL_KNOWN
     ):
         return None
-    return None if factor is None or factor == 1 else Share(corruption, factor)
+    return None if factor is None or factor == 1 else Share(mistake, factor)
 
 
 def simple_factor(x: float, largest: int = SIMPLE) -> Fraction | None:
@@ -452,17 +455,17 @@ def simple_factor(x: float, largest: int = SIMPLE) -> Fraction | None:
 
 def cost_of(share: Share) -> float:
     """How much has to be believed of one mistake."""
-    cost = PLAINEST + share.corruption.rank
+    cost = PLAINEST + share.mistake.rank
     if share.unit:
         return cost + 1.5
-    if not share.corruption.open:
+    if not share.mistake.open:
         return cost
     x = share.factor
     if x == 0:
         return cost
     if x < 0:
-        cost += (SQUARED if share.corruption.squares else 0.0) + (MINUS if x != -1 else 0.0)
-    cost += WHOLE_MOTION if share.corruption.squares else 0.0
+        cost += (SQUARED if share.mistake.squares else 0.0) + (MINUS if x != -1 else 0.0)
+    cost += WHOLE_MOTION if share.mistake.squares else 0.0
     size = abs(x)
     return cost + next((more for known, more in USUAL if size in known), UNUSUAL)
 
@@ -497,7 +500,7 @@ SHORTER = 0.3  # of what a shorter name tells as well
 
 
 @dataclass(frozen=True)
-class Corruption:
+class Mistake:
     """One thing that may have gone wrong.
 
     Args:

@@ -12,8 +12,8 @@ import unicodedata
 from contextlib import suppress
 
 from eomgen.errors import ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.text import RATES, SLOPE, called_rate, meant_name, spelled
 from eomgen.symbolic.expression.units import parse_unit
@@ -32,7 +32,7 @@ _FRACTIONS = ("frac", "dfrac", "tfrac", "cfrac")
 _SIGNS = {"cdot": "*", "times": "*", "ast": "*", "div": "/", "approx": "=", "equiv": "=", "lbrace": "(", "rbrace": ")"}
 _SIGNS |= {"{": "(", "}": ")", "lvert": "|", "rvert": "|", "vert": "|", "lbrack": "(", "rbrack": ")"}
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
-_LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True))
+_STATEMENTS = dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True))
 _DOTS = {"\u0307": 1, "\u0308": 2}
 _ACCENTS = {"dot": 1, "ddot": 2}
 _DECORATIONS = frozenset("hat bar tilde vec overline widehat".split())
@@ -203,8 +203,8 @@ class _Reader:
         """Whether a sign of punctuation ends all that was written."""
         return self.text[self.at] in ".;," and not _ORNAMENT.sub("", self.text[self.at + 1 :]).strip()
 
-    def strange(self, what: str, mend: str = "", length: int = 1, at: int | None = None) -> ExpressionError:
-        return ExpressionError(what, self.offset + (self.at if at is None else at), mend, length)
+    def strange(self, what: str, fix: str = "", length: int = 1, at: int | None = None) -> ExpressionError:
+        return ExpressionError(what, self.offset + (self.at if at is None else at), fix, length)
 
     def number(self, text: str) -> None:
         self.put(text, "number")
@@ -564,10 +564,10 @@ class _Reader:
 
     def index(self) -> str:
         """What stands below the line behind a name."""
-        lowered = re.compile(f"[{''.join(_LOWERED)}]+").match(self.text, self.at)
-        if lowered:
-            self.at = lowered.end()
-            return "".join(_LOWERED[c] for c in lowered.group())
+        statements = re.compile(f"[{''.join(_STATEMENTS)}]+").match(self.text, self.at)
+        if statements:
+            self.at = statements.end()
+            return "".join(_STATEMENTS[c] for c in statements.group())
         mark = re.compile(r"\s*_").match(self.text, self.at)
         if mark is None:
             return ""

@@ -1,6 +1,6 @@
 """An answer of somebody -> the equation of motion that it would follow from, beside the model's.
 
-Of one freedom: omega implies q'' = -omega^2 q, a place of rest that the forces balance there, a course its own rates, a
+Of one freedom: omega implies q'' = -omega^2 q, an equilibrium that the forces balance there, a course its own rates, a
 speed at an instant its kinetic energy. Put into the model's equation, what is left is explained by the contributions:
 
     E + sum y_j C_j = 0
@@ -21,6 +21,7 @@ from typing import Protocol
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
@@ -34,8 +35,8 @@ from eomgen.judge.diagnosis import (
     SHARED,
     TERMS,
     USUAL,
-    Corruption,
     Explanation,
+    Mistake,
     Search,
     Share,
     cost_of,
@@ -49,7 +50,6 @@ from eomgen.judge.replays import replays
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.questions.answers import Answer
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.formula import Call, Expression, Reference, over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
@@ -96,7 +96,7 @@ class Implied:
 
     case: Case
     left: Scalar
-    corruptions: tuple[Corruption, ...]
+    mistakes: tuple[Mistake, ...]
     resisting: ScalarRow
 
     def explained(self, number: int) -> list[Explanation]:
@@ -105,15 +105,15 @@ class Implied:
 
     @cached_property
     def _searches(self) -> tuple[Search, ...]:
-        flat = [self.left, *(each.rows[0] for each in self.corruptions), *self.resisting]
+        flat = [self.left, *(each.rows[0] for each in self.mistakes), *self.resisting]
         samples = samples_of(self.case.system, flat, places=STATES_OF_VALUES)
         if samples is None:
             return ()
-        found, n = samples.of(flat), len(self.corruptions)
+        found, n = samples.of(flat), len(self.mistakes)
         others = in_other_units(samples, self.case.parts.dimensions)
         ours = found[: n + 1]
         fits = np.ones(n, dtype=bool) if others is None else fitting(ours, others.of(flat[: n + 1]), 1, 1)
-        known = tuple(each for each, fit in zip(self.corruptions, fits, strict=True) if fit)
+        known = tuple(each for each, fit in zip(self.mistakes, fits, strict=True) if fit)
         resisting = (found[n + 1], found[n + 2 :][fits])
         return (Search(None, found[0], found[1 : n + 1][fits], known, 0, resisting=resisting),)
 
@@ -148,7 +148,7 @@ def implied_by(
     if own is not None:
         yield from _beside_answer(case, written, kind, at, own, other)
     alone = len(written.left.code) == 1 and kind == "frequency" and not case.closing and case.system.free is None
-    if alone and 1 < len(case.rows) <= MOST_FREEDOMS:
+    if alone and 1 < len(case.rows) <= MOST_DEGREES_OF_FREEDOM:
         yield GivenFrequency(case, other, dict(([{}, *case.places_of_rest])[-1]))
 
 
@@ -194,18 +194,18 @@ class Explainable(Protocol):
 
 
 def simplest_explanation(
-    targets: Iterable[Explainable], mends: Iterable[Explainable] = (), *, soon: bool = False, at_once: float = BELIEVED
+    targets: Iterable[Explainable], fixes: Iterable[Explainable] = (), *, soon: bool = False, at_once: float = BELIEVED
 ) -> tuple[Explainable | None, list[Explanation]]:
     """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed.
 
     Args:
-        mends: looked at where no one mistake of the others is believed.
+        fixes: looked at where no one mistake of the others is believed.
         soon: already where none is plain: the author wrote no equation of motion.
         at_once: the cost of a mistake up to which no further comparison is looked at.
     """
     best: tuple[Explainable | None, list[Explanation]] = None, []
     beside: list[Explanation] = []
-    known, own = tuple(targets), tuple(mends)
+    known, own = tuple(targets), tuple(fixes)
     for number in range(1, MOST_MISTAKES + 1):
         for some, believed in (
             (known, number * at_once),
@@ -270,8 +270,8 @@ def beside_rest(case: Case, scalar: Scalar) -> list[Comparison]:
         return []
     rows = substituted(case.rows, still)
 
-    def wrong() -> Iterator[Corruption]:
-        for each in case.corruptions("motion").all:
+    def wrong() -> Iterator[Mistake]:
+        for each in case.mistakes("motion").all:
             with suppress(DerivationError):  # it has no value there
                 yield replace(each, rows=substituted(each.rows, still))
 
@@ -280,7 +280,7 @@ def beside_rest(case: Case, scalar: Scalar) -> list[Comparison]:
 
 def _implied(put: PutIn) -> Implied | None:
     """The one equation of the model and its corruptions, with an answer put in."""
-    case, known = put.case, put.case.corruptions(put.what)
+    case, known = put.case, put.case.mistakes(put.what)
     if put.what == "motion":
         whole = case.rows[put.row]
     else:
@@ -289,7 +289,7 @@ def _implied(put: PutIn) -> Implied | None:
     moving = (*case.system.symbols.u, *case.system.symbols.a)
     if is_zero(left) or depends_on(left, moving):
         return None
-    found, resisting = list[Corruption](), [put.resisting(whole)]
+    found, resisting = list[Mistake](), [put.resisting(whole)]
     symbols = case.system.symbols
     rates = frozenset((*symbols.u, *symbols.a))
     wrong = WrongTerms(case.edits, tuple(symbols.parameters.values()), rates)
@@ -333,7 +333,7 @@ def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author:
             yield from _at_instant(begun, written, at, moment)
 
 
-def _of_motion(case: Case, written: HandEquation, at: WrittenEquation, own: Scalar) -> Iterator[Corruption]:
+def _of_motion(case: Case, written: HandEquation, at: WrittenEquation, own: Scalar) -> Iterator[Mistake]:
     """Of a value at a place what is there at rest, and what the speed makes of it."""
     begun = case.as_begun or case
     (u,) = begun.system.symbols.u
@@ -346,11 +346,11 @@ def _of_motion(case: Case, written: HandEquation, at: WrittenEquation, own: Scal
                 still = begun.phase.simple(begun.phase.eliminated(value)) if depends_on(value, begun.forced) else value
                 still = case.own(substituted((still,), place)[0])
                 if not is_zero(still):
-                    yield Corruption("all that is there at rest", "factor", (still,), SHARED)
-                    yield Corruption("all that the speed does", "factor", (own - still,), SHARED)
+                    yield Mistake("all that is there at rest", "factor", (still,), SHARED)
+                    yield Mistake("all that the speed does", "factor", (own - still,), SHARED)
 
 
-def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Corruption]:
+def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Mistake]:
     """What may be wrong with an entry of M, C or K: in the slope of the equation that it is of."""
     symbols, names = case.system.symbols, [x.name for x in call.args if isinstance(x, Reference)] if call else []
     of = [u.name.removesuffix("'") for u in symbols.u]
@@ -367,14 +367,14 @@ def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Corruption
             return substituted((derivative(rows[i], along),), {**still, **place})[0]
 
         if is_zero_everywhere(case.system, slope(case.rows) - own).holds:
-            for each in case.corruptions("motion").all:
+            for each in case.mistakes("motion").all:
                 with suppress(DerivationError):
                     yield replace(each, rows=(slope(each.rows),))
             return
 
 
 def _resting(case: Case, q: Node, value: Scalar, of: Node | None = None) -> PutIn:
-    """A place of rest, q or a function of it, put into the equation of what does not move."""
+    """An equilibrium, q or a function of it, put into the equation of what does not move."""
     at = {q if of is None else of: value, **dict.fromkeys((*case.system.symbols.u, *case.system.symbols.a), 0)}
     return PutIn(
         case,
@@ -435,10 +435,10 @@ def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Map
     """u^2, where what is asked is a speed, c u or |c u|, or depends on its square alone, as the force on what turns."""
     u = case.system.symbols.u[0]
     try:
-        asked = case.value(written.left)
-        if depends_on(asked, case.forced):
-            asked = case.phase.simple(case.phase.eliminated(asked))
-        plain, square = substituted((asked, asked * asked), place)
+        requested = case.value(written.left)
+        if depends_on(requested, case.forced):
+            requested = case.phase.simple(case.phase.eliminated(requested))
+        plain, square = substituted((requested, requested * requested), place)
     except (ExpressionError, DerivationError):
         return None
     for value, given in ((plain, author), (square, author * author)):
@@ -454,16 +454,17 @@ def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Map
 
 
 # -------- frequencies -----------------------------------------------------------------------------------------
-# A frequency that somebody gives for a system of several freedoms -> what would have to be wrong for it to be one.
+# A frequency that somebody gives for a system of several degrees of freedom -> what would have to be wrong for it to
+# be one.
 #
 #     det(K + y C_K - omega^2 (M + y C_M)) = 0
 #
-# M and K are the slopes of the equations of motion at the place of rest, C_M and C_K those of what a mistake adds,
+# M and K are the slopes of the equations of motion at the equilibrium, C_M and C_K those of what a mistake adds,
 # once or as often as people write it; at a few sets of values in doubles first, and what holds there is proven
 # exactly.
 
 
-MOST_FREEDOMS = 4
+MOST_DEGREES_OF_FREEDOM = 4
 STATES = 6  # sets of values at which it is tried
 BY_CHANCE = 3.0  # how much less it is believed: many things make a determinant vanish
 OTHER = 1.37  # times the frequency: what vanishes there as well says nothing
@@ -513,10 +514,10 @@ class GivenFrequency:
         return [tuple(flat[i : i + n]) for i in range(0, n * n, n)]
 
     @cached_property
-    def _known(self) -> list[tuple[Corruption, tuple[ScalarRow, ScalarRow]]]:
+    def _known(self) -> list[tuple[Mistake, tuple[ScalarRow, ScalarRow]]]:
         """What may be wrong, with its slopes."""
         found = []
-        for each in (x for x in self.case.corruptions("motion").all if x.rank < TERMS):
+        for each in (x for x in self.case.mistakes("motion").all if x.rank < TERMS):
             with suppress(DerivationError):  # it has no value there
                 slopes = self._slopes(each.rows)
                 if not all(is_zero(x) for row in slopes for x in row):
@@ -545,12 +546,12 @@ class GivenFrequency:
             return found
 
         found = []
-        for k, (corruption, _) in enumerate(self._known):
-            for x in FACTORS if corruption.open else (Fraction(1),):
-                y = float(x - 1) if corruption.open else 1.0
+        for k, (mistake, _) in enumerate(self._known):
+            for x in FACTORS if mistake.open else (Fraction(1),):
+                y = float(x - 1) if mistake.open else 1.0
                 with np.errstate(all="ignore"):
                     if np.all(size(square, y, k) < CARRIED) and np.all(size(OTHER * square, y, k) > CARRIED):
-                        share = Share(corruption, x)
+                        share = Share(mistake, x)
                         found.append(Explanation((share,), 0, cost_of(share) + BY_CHANCE))
         return found
 

@@ -9,13 +9,15 @@ from dataclasses import replace
 from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
-from eomgen.judge.answers import asked, of_unknown
-from eomgen.judge.balances import Balances, asks_reactions, unsupported
+from eomgen.frozen import dataclass
+from eomgen.judge.answers import of_unknown, requested
+from eomgen.judge.balances import Balances, requests_reactions, unsupported
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, remainder
 from eomgen.judge.conserved import not_conserved
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import BELIEVED
+from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import (
     Explainable,
     Instant,
@@ -24,7 +26,6 @@ from eomgen.judge.implied import (
     implied_by_rest,
     simplest_explanation,
 )
-from eomgen.judge.mends import Authored, Mends
 from eomgen.judge.reading import HandEquation, of_free_coordinates
 from eomgen.judge.renaming import OtherAxis, Renaming, renamings
 from eomgen.judge.replays import replays
@@ -35,11 +36,11 @@ from eomgen.judge.truth import (
     Decided,
     by_balance,
     by_what_is_given,
+    corrected,
     course_of,
     directions_at_start,
     in_its_piece,
     is_of_rest,
-    mended,
     of_the_start,
     on_one_side,
     says_nothing,
@@ -48,7 +49,7 @@ from eomgen.judge.truth import (
     small_motions,
     stays_constant,
     truth_of,
-    values_told,
+    values_reported,
     while_,
     with_definitions,
     with_values_of_file,
@@ -69,7 +70,6 @@ from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed
 from eomgen.proof.verdicts import Judged
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import paths_of
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Reference, over
@@ -120,7 +120,7 @@ class Judge:
             UsageError: no such kind.
         """
         if kind is not None and kind not in KINDS:
-            raise UsageError(f"there is no kind '{kind}' of equations", mend=f"one of {', '.join(KINDS)}")
+            raise UsageError(f"there is no kind '{kind}' of equations", fix=f"one of {', '.join(KINDS)}")
         written = self.case.reading.read(equation)
         known = kind or kind_of_equation(written, self.case.model)
         if self.case.system.free is None or not any(call.name == SLOPE for call in written.calls):
@@ -177,7 +177,7 @@ class Judge:
                 return found
             kind = "motion"
         if at is not None or kind == "frequency" or (kind == "statics" and not unknown):
-            return asked(case, written, kind, at)
+            return requested(case, written, kind, at)
         if unknown:
             return self._of_other_names(written, kind, unknown)
         course = self._course(written)
@@ -186,7 +186,7 @@ class Judge:
         return self._of_scalar(written, kind, case.value(written.difference))
 
     def _at_rest(self, written: HandEquation) -> Verdict | None:
-        """Of an equation in which nothing moves: of the ties, or of rest; None: the model is at rest nowhere."""
+        """Of an equation in which nothing moves: of the constraints, or of rest; None: the model is at rest nowhere."""
         case, scalar = self.case, self.case.value(written.difference)
         found = truth_of(case, scalar, "law")
         if found.holds:
@@ -199,22 +199,22 @@ class Judge:
                 return Verdict(written.given, "equilibrium", RIGHT)
         dependent = {name for name, q in case.model.coordinates.items() if q.dependent}
         if dependent & written.names:
-            of_ties = self._wrong(written, "equilibrium", scalar)
-            if not case.system.symbols.u or of_ties.causes[0].kind != "other":
-                return of_ties
+            of_constraints = self._wrong(written, "equilibrium", scalar)
+            if not case.system.symbols.u or of_constraints.causes[0].kind != "other":
+                return of_constraints
         target = implied_by_rest(case, written)
         places = case.places_of_rest
         if any(is_zero_everywhere(case.system, *substituted((scalar,), place)).holds for place in places):
             places = ()  # it is right there: what is wrong is that it holds elsewhere, too
-        mends = [Mends(Authored(case, written, "equilibrium", place)) for place in places]
-        _, why = simplest_explanation([*([target] if target else []), *beside_rest(case, scalar)], mends)
+        fixes = [Fixes(Authored(case, written, "equilibrium", place)) for place in places]
+        _, why = simplest_explanation([*([target] if target else []), *beside_rest(case, scalar)], fixes)
         if why:
             difference = excess(case, target.left) if target is not None else ""
             causes = causes_of(case, why, moving=False)
             return Verdict(written.given, "equilibrium", WRONG, difference=difference, causes=causes)
         if not case.rests and case.system.symbols.u and not case.model.unknowns and in_balance is None:
             return None
-        verdict = asked(case, written, "equilibrium", AtRest())
+        verdict = requested(case, written, "equilibrium", AtRest())
         if in_balance is None or verdict.verdict == WRONG:
             return verdict
         text = "places at which the forces do not balance satisfy it, too"
@@ -240,8 +240,8 @@ class Judge:
             with suppress(EomgenError):
                 so = truth_of(begun, begun.value(written.difference), kind)
                 if so.holds:
-                    told = BEGUN[0] if paths_of(case.model) else BEGUN[1]
-                    found = Decided(True, f"{told} and {so.up_to}" if so.up_to else told)
+                    reported = BEGUN[0] if paths_of(case.model) else BEGUN[1]
+                    found = Decided(True, f"{reported} and {so.up_to}" if so.up_to else reported)
         if found.holds:
             return Verdict(written.given, kind, RIGHT, found.up_to)
         if found.holds is None:
@@ -265,16 +265,16 @@ class Judge:
             reason = "the equations of motion hold with it, but where the motion starts is not known"
             return Verdict(written.given, "law", UNDECIDED, reason=reason)
         if course.holds and course.begins:
-            told = f"any start, with {', '.join(constants)} constant" if constants else "the motion from the start"
-            with_values = f", with {values_told(course.values)}" if course.values else ""
-            return Verdict(written.given, "law", RIGHT, f"{told}{with_values}{while_(course.held)}")
+            reported = f"any start, with {', '.join(constants)} constant" if constants else "the motion from the start"
+            with_values = f", with {values_reported(course.values)}" if course.values else ""
+            return Verdict(written.given, "law", RIGHT, f"{reported}{with_values}{while_(course.held)}")
         rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
         target = implied_by_course(case, course.known) if not course.holds else None
         found = simplest_explanation([target] if target is not None else [])[1]
         if found and found[0].cost < BELIEVED:
             causes = causes_of(case, found, moving=False)
-        elif (mend := mended(case, written, constants or {})) is not None:
-            causes = (mend,)
+        elif (fix := corrected(case, written, constants or {})) is not None:
+            causes = (fix,)
         elif found:
             causes = causes_of(case, found, moving=False)
         elif course.holds:
@@ -298,8 +298,8 @@ class Judge:
             found = truth_of(case, scalar, kind)
             if not found.holds and renaming.near:
                 found = on_one_side(case, written, kind, scalar) or found
-            if found.holds and not (renaming.guessed and found.up_to.endswith("the ties")):
-                return Verdict(written.given, kind, RIGHT, found.up_to, renaming.told)
+            if found.holds and not (renaming.guessed and found.up_to.endswith("the constraints")):
+                return Verdict(written.given, kind, RIGHT, found.up_to, renaming.reported)
         free = {name: case.system.scope.graph.symbol(name) for name in unknown}
         moving = any(f"{name}'" in written.names for name in unknown)
         with suppress(ExpressionError):
@@ -312,12 +312,12 @@ class Judge:
                 return self._wrong(written, kind, case.value(written.difference, free), free)
             return of_unknown(case, written, kind, unknown)
         wrong = self._wrong(written, kind, case.value(written.difference, near.values), near.values)
-        return replace(wrong, substitution=near.told)
+        return replace(wrong, substitution=near.reported)
 
     def _with_constants(self, written: HandEquation, kind: str, free: Mapping[str, Node]) -> Verdict | None:
         """Right with the unknown names constant, or but for the force of a constraint that they are; None: neither."""
         case = self.case
-        told = ", ".join(free)
+        reported = ", ".join(free)
         course = self._course(written, free)
         if course is not None and course.verdict == RIGHT:
             return course
@@ -326,9 +326,9 @@ class Judge:
             found = truth_of(case, scalar, kind)
             if found.holds:
                 up_to, mark, piece = found.up_to.partition(", while ")
-                return Verdict(written.given, kind, RIGHT, f"{up_to}, with {told} constant{mark}{piece}")
+                return Verdict(written.given, kind, RIGHT, f"{up_to}, with {reported} constant{mark}{piece}")
             if held := stays_constant(case, scalar):
-                up_to = f"a first integral of the motion, with {told} constant{while_(held)}"
+                up_to = f"a first integral of the motion, with {reported} constant{while_(held)}"
                 return Verdict(written.given, kind, RIGHT, up_to)
         if kind == "motion":
             (rest,) = substituted((scalar,), dict.fromkeys(free.values(), 0))
@@ -371,10 +371,10 @@ class Judge:
         case = self.case
         found = truth_of(case, scalar, kind)
         if found.why and not (found.why == CONSTANT and written.calls):
-            mend = Mends(Authored(case, written, kind)).explained(1) if found.why == CONSTANT and not also else []
-            if not mend:
+            fix = Fixes(Authored(case, written, kind)).explained(1) if found.why == CONSTANT and not also else []
+            if not fix:
                 return self._not(written, kind, found, scalar)
-            causes = causes_of(case, mend, moving=False)
+            causes = causes_of(case, fix, moving=False)
             return Verdict(written.given, kind, WRONG, difference=excess(case, scalar), causes=causes)
         left = self._without_reactions(written, kind, also)
         if left is not None:
@@ -388,8 +388,8 @@ class Judge:
         known: list[Explainable] = [*targets, *(small for each in values for small in small_motions(each))]
         if kind == "motion" and not written.calls and not also:
             known += unsupported(case, scalar)
-        own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(Authored(case, written, kind))]
-        target, explanations = simplest_explanation(known, own, soon=kind == "law" and not case.system.ties.rows)
+        own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Fixes(Authored(case, written, kind))]
+        target, explanations = simplest_explanation(known, own, soon=kind == "law" and not case.system.constraints.rows)
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)
@@ -426,9 +426,9 @@ class Judge:
         found = case.evaluated(written.difference, names, lambda call: 0 if call in left_in else case.called(call))
         if not truth_of(case, found, kind).holds:
             return None
-        told = ", ".join(map(str, left_in))
-        cause = Cause("constraint_force", _left_in(told), told, force=told, quantity=told)
-        return Verdict(written.given, kind, WRONG, difference=told, causes=(cause,))
+        reported = ", ".join(map(str, left_in))
+        cause = Cause("constraint_force", _left_in(reported), reported, force=reported, quantity=reported)
+        return Verdict(written.given, kind, WRONG, difference=reported, causes=(cause,))
 
 
 def _apart(difference: str, beside: str = "") -> Cause:
@@ -449,7 +449,7 @@ def _instant(case: Case, at: Any) -> Instant:
     try:
         return equation_typed(case.model, str(at))[0]
     except ExpressionError as error:
-        raise UsageError(f"at {at}: {error.what}", mend=error.mend or 'write "theta = pi/2"') from error
+        raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
 
 
 # -------- targets ---------------------------------------------------------------------------------------------
@@ -466,7 +466,7 @@ def targets_of(
     case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None
 ) -> list[Explainable]:
     """What an equation is compared with, the most telling first."""
-    if kind in ("reaction", "motion") and not also and asks_reactions(written):
+    if kind in ("reaction", "motion") and not also and requests_reactions(written):
         begun = case.as_begun or case  # it slides as the author says, not by the sign of a speed
         balances = (Balances(begun, written), Balances(begun, written, finely=True))
         return [balances[0], *_values_of(case, written, kind, scalar, also), balances[1]]
@@ -556,9 +556,9 @@ def loosened_targets(case: Case, written: HandEquation, kind: str) -> list[Compa
     with suppress(EomgenError):
         scalar, a = loose.value(written.difference), loose.system.symbols.a
         found = []
-        if not written.calls and loose.system.ties.J:
-            rows = loose.tied_rates[depends_on(scalar, a)]
-            found = [Comparison(loose, scalar, rows, "ties")]
+        if not written.calls and loose.system.constraints.J:
+            rows = loose.constrained_rates[depends_on(scalar, a)]
+            found = [Comparison(loose, scalar, rows, "constraints")]
         if written.calls or not any(x.dependent for x in coordinates.values()):
             found += _values_of(loose, written, kind, scalar, None)
         known = {x: 0 for x in a if x.name in case.steady}

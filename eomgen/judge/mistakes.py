@@ -15,14 +15,14 @@ from functools import cached_property
 from itertools import chain, combinations
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.judge.contributions import Contribution, Contributions, changes_of_places, substitutions_in
-from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Corruption
+from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Mistake
 from eomgen.judge.terms import terms_of
 from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.mechanics.kinematics.inertia import HALF, body_energies, mass_properties
 from eomgen.mechanics.kinematics.motion import Motion, parent_of, velocity_of
 from eomgen.model.forces.load import BodyPoint
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import (
     depends_on,
     depends_on_any,
@@ -38,13 +38,13 @@ from eomgen.symbolic.expression.spatial import Vector, dot, minus
 MOST = 3000  # corruptions of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
 GROUPS = ("all rotations", "the whole potential energy", "all that is applied")  # whose members are told
-MOST_TOLD = 3  # members of a group that are told
+MOST_REPORTED = 3  # members of a group that are told
 WAYS = ((2, "twice"), (HALF, "half"), (4, "four times"), (HALF * HALF, "a quarter"))  # how far something moves
 MOST_NODES = 100_000  # of expressions that are made for them
 
 
 @dataclass(frozen=True)
-class Corruptions:
+class Mistakes:
     """What may be wrong in equations, energies or forces of a system.
 
     Args:
@@ -74,9 +74,9 @@ class Corruptions:
         return operator.rows(part)
 
     @cached_property
-    def all(self) -> tuple[Corruption, ...]:
+    def all(self) -> tuple[Mistake, ...]:
         """All of them that change something, the most believable first."""
-        found: list[Corruption] = []
+        found: list[Mistake] = []
         graph = self.parts.system.scope.graph
         most = len(graph) + MOST_NODES
         for each in self._sought():
@@ -93,17 +93,17 @@ class Corruptions:
         mine = (part for part in known if not self.of or {part.body, part.force} & {*self.of})
         return tuple(part for part in mine if not all(map(is_zero, self.rows(part))))
 
-    def _sought(self) -> Iterator[Corruption]:
+    def _sought(self) -> Iterator[Mistake]:
         alike: dict[tuple[str, ScalarRow], list[Contribution]] = {}
         for part in self.whole:
             alike.setdefault((part.kind, self.parts.edits.written(self.rows(part))), []).append(part)
         for members in alike.values():
             for part in members:  # of several that do the same all are rather wrong than one
                 rank, squares = 2 * SHORTER if len(members) > 1 else PLAIN, not is_zero(part.T)
-                yield Corruption(part.name, "factor", self.rows(part), rank, part.body, part.force, squares=squares)
+                yield Mistake(part.name, "factor", self.rows(part), rank, part.body, part.force, squares=squares)
             if len(members) > 1:
                 name, squares = " and ".join(part.name for part in members), not is_zero(members[0].T)
-                yield Corruption(name, "factor", self._sum(members), SHORTER, squares=squares)
+                yield Mistake(name, "factor", self._sum(members), SHORTER, squares=squares)
         yield from self._about_axes()
         yield from self._ways()
         yield from self._together()
@@ -115,7 +115,7 @@ class Corruptions:
             if self.what == "T" and is_zero(change.part.T):
                 continue
             rows = self.rows(change.part)
-            yield Corruption(
+            yield Mistake(
                 change.name, change.kind, rows, change.rank, change.part.body, change.part.force, False, change.text
             )
         for part in self.whole if self.what != "energy" else ():
@@ -143,7 +143,7 @@ class Corruptions:
         parameters, rates = tuple(symbols.parameters.values()), (*symbols.u, *symbols.a)
         return WrongTerms(self.parts.edits, parameters, rates, part.name, part.body, part.force)
 
-    def _edited(self, part: Contribution) -> Iterator[Corruption]:
+    def _edited(self, part: Contribution) -> Iterator[Mistake]:
         """A contribution with one place of its energy or its forces changed, carried through the derivation."""
         edits = self.parts.edits
         forms: list[tuple[ScalarRow, Callable[[ScalarRow], Contribution]]] = [
@@ -158,9 +158,9 @@ class Corruptions:
                 text = f"in {part.name} {each.text}"
                 with suppress(DerivationError):  # it has no value at the start
                     rows = self.rows(changed(by))
-                    yield Corruption(part.name, each.kind, rows, each.rank, part.body, part.force, False, text)
+                    yield Mistake(part.name, each.kind, rows, each.rank, part.body, part.force, False, text)
 
-    def _ways(self) -> Iterator[Corruption]:
+    def _ways(self) -> Iterator[Mistake]:
         """Bodies that move on one way together, twice or half as far: T by the square, what acts on them once."""
         motion, groups = self.parts.operator.base.motion, dict[Vector, list[str]]()
         for link in motion.links:
@@ -176,7 +176,7 @@ class Corruptions:
             for mine in (straight, [*straight, *turning]) if turning else (straight,):
                 yield from self._far(bodies, mine)
 
-    def _far(self, bodies: Sequence[str], mine: Sequence[Contribution]) -> Iterator[Corruption]:
+    def _far(self, bodies: Sequence[str], mine: Sequence[Contribution]) -> Iterator[Mistake]:
         """Bodies that move twice or half as far, in all that is given of them, and in one kind of it."""
         kinds = [part.kind for part in mine]
         rotate = " and turn" if "rotation" in kinds else ""
@@ -184,14 +184,14 @@ class Corruptions:
             parts = [replace(part, T=(factor * factor - 1) * part.T, V=(factor - 1) * part.V) for part in mine]
             text = f"{' and '.join(bodies)} would move{rotate} {how} as far as meant, in the velocity and in the height"
             rows = self._sum(parts)
-            yield Corruption(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
+            yield Mistake(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
         for kind in ("translation", "weight") if not rotate else ():
             some = [part for part in mine if part.kind == kind]
             if len(some) > 1:
                 name, squares = " and ".join(part.name for part in some), kind == "translation"
-                yield Corruption(name, "factor", self._sum(some), SHARED, squares=squares)
+                yield Mistake(name, "factor", self._sum(some), SHARED, squares=squares)
 
-    def _about_axes(self) -> Iterator[Corruption]:
+    def _about_axes(self) -> Iterator[Mistake]:
         """The rotations of bodies in space about their principal axes, those with equal moments together."""
         motion, mine = (
             self.parts.operator.base.motion,
@@ -206,14 +206,14 @@ class Corruptions:
                 axes = [k for k in range(3) if moments[k] == moment]
                 T = HALF * moment * sum((energy.spin[k] * energy.spin[k] for k in axes), start=0)
                 if len(axes) < 3 and not is_zero(T):
-                    told = " and ".join("xyz"[k] for k in axes)
-                    name = f"the rotation of {energy.body} about its {told}"
+                    reported = " and ".join("xyz"[k] for k in axes)
+                    name = f"the rotation of {energy.body} about its {reported}"
                     row = self.rows(replace(mine[energy.body], T=T))
-                    yield Corruption(name, "factor", row, SHARED, energy.body, squares=True)
+                    yield Mistake(name, "factor", row, SHARED, energy.body, squares=True)
 
     # -- contributions together --------------------------------------------------------------------
 
-    def _together(self) -> Iterator[Corruption]:
+    def _together(self) -> Iterator[Mistake]:
         groups: dict[tuple[str, str, str], list[Contribution]] = {}
         for part in self.whole:
             kinetic = not is_zero(part.T)
@@ -236,13 +236,13 @@ class Corruptions:
             if len(members) > 1 and key not in seen:
                 seen.add(key)
                 whose = ", ".join(part.body if part.kind == "rotation" else part.name for part in members)
-                told = f"{name} ({whose})" if name in GROUPS and len(members) <= MOST_TOLD else name
+                reported = f"{name} ({whose})" if name in GROUPS and len(members) <= MOST_REPORTED else name
                 squares = all(not is_zero(part.T) for part in members)
                 rows = self._sum(members)
-                yield Corruption(told, "factor", rows, SHARED, body, force, squares=squares)
+                yield Mistake(reported, "factor", rows, SHARED, body, force, squares=squares)
                 yield from self._weights_for_masses(name, members, rows)
 
-    def _weights_for_masses(self, name: str, members: Sequence[Contribution], rows: ScalarRow) -> Iterator[Corruption]:
+    def _weights_for_masses(self, name: str, members: Sequence[Contribution], rows: ScalarRow) -> Iterator[Mistake]:
         """m g where m is meant in all that is moved, m where m g is meant in all weights."""
         moving = all(not is_zero(part.T) for part in members)
         falling = [x for x in self.parts.edits.also if str(self.parts.dimensions.get(x.name)) == "m/s^2"]
@@ -250,7 +250,7 @@ class Corruptions:
             by = tuple((row * g if moving else over(row, g)) - row for row in rows)
             text = f"weights stand for masses: a factor {g.name} is too many"
             text = text if moving else f"masses stand for weights: a factor {g.name} is missing"
-            yield Corruption(name, "factor", by, SHARED, open=False, text=f"in {name} {text}")
+            yield Mistake(name, "factor", by, SHARED, open=False, text=f"in {name} {text}")
 
     def _sum(self, members: Sequence[Contribution]) -> ScalarRow:
         rows = [self.rows(part) for part in members]
@@ -262,7 +262,7 @@ class Corruptions:
     def _kinetic(self) -> tuple[Contribution, ...]:
         return tuple(part for part in self.whole if not is_zero(part.T))
 
-    def _pieces(self) -> Iterator[Corruption]:
+    def _pieces(self) -> Iterator[Mistake]:
         """Accelerations, products of speeds and dT/dq of every kinetic energy."""
         operator, u, a = self.parts.operator, self.parts.system.symbols.u, self.parts.system.symbols.a
         sums = [(part, part.T) for part in self._kinetic]
@@ -277,22 +277,22 @@ class Corruptions:
             for k, x in enumerate(a):
                 row = tuple(each[k] * x for each in slopes)
                 name = f"the term with {x.name} of the {of}"
-                yield Corruption(name, "factor", row, PIECES, part.body, squares=True)
+                yield Mistake(name, "factor", row, PIECES, part.body, squares=True)
             first = [gradient(value, u) for value in moving] if len(u) <= MOST_SPEEDS else []
             for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))] if first else ():
                 row = tuple(gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else HALF) for row in first)
                 name = f"{u[i].name}*{u[j].name}" if i != j else f"{u[i].name}^2"
                 kind = "coriolis" if i != j else "factor"
                 title = f"the Coriolis term with {name}" if i != j else f"the term with {name}"
-                yield Corruption(f"{title} of the {of}", kind, row, PIECES, part.body)
+                yield Mistake(f"{title} of the {of}", kind, row, PIECES, part.body)
             mixed = len(u) > 1 and any(depends_on(x, (v,)) for row in first for x, v in zip(row, u, strict=True))
             kind = "coriolis" if mixed else "factor"
-            yield Corruption(f"-dT/dq of the {of}", "factor", held, PIECES + SHORTER, part.body)
+            yield Mistake(f"-dT/dq of the {of}", "factor", held, PIECES + SHORTER, part.body)
             name = f"what d/dt dT/dq' of the {of} holds beside accelerations"
-            yield Corruption(name, kind, carried, PIECES + SHORTER, part.body)
-            yield Corruption(f"all products of speeds in the {of}", kind, tuple(moving), PIECES + SHORTER, part.body)
+            yield Mistake(name, kind, carried, PIECES + SHORTER, part.body)
+            yield Mistake(f"all products of speeds in the {of}", kind, tuple(moving), PIECES + SHORTER, part.body)
 
-    def _products(self) -> Iterator[Corruption]:
+    def _products(self) -> Iterator[Mistake]:
         """In a kinetic energy the product of two speeds: what is lost where only their squares are added."""
         for part in self._kinetic:
             held = symbols_of((part.T,))
@@ -301,11 +301,11 @@ class Corruptions:
                 mixed = gradient(gradient(part.T, (u,))[0], (w,))[0] * u * w
                 name = f"the product {u.name}*{w.name} in the square of the velocity of {part.body}"
                 row = self.rows(replace(part, T=mixed, V=0, Q=(), row=None))
-                yield Corruption(name, "factor", row, SHARED, part.body)
+                yield Mistake(name, "factor", row, SHARED, part.body)
             if part.kind == "translation" and part.body in self.parts.operator.base.motion.index:
                 yield from self._relative(part)
 
-    def _relative(self, part: Contribution) -> Iterator[Corruption]:
+    def _relative(self, part: Contribution) -> Iterator[Mistake]:
         """The product of the velocity of a point and of that beside it: m v_P . (v_C - v_P)."""
         motion = self.parts.operator.base.motion
         mass = mass_properties(motion.scope, part.body)
@@ -320,7 +320,7 @@ class Corruptions:
                 seen.append(w)
                 name = f"the product of the velocities of {_named(motion, place)} and of {part.body} relative to it"
                 row = self.rows(replace(part, T=product, V=0, Q=(), row=None))
-                yield Corruption(name, "factor", row, SHARED, part.body)
+                yield Mistake(name, "factor", row, SHARED, part.body)
 
 
 def _named(motion: Motion, place: BodyPoint) -> str:

@@ -16,13 +16,13 @@ from typing import Any
 from eomgen.documents.latex_math import notation_of
 from eomgen.documents.reaction_values import own_symbol, reaction_name
 from eomgen.errors import DerivationError, ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.balance import balance_of
 from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.text import SLOPE, parse, parse_equation
@@ -32,7 +32,7 @@ LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_for
 """letter -> the function that it stands for"""
 FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
 """the letter of a frequency of small motions"""
-MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
+MULTIPLIER = "lam"  # of a closing row: lam(constraint, 1)
 
 
 @dataclass(frozen=True)
@@ -149,7 +149,7 @@ class Reading:
             found.setdefault(letter, formula)
         for letter, call in self._reactions():
             found.setdefault(letter, _called(call.name, *call.args))
-        normal = [letter for letter in found if letter in {f"N_{tie}" for tie in model.constraints}]
+        normal = [letter for letter in found if letter in {f"N_{constraint}" for constraint in model.constraints}]
         if len(normal) == 1:
             found.setdefault("N", found[normal[0]])
         points = model.named_points if model.space == "plane" and model.bodies else ()
@@ -170,7 +170,7 @@ class Reading:
         return tuple(found)
 
     def _declared_letters(self) -> Iterator[tuple[str, Call]]:
-        """The symbols that joints and ties give their reactions, as plain names, and what each stands for."""
+        """The symbols that joints and constraints give their reactions, as plain names, and what each stands for."""
         for each, call, _ in self._named:
             symbol = own_symbol(balance_of(self.system), each)
             if symbol is not None:
@@ -192,9 +192,9 @@ class Reading:
             for axis in ("x", "y", "z") if model.space == "space" else ("x", "y"):
                 yield f"{letter}_{axis}", Call(f"reaction_{axis}", (Reference(name),))
             yield f"M_{letter}", Call("reaction_couple", (Reference(name),))
-        for row in self.system.ties.closing:
-            multiplier = Call(MULTIPLIER, (Reference(row.tie), Expression.number(row.number)))
-            yield f"lambda_{row.tie}_{row.number}", multiplier
+        for row in self.system.constraints.closing:
+            multiplier = Call(MULTIPLIER, (Reference(row.constraint), Expression.number(row.number)))
+            yield f"lambda_{row.constraint}_{row.number}", multiplier
 
     def read(self, given: Any) -> HandEquation:
         """Both sides of an equation.
@@ -269,7 +269,7 @@ class Reading:
                     sides.append(parse(part, references=True))
                 except ExpressionError as error:
                     column = written.column(start + error.column)
-                    raise ExpressionError(error.what, column, error.mend, error.length) from error
+                    raise ExpressionError(error.what, column, error.fix, error.length) from error
                 start += len(part) + 1
             return sides[0], sides[1]
         if len(parts) < 2:
@@ -343,12 +343,12 @@ def text_of_sympy(given: Any) -> str:
     from sympy.core.function import AppliedUndef
 
     if not isinstance(given, (sympy.Expr, sympy.Equality)):
-        raise ExpressionError(f"{given!r} is no equation", mend="give a text, LaTeX, or sympy.Eq(left, right)")
+        raise ExpressionError(f"{given!r} is no equation", fix="give a text, LaTeX, or sympy.Eq(left, right)")
     rates = {}
     for each in sorted(given.atoms(sympy.Derivative), key=lambda e: -e.derivative_count):
         function, ((_, order), *rest) = each.expr, each.variable_count
         if rest or not isinstance(function, AppliedUndef):
-            raise ExpressionError(f"{each} is no rate of a coordinate", mend="carry the derivative out: .doit()")
+            raise ExpressionError(f"{each} is no rate of a coordinate", fix="carry the derivative out: .doit()")
         rates[each] = sympy.Symbol(f"{type(function).__name__}{chr(39) * int(order)}")
     plain = given.xreplace(rates)
     plain = plain.xreplace({each: sympy.Symbol(type(each).__name__) for each in plain.atoms(AppliedUndef)})

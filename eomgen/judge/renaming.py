@@ -8,13 +8,13 @@ from functools import cache
 from heapq import heappop, heappush
 from itertools import islice, product
 
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
 from eomgen.judge.contributions import ANGLES
-from eomgen.judge.diagnosis import PLAINEST, TERMS, Corruption, Explanation, Share
+from eomgen.judge.diagnosis import PLAINEST, TERMS, Explanation, Mistake, Share
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.truth import truth_of
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -34,11 +34,11 @@ class Renaming:
         values: of each name, with its primes, the scalar.
         told: of each name without primes the text: {phi: "theta - pi/2"}.
         near: whether every name is spelt as what it stands for, but for case and marks, or moves as it does.
-        guessed: a name that does not move stands for a coordinate: where ties hold that at 0, it says nothing.
+        guessed: a name that does not move stands for a coordinate: where constraints hold that at 0, it says nothing.
     """
 
     values: Mapping[str, Scalar]
-    told: Mapping[str, str]
+    reported: Mapping[str, str]
     near: bool = True
     guessed: bool = False
 
@@ -83,20 +83,18 @@ class OtherAxis:
         case = self.case
         for renaming in self._renamings() if number == 1 else ():
             if truth_of(case, case.value(self.written.difference, renaming.values), self.kind).holds:
-                names, values = (" and ".join(some) for some in (renaming.told, renaming.told.values()))
+                names, values = (" and ".join(some) for some in (renaming.reported, renaming.reported.values()))
                 text = (
                     f"sin and cos are exchanged: {names} counted from the other axis, where it is right with {values}"
                 )
                 row = (case.value(self.written.difference),)
-                corruption = Corruption(
-                    f"from where {names} is counted", "wrong_axis", row, TERMS, open=False, text=text
-                )
-                return [Explanation((Share(corruption, Fraction(1)),), 0, PLAINEST + TERMS)]
+                mistake = Mistake(f"from where {names} is counted", "wrong_axis", row, TERMS, open=False, text=text)
+                return [Explanation((Share(mistake, Fraction(1)),), 0, PLAINEST + TERMS)]
         return []
 
     def difference(self, explanation: Explanation) -> str:
         """What is too much on the left."""
-        return excess(self.case, explanation.shares[0].corruption.rows[0])
+        return excess(self.case, explanation.shares[0].mistake.rows[0])
 
     def _renamings(self) -> Iterator[Renaming]:
         case, names = self.case, self.written.names
@@ -170,12 +168,12 @@ def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
 def _renaming(case: Case, named: Mapping[str, tuple[str, int, Scalar]]) -> Renaming:
     names = case.system.scope.names
     values: dict[str, Scalar] = {}
-    told: dict[str, str] = {}
+    reported: dict[str, str] = {}
     for name, (of, sign, shift) in named.items():
         values[name] = sign * names[of] + shift
         for primes in ("'", "''"):
             if of + primes in names:
                 values[name + primes] = sign * names[of + primes]
         if (sign, shift) != (1, 0) or of != name:
-            told[name] = to_text(values[name]) if isinstance(values[name], Node) else str(values[name])
-    return Renaming(values, told)
+            reported[name] = to_text(values[name]) if isinstance(values[name], Node) else str(values[name])
+    return Renaming(values, reported)

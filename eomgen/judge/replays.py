@@ -13,7 +13,7 @@ from typing import Any
 from eomgen.errors import EomgenError
 from eomgen.judge.case import Case
 from eomgen.judge.contributions import FEW
-from eomgen.judge.diagnosis import PLAIN, SHARED, Corruption
+from eomgen.judge.diagnosis import PLAIN, SHARED, Mistake
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.fields import Table
 from eomgen.model.parts import Coordinate, Model
@@ -24,7 +24,7 @@ MOST_LOADS = 30  # of a model that are left out, one by one
 MOST_HELD = 6  # coordinates of a model that are held, one by one
 
 
-def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> Iterator[Corruption]:
+def replays(case: Case, own: Scalar, requested: Callable[[Case], Scalar | None]) -> Iterator[Mistake]:
     """What a value changes by where the model is another one.
 
     Args:
@@ -34,7 +34,7 @@ def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> 
     model = replace(case.model, outputs=Table())
     for name, text, parts in (*_without_forces(model), *_held(model)):
         try:
-            value = asked(replace(case, model=replace(model, **parts)))
+            value = requested(replace(case, model=replace(model, **parts)))
         except (EomgenError, AssertionError, KeyError, StopIteration):
             continue  # such a model has no answer
         if value is None or is_zero(value - own):
@@ -43,18 +43,18 @@ def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> 
             yield from _of_load(case, name, own - value)
         else:
             rank = SHARED if name else SHARED + 1
-            yield Corruption(text, "missing_term", (value - own,), rank, "", name, open=False, text=text)
+            yield Mistake(text, "missing_term", (value - own,), rank, "", name, open=False, text=text)
 
 
-def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Corruption]:
+def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Mistake]:
     """What may be wrong with the share of one load: all of it, a place of it, a term."""
     name = f"the force {force}"
     share = (case.phase.simple(does),)
     rank = PLAIN if case.model.space == "space" else SHARED  # of the plane there are balances
-    yield Corruption(name, "factor", share, rank, "", force)
+    yield Mistake(name, "factor", share, rank, "", force)
     for each in case.edits.of(share):
         text = f"in {name} {each.text}"
-        yield Corruption(name, each.kind, (each.to[0] - share[0],), each.rank, "", force, False, text)
+        yield Mistake(name, each.kind, (each.to[0] - share[0],), each.rank, "", force, False, text)
     parameters = tuple(case.system.symbols.parameters.values())
     yield from WrongTerms(case.edits, parameters, (), name, "", force).in_rows(share)
 

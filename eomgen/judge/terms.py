@@ -14,8 +14,8 @@ from itertools import chain, combinations
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import EXCHANGED, MINUS, ODD, PLAINEST, TERMS, UNUSUAL, USUAL, WELL_KNOWN, simple_factor
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import legible, readable
 from eomgen.symbolic.exact.terms import TooLarge
@@ -301,8 +301,10 @@ class Edits:
         if len(terms) == 2 and None not in terms and all(c == 1 for c in terms.values()):
             a, b = terms
             series = over(a * b, x)  # type: ignore[operator]
-            told = f"{term_text(series)} stands where {term_text(x)} is meant: what adds up is taken to act in series"
-            yield "wrong_formula", series, told, TERMS
+            reported = (
+                f"{term_text(series)} stands where {term_text(x)} is meant: what adds up is taken to act in series"
+            )
+            yield "wrong_formula", series, reported, TERMS
 
     def _ratios(self, powers: Powers) -> Iterator[tuple[Node, Node]]:
         """Parameters of one dimension of which one stands above and one below with the same power."""
@@ -318,8 +320,8 @@ def _of_ratio(x: Node, p: Node, q: Node, k: Fraction) -> Iterator[tuple[str, Sca
     yield "factor", x * power(ratio, -2 * k), f"the ratio {name} is turned over: {q.name}/{p.name} stands there", TERMS
     for other in dict.fromkeys((k - 1, k + 1, 2 * k, k / 2)):
         if other > 0 and other != k:
-            told = (f"({name})" + (f"^{n}" if n != 1 else "") for n in (other, k))
-            there, meant = told
+            reported = (f"({name})" + (f"^{n}" if n != 1 else "") for n in (other, k))
+            there, meant = reported
             square = ": the square is missing" if 2 * other == k else ""
             yield "factor", x * power(ratio, other - k), f"{there} stands where {meant} is meant{square}", EXCHANGED
 
@@ -335,9 +337,9 @@ def _other_waves(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, s
     for op in WAVES if f.op in WAVES else ():
         other = f.graph.call(op, f.args[0])
         if op != f.op and not is_zero(other):
-            told = f"{op} stands for {f.op}({term_text(f.args[0])})"
-            told += ": the angle is taken from the other axis" if "tan" not in (op, f.op) else ""
-            yield "wrong_axis", x * power(over(other, f), k), told, TERMS
+            reported = f"{op} stands for {f.op}({term_text(f.args[0])})"
+            reported += ": the angle is taken from the other axis" if "tan" not in (op, f.op) else ""
+            yield "wrong_axis", x * power(over(other, f), k), reported, TERMS
 
 
 def power(x: Scalar, k: Fraction) -> Scalar:
@@ -382,8 +384,8 @@ def _of_square(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, str
     terms = linear_terms(f) if k == 2 and f.op in ("add", "sub") else {}
     if len(terms) > 1:
         squares = sum((c * c * (1 if t is None else t * t) for t, c in terms.items()), start=0)
-        told = f"of the square of {term_text(f)} the product is missing: the squares of its terms alone stand there"
-        yield "missing_term", over(x * squares, f * f), told, TERMS
+        reported = f"of the square of {term_text(f)} the product is missing: the squares of its terms alone stand there"
+        yield "missing_term", over(x * squares, f * f), reported, TERMS
 
 
 # -- sums ----------------------------------------------------------------------------------------
@@ -395,8 +397,8 @@ def _in_parallel(x: Node, powers: Powers) -> Iterator[tuple[str, Scalar, str, fl
         terms = linear_terms(f) if k == -1 and f.op == "add" else {}
         if len(terms) == 2 and all(n is not None and c == 1 and powers.get(n, 0) >= 1 for n, c in terms.items()):
             a, b = terms
-            told = f"{term_text(f)} stands where {term_text(over(a * b, f))} is meant: what acts in series is added"  # type: ignore[operator]
-            yield "wrong_formula", over(x * f * f, a * b), told, TERMS  # type: ignore[operator]
+            reported = f"{term_text(f)} stands where {term_text(over(a * b, f))} is meant: what acts in series is added"  # type: ignore[operator]
+            yield "wrong_formula", over(x * f * f, a * b), reported, TERMS  # type: ignore[operator]
 
 
 def _of_sum(x: Node) -> Iterator[tuple[str, Scalar, str, float]]:

@@ -11,16 +11,16 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, linearized
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, states_of, vanish_nearly
-from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Corruption, Explanation, Share
+from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistake, Share
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG, short_text, term_text
 from eomgen.judge.verdict import Cause
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import (
     depends_on,
@@ -72,7 +72,7 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
     if found.holds:
         if kind == "motion":
             return Decided(False, why=IDENTITY)
-        return Decided(True, "the ties" if found.on_ties else "")
+        return Decided(True, "the constraints" if found.on_constraints else "")
     undecided = found.holds is None
     if kind == "energy" and _is_constant_of_potential(case, scalar):
         return Decided(True, "a constant of the potential energy")
@@ -81,15 +81,15 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
     if depends_on(scalar, case.forced):
         follows = case.follows(scalar)
         if follows.holds:
-            return _told(case, scalar, kind, follows.rows, follows.on_ties)
+            return _reported(case, scalar, kind, follows.rows, follows.on_constraints)
         undecided = undecided or follows.holds is None
     if kind in ("law", "energy") and (integral := _integral(case, scalar)):
         return integral
     moving = (*case.system.symbols.u, *case.system.symbols.a)
     if depends_on(scalar, moving):
-        told, held = _by_integrals(case, scalar, {})
+        reported, held = _by_integrals(case, scalar, {})
         if held.everywhere or (held and kind not in EVERY_PIECE):
-            return Decided(True, f"{told} from the start{while_(held)}")
+            return Decided(True, f"{reported} from the start{while_(held)}")
     return Decided(None if undecided else False)
 
 
@@ -97,22 +97,22 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> t
     """(by which integrals from the start a scalar vanishes where nodes are replaced, in words, where it does)."""
     if depends_on(scalar, case.system.symbols.lam):
         return "", NOWHERE
-    for told in ("the momenta", "the energy theorem and the momenta"):
-        by_integrals = case.by_momenta if told == "the momenta" else case.speeds
+    for reported in ("the momenta", "the energy theorem and the momenta"):
+        by_integrals = case.by_momenta if reported == "the momenta" else case.speeds
         if not by_integrals:
             continue
         speeds, held = by_integrals
         started = substituted((case.phase.eliminated(scalar),), {**speeds, **known})
         if not case.starting.is_exact:
             if held.everywhere and vanish_nearly(case.system, started):
-                return told, EVERYWHERE
+                return reported, EVERYWHERE
             continue
         of_forces = depends_on(scalar, case.system.symbols.a)  # equations of motion hold in every piece
         found = combination(case.system, started, (), within=not of_forces)
         if found.holds:
-            return told, held
+            return reported, held
         if found.held and (both := held & found.held):
-            return told, both
+            return reported, both
     return "", NOWHERE
 
 
@@ -139,7 +139,7 @@ def says_nothing(case: Case, written: HandEquation) -> bool:
     names = {name: graph.symbol(f"({name})") for name in written.names - plain - {"t", "pi"}}
     scalar = case.evaluated(written.difference, {**own, **names}, opaque)
     found = is_zero_everywhere(case.system, scalar)
-    return bool(found.holds) and not found.on_ties
+    return bool(found.holds) and not found.on_constraints
 
 
 def _is_constant_of_potential(case: Case, scalar: Scalar) -> bool:
@@ -148,7 +148,7 @@ def _is_constant_of_potential(case: Case, scalar: Scalar) -> bool:
     return bool(is_zero_everywhere(case.system, *slopes).holds)
 
 
-def _told(case: Case, scalar: Scalar, kind: str, rows: Sequence[int], on_ties: bool) -> Decided:
+def _reported(case: Case, scalar: Scalar, kind: str, rows: Sequence[int], on_constraints: bool) -> Decided:
     """What was used of the equations of motion, in words; whether they alone satisfy it."""
     n = len(case.rows)
     if kind == "motion" and (why := _has_other_solutions(case, scalar)) is not None:
@@ -160,11 +160,11 @@ def _told(case: Case, scalar: Scalar, kind: str, rows: Sequence[int], on_ties: b
     elif len(names) > 1:
         found.append(f"a combination of the equations of {', '.join(names)}")
     elif names:
-        tied = on_ties or any(k >= n for k in rows)
-        factor = _factor(case, scalar, next(k for k in rows if k < n), case.closing if tied else ())
+        constrained = on_constraints or any(k >= n for k in rows)
+        factor = _factor(case, scalar, next(k for k in rows if k < n), case.closing if constrained else ())
         found += [f"the factor {factor}"] if factor else []
-    if on_ties or any(k >= n for k in rows):
-        found.append("the ties")
+    if on_constraints or any(k >= n for k in rows):
+        found.append("the constraints")
     return Decided(True, " and ".join(found))
 
 
@@ -192,7 +192,7 @@ def _factor(case: Case, scalar: Scalar, row: int, closing: ScalarRow) -> str:
     """What the author multiplied the equation by; "" where that is 1.
 
     Args:
-        closing: rows of the ties that were added to it: of what stands in none of them the slopes are compared.
+        closing: rows of the constraints that were added to it: of what stands in none of them the slopes are compared.
     """
     x = case.leading(case.rows[row], closing)
     if x is None:
@@ -239,7 +239,7 @@ def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Sc
     """Right where the numbers in it are values of the file: of parameters that it does not name."""
     missing = meant_by_numbers(case, written, (scalar, *case.rows))
     found = _holds_with(case, kind, scalar, missing) if missing else None
-    return None if found is None else Decided(True, f"{found.from_start}{values_told(missing)}{while_(found.held)}")
+    return None if found is None else Decided(True, f"{found.from_start}{values_reported(missing)}{while_(found.held)}")
 
 
 def meant_by_numbers(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
@@ -256,7 +256,7 @@ def meant_by_numbers(case: Case, written: HandEquation, scalars: Sequence[Scalar
     return missing if numbers & {abs(x) for x in missing.values() if x not in (0, 1, -1)} else {}
 
 
-def values_told(values: Mapping[Node, Scalar]) -> str:
+def values_reported(values: Mapping[Node, Scalar]) -> str:
     """the values of the file: m = 1, g = 9.81"""
     return "the values of the file: " + ", ".join(f"{x.name} = {readable_text(value)}" for x, value in values.items())
 
@@ -283,11 +283,12 @@ def by_balance(case: Case, kind: str, scalar: Scalar) -> Decided | None:
 
 
 def by_what_is_given(case: Case, written: HandEquation) -> Decided | None:
-    """Right where it follows from the ties, or from given motions, of coordinates that hang on others or on time."""
+    """Right where it follows from the constraints, or from given motions, of coordinates that hang on others or on
+    time."""
     parts = {name.rstrip("'"): case.model.coordinates.get(name.rstrip("'")) for name in written.names}
     given = [f"the given motion of {name}" for name, part in parts.items() if part is not None and part.driven]
-    tied = ["the ties"] if any(part is not None and part.dependent for part in parts.values()) else []
-    return Decided(True, " and ".join([*tied, *given])) if tied or given else None
+    constrained = ["the constraints"] if any(part is not None and part.dependent for part in parts.values()) else []
+    return Decided(True, " and ".join([*constrained, *given])) if constrained or given else None
 
 
 @dataclass(frozen=True)
@@ -347,11 +348,11 @@ def on_one_side(case: Case, written: HandEquation, kind: str, scalar: Scalar) ->
     for signs in product(*(_signs(case, inside) for inside in sizes.values())):
         known = {x: sign * inside for (x, inside), sign in zip(sizes.items(), signs, strict=True)}
         if found := _holds_with(case, kind, scalar, known):
-            told = [
+            reported = [
                 f"{readable_text(inside)} {'>' if sign > 0 else '<'} 0"
                 for inside, sign in zip(sizes.values(), signs, strict=True)
             ]
-            up_to = f"{found.from_start}what holds where {' and '.join(told)}"
+            up_to = f"{found.from_start}what holds where {' and '.join(reported)}"
             return Decided(True, up_to if found.held.everywhere else f"{up_to} and {found.held.text}")
     return None
 
@@ -410,7 +411,7 @@ def _signs(case: Case, inside: Scalar) -> tuple[int, ...]:
 
 
 # -------- rest ------------------------------------------------------------------------------------------------
-# An equation of one coordinate alone -> whether all places that satisfy it are places of rest.
+# An equation of one coordinate alone -> whether all places that satisfy it are equilibria.
 #
 # Rest of what is free: driven coordinates go on as they are driven. The roots of the equation are sought in numbers,
 # at several values of the parameters, and at each of them the forces must balance.
@@ -421,7 +422,8 @@ WIDEST = 3.5  # times the size of a coordinate at the start: as far as roots are
 
 
 def balance_at_rest(case: Case, scalar: Scalar) -> tuple[Node, Scalar] | None:
-    """(the coordinate, its equation of motion at rest); None where there are several, ties, or time stands in it."""
+    """(the coordinate, its equation of motion at rest); None where there are several, constraints, or time stands in
+    it."""
     symbols = case.system.symbols
     if len(case.rows) != 1 or case.closing or symbols.lam or case.system.free is not None:
         return None
@@ -445,7 +447,7 @@ def is_of_rest(case: Case, scalar: Scalar) -> bool | None:
         return None
     q, row = found
     seen = 0
-    for state in islice(states_of(case.system, (scalar, row), on_ties=True), VALUES):
+    for state in islice(states_of(case.system, (scalar, row), on_constraints=True), VALUES):
         values = {x: float(value) for x, value in state.items()}
         for root in sign_changes(scalar, q, values):
             near = _at((row,), q, values, np.array([root]))[0, 0]
@@ -577,29 +579,29 @@ def _put_in(
 
 def of_the_start(case: Case, course: Course) -> str:
     """What differs at the start, in words: x is 0 there, and not x0."""
-    told, at = [], {case.system.symbols.t: 0}
+    reported, at = [], {case.system.symbols.t: 0}
     for x, value in course.known.items():
         if x in case.start and not x.name.endswith("''"):
             mine, own = substituted((value, case.start[x]), at)
             if not case.starts_at_zero(x - mine):
                 texts = (short_text(y, case.system.scope.positive) or "another one" for y in (mine, own))
-                told.append("{} is {}, and not {}".format(x.name, *texts))
-    return " and ".join(told)
+                reported.append("{} is {}, and not {}".format(x.name, *texts))
+    return " and ".join(reported)
 
 
-def mended(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Cause | None:
+def corrected(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Cause | None:
     """The one place of a course that is wrong: with another value there the equations of motion hold, and the start."""
     name, x = written.left.code[0][1], case.value(written.right, constants)
     places = [node for node in order((x,)) if node is not x and depends_on(node, tuple(_constants(case)))]
     for node in [x, *places][:MOST_PLACES] if type(x) is Node else ():
-        for to, kind, told in _others(case, node):
+        for to, kind, reported in _others(case, node):
             try:
                 course = _put_in(case, name, substituted((x,), {node: to})[0], any_start=bool(constants))
             except DerivationError:
                 continue
             if course is not None and course.holds and course.begins:
                 there, meant = term_text(node), term_text(to)
-                text = f"in the course {there} stands where {meant} is meant{told}"
+                text = f"in the course {there} stands where {meant} is meant{reported}"
                 return Cause(kind, text, there, quantity="the course")
     return None
 
@@ -634,7 +636,7 @@ def _others(case: Case, node: Node) -> Iterator[tuple[Scalar, str, str]]:
 
 
 NAME = "the whole equation"
-MOST_FREEDOMS = 4  # of a system whose equations are linearized with all that may be wrong in them
+MOST_DEGREES_OF_FREEDOM = 4  # of a system whose equations are linearized with all that may be wrong in them
 RANK = TERMS + 2 * SHORTER
 
 
@@ -654,7 +656,7 @@ class InSmallMotions:
         """That the equation is linearized, and beside it one mistake less than there are."""
         rows = tuple(x - y for x, y in zip(self.near.rows, self.whole.rows, strict=True))
         text = "sines, cosines and products of speeds are those of a small motion: the equation is linearized"
-        share = Share(Corruption(NAME, "approximation", rows, RANK, open=False, text=text), Fraction(1))
+        share = Share(Mistake(NAME, "approximation", rows, RANK, open=False, text=text), Fraction(1))
         cost = PLAINEST + RANK
         if number == 1:
             alone = Explanation((share,), 0, cost)
@@ -671,7 +673,7 @@ def small_motions(whole: Comparison) -> Iterator[InSmallMotions]:
     """The comparisons with linearized equations of an equation that is linear, where the model's are not."""
     symbols = whole.case.system.symbols
     moving = (*symbols.q, *symbols.u, *symbols.a)
-    if whole.what != "motion" or whole.case.closing or len(whole.rows) > MOST_FREEDOMS or whole.is_long:
+    if whole.what != "motion" or whole.case.closing or len(whole.rows) > MOST_DEGREES_OF_FREEDOM or whole.is_long:
         return
     if not _is_linear((whole.scalar,), moving) or _is_linear(whole.rows, moving):
         return

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.documents.document import Document
 from eomgen.documents.statements import Lines, Step
+from eomgen.frozen import dataclass
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.reading import MULTIPLIER, HandEquation
@@ -28,7 +29,6 @@ from eomgen.model.outputs.points import (
 )
 from eomgen.model.outputs.turning import ANGULAR_ACCELERATION, EPSILON
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted
 from eomgen.symbolic.expression.formula import Call, Expression, Reference, over
@@ -161,16 +161,18 @@ class Verdict:
         Where a letter does not say of what it is, the first in a sentence does: the tension S (cable).
         """
 
-        def told(text: str) -> str:
+        def reported(text: str) -> str:
             for function, letter in letters.items():
                 of = "" if "/" in letter else function.partition("(")[2].removesuffix(")")
                 whole = letter if of in letter else f"{letter} ({of})"
                 text = text.replace(f" {function}", f" {whole}", 1).replace(function, letter)
             return text
 
-        causes = (replace(x, text=told(x.text), term=told(x.term), or_else=told(x.or_else)) for x in self.causes)
-        causes = (replace(x, quantity=told(x.quantity)) for x in causes)
-        return replace(self, difference=told(self.difference), causes=tuple(causes)) if letters else self
+        causes = (
+            replace(x, text=reported(x.text), term=reported(x.term), or_else=reported(x.or_else)) for x in self.causes
+        )
+        causes = (replace(x, quantity=reported(x.quantity)) for x in causes)
+        return replace(self, difference=reported(self.difference), causes=tuple(causes)) if letters else self
 
     def hint(self, level: int = 3) -> str:
         """What helps the author: 1 where to look, 2 at which quantity, 3 the cause."""
@@ -178,7 +180,7 @@ class Verdict:
 
     def as_dict(self, hint: int | None = None) -> dict[str, Any]:
         """For machines; with a hint only what that level tells."""
-        told = {
+        reported = {
             "given": self.given,
             "kind": self.kind,
             "verdict": self.verdict,
@@ -189,9 +191,9 @@ class Verdict:
             "hint": self.hint(hint or 3) or None,
         }
         if hint is not None and hint < 3 and self.verdict == WRONG:
-            told |= {"difference": None, "causes": []}
+            reported |= {"difference": None, "causes": []}
         more: dict[str, Any] = {"unknown": list(self.unknown)} if self.unknown else {}
-        return told | more | ({"reason": self.reason} if self.reason else {})
+        return reported | more | ({"reason": self.reason} if self.reason else {})
 
     def lines(self, hint: int | None = None) -> tuple[str, ...]:
         """As people read it."""
@@ -310,14 +312,14 @@ def _is_another(one: Cause, other: Cause) -> bool:
 
 def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     """The causes; what is missing and what stands there in its place as one."""
-    gone = [k for k, share in enumerate(found.shares) if share.corruption.open and share.factor == 0 and not share.unit]
-    extra = [k for k, share in enumerate(found.shares) if share.corruption.kind == "extra_term"]
+    gone = [k for k, share in enumerate(found.shares) if share.mistake.open and share.factor == 0 and not share.unit]
+    extra = [k for k, share in enumerate(found.shares) if share.mistake.kind == "extra_term"]
     if len(gone) != 1 or len(extra) != 1:
         return causes
     (k,), (j,) = gone, extra
-    rows = found.shares[k].corruption.rows
+    rows = found.shares[k].mistake.rows
     ratio = (
-        over(found.shares[j].corruption.rows[0], rows[max(found.row, 0)]) if not is_zero(rows[max(found.row, 0)]) else 0
+        over(found.shares[j].mistake.rows[0], rows[max(found.row, 0)]) if not is_zero(rows[max(found.row, 0)]) else 0
     )
     symbols = case.system.symbols
     constant = not depends_on(
@@ -326,38 +328,38 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     )
     name, term = causes[k].quantity, causes[k].term
     what = f"{name}, {term}," if term and term not in name else name
-    stands = found.shares[j].corruption.rows[0] * (-1 if found.scale == "opposite" else 1)
+    stands = found.shares[j].mistake.rows[0] * (-1 if found.scale == "opposite" else 1)
     text = f"{what} stands there as {short_text(stands, case.system.scope.positive)}"
     joined = replace(causes[k], kind="factor" if constant else "wrong_quantity", text=text)
     return [joined if i == k else cause for i, cause in enumerate(causes) if i != j]
 
 
-def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: bool = True) -> Cause:
+def cause_of(case: Case, share: Share, row: int, *, reported: bool = True, moving: bool = True) -> Cause:
     """The cause that one corruption is."""
-    corruption, x = share.corruption, share.factor
-    rows = (corruption.rows[row],) if row >= 0 else corruption.rows
+    mistake, x = share.mistake, share.factor
+    rows = (mistake.rows[row],) if row >= 0 else mistake.rows
     term = (
         next(filter(None, (short_text(x, case.system.scope.positive) for x in rows if not is_zero(x))), "")
-        if told
+        if reported
         else ""
     )
-    kind, text = corruption.kind, corruption.text
-    if corruption.open:
-        whole = corruption.kind if moving else "factor"
-        if moving and told and whole == "factor" and _is_coriolis(case, rows):
+    kind, text = mistake.kind, mistake.text
+    if mistake.open:
+        whole = mistake.kind if moving else "factor"
+        if moving and reported and whole == "factor" and _is_coriolis(case, rows):
             whole = "coriolis"
-        speeds = whole == "coriolis" and corruption.name.startswith("all that holds speeds")
-        name = "the Coriolis term" if speeds else corruption.name
+        speeds = whole == "coriolis" and mistake.name.startswith("all that holds speeds")
+        name = "the Coriolis term" if speeds else mistake.name
         kind, text = _of_factor(whole, name, x, share.unit, term)
-    body, force = corruption.body, corruption.force
-    is_term = corruption.name.startswith(("the term ", "the product "))
-    if told and not body and not force and is_term:
+    body, force = mistake.body, mistake.force
+    is_term = mistake.name.startswith(("the term ", "the product "))
+    if reported and not body and not force and is_term:
         total = sum((x for x in rows if not is_zero(x)), start=0)
         held = case.parts.holding(total, "T" if depends_on(total, case.system.symbols.a) else "")
         if len(held) == 1:
             whose = f": it is a term of {held[0].name}" if kind == "extra_term" else f" ({held[0].name})"
             body, force, text = held[0].body, held[0].force, f"{text}{whose}"
-    return Cause(kind, text, term, body, force, corruption.name)
+    return Cause(kind, text, term, body, force, mistake.name)
 
 
 def _of_factor(kind: str, name: str, x: Fraction, unit: str, term: str) -> tuple[str, str]:
@@ -386,7 +388,7 @@ def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
 
 
 def other_calls(case: Case, call: Call) -> Iterator[Call]:
-    """The same function of other points, bodies or ties, one argument changed."""
+    """The same function of other points, bodies or constraints, one argument changed."""
     model = case.model
     for k, argument in enumerate(call.args):
         if not isinstance(argument, Reference):

@@ -6,9 +6,9 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from eomgen.errors import DerivationError
-from eomgen.judge.diagnosis import EXCHANGED, ODD, TERMS, Corruption
+from eomgen.frozen import dataclass
+from eomgen.judge.diagnosis import EXCHANGED, ODD, TERMS, Mistake
 from eomgen.judge.terms import Edits, angles_in, is_product, term_text, terms_of, turned_angles, wrong_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar
 
@@ -33,7 +33,7 @@ class WrongTerms:
     body: str = ""
     force: str = ""
 
-    def in_rows(self, rows: Sequence[Scalar], known: Collection[Term] = ()) -> Iterator[Corruption]:
+    def in_rows(self, rows: Sequence[Scalar], known: Collection[Term] = ()) -> Iterator[Mistake]:
         """Of each row, its terms one by one.
 
         Args:
@@ -45,14 +45,14 @@ class WrongTerms:
                 if (k, term) not in known:
                     yield from self._of_term(term, k, len(rows), terms)
 
-    def _of_term(self, term: Scalar, k: int, number: int, terms: Sequence[Scalar]) -> Iterator[Corruption]:
+    def _of_term(self, term: Scalar, k: int, number: int, terms: Sequence[Scalar]) -> Iterator[Mistake]:
         alone = len(terms) == 1
         name = f"the {'product' if is_product(term, terms) else 'term'} {term_text(term)}"
         name = f"{name} of {self.owner}" if self.owner and not alone else self.owner or name
         if not alone:
             squared = [u for u in self.rates if depends_on(term, (u,))]
             kind = "coriolis" if len(squared) == 2 else "factor"
-            yield Corruption(name, kind, _row(term, k, number), TERMS, self.body, self.force)
+            yield Mistake(name, kind, _row(term, k, number), TERMS, self.body, self.force)
         if type(term) is not Node:
             return
         for each in self.edits.of_term(term):
@@ -70,7 +70,7 @@ class WrongTerms:
                         what = f"{term_text(other)} stands where {u.name} is meant: {of}"
                         yield from self._replaced(name, term, "wrong_quantity", {u: other}, what, ODD, k, number)
 
-    def throughout(self, rows: Sequence[Scalar]) -> Iterator[Corruption]:
+    def throughout(self, rows: Sequence[Scalar]) -> Iterator[Mistake]:
         """What may be wrong in a row wherever it stands: angles, and parameters."""
         for k, row in enumerate(rows):
             whole = sum(terms_of(row, frozenset(self.edits.positive)), start=0)
@@ -78,21 +78,21 @@ class WrongTerms:
                 continue
             for angle in angles_in((whole,)):
                 for kind, mapping, what in turned_angles(angle, (whole,)):
-                    told = what.format(term_text(angle))
-                    yield from self._replaced("everything", whole, kind, mapping, told, EXCHANGED, k, len(rows))
+                    reported = what.format(term_text(angle))
+                    yield from self._replaced("everything", whole, kind, mapping, reported, EXCHANGED, k, len(rows))
             for kind, mapping, what in wrong_parameters(symbols_of((whole,)), self.parameters):
                 rank = EXCHANGED if kind == "wrong_quantity" else ODD
                 yield from self._replaced("everything", whole, kind, mapping, what, rank, k, len(rows))
 
     def _replaced(
         self, name: str, x: Scalar, kind: str, mapping: Mapping[Node, Scalar], what: str, rank: float, k: int, n: int
-    ) -> Iterator[Corruption]:
+    ) -> Iterator[Mistake]:
         with suppress(DerivationError):  # it has no value there
             yield self._changed(name, kind, substituted((x,), mapping)[0] - x, what, rank, k, n)
 
-    def _changed(self, name: str, kind: str, by: Scalar, what: str, rank: float, k: int, n: int) -> Corruption:
+    def _changed(self, name: str, kind: str, by: Scalar, what: str, rank: float, k: int, n: int) -> Mistake:
         text = f"in {name} {what}"
-        return Corruption(name, kind, _row(by, k, n), rank, self.body, self.force, open=False, text=text)
+        return Mistake(name, kind, _row(by, k, n), rank, self.body, self.force, open=False, text=text)
 
 
 def _row(x: Scalar, place: int, number: int) -> tuple[Scalar, ...]:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property, cmp_to_key
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import Motion, velocity_of
 from eomgen.mechanics.kinematics.symbols import Scope
 from eomgen.mechanics.start.exact import known_exactly
 from eomgen.model.composite import about
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import common_factor, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of

@@ -4,11 +4,11 @@ from collections.abc import Iterator
 from functools import cached_property
 from typing import Any
 
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Leaf, WrittenEquation
-from eomgen.model.findings import Finding
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 
 SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
@@ -20,7 +20,7 @@ class Catalog:
     """A model in the making. Parts that could not be read are None; what reading found is in `found`."""
 
     model: Any
-    found: tuple[Finding, ...]
+    found: tuple[Diagnostic, ...]
 
     @cached_property
     def leaves(self) -> tuple[Leaf, ...]:
@@ -84,7 +84,7 @@ class Catalog:
         return self.model.body_points(body) if self.model.bodies.get(body) is not None else ()
 
     def point_names(self) -> list[str]:
-        """Every point that a tie or a force may name."""
+        """Every point that a constraint or a force may name."""
         names = list(self.table("points"))
         names += [f"{body}.{point}" for body in self.table("bodies") for point in self.body_points(body)]
         return names + list(self.nodes)
@@ -96,21 +96,21 @@ class Catalog:
         return tuple(f"{name}.{node}" for name, truss in trusses if truss for node in truss.nodes or {})
 
 
-def findings_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+def diagnostics_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Diagnostic]:
     """Exactly one of these fields is given."""
     given = [key for key in keys if getattr(part, key) is not None]
     listed = " and ".join(f"'{key}'" for key in keys)
     if len(given) > 1:
-        yield Finding((*path, given[1]), f"only one of {listed} can be given ({'.'.join(map(str, path))})", key=True)
+        yield Diagnostic((*path, given[1]), f"only one of {listed} can be given ({'.'.join(map(str, path))})", key=True)
     elif not given and not any((*path, key) in catalog.broken for key in keys):
-        yield Finding(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
+        yield Diagnostic(path, f"one of {listed} is needed ({'.'.join(map(str, path))})")
 
 
-def not_in_the_plane(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Finding]:
+def not_in_the_plane(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Diagnostic]:
     """Fields for space that are given in the plane."""
     for key in keys if catalog.model.space == "plane" else ():
         if getattr(part, key) is not None:
-            yield Finding((*path, key), f"'{key}' of '{path[1]}' is for space", "leave it out", key=True)
+            yield Diagnostic((*path, key), f"'{key}' of '{path[1]}' is for space", "leave it out", key=True)
 
 
 def is_round(catalog: Catalog, body: Any, sizes: tuple[str, ...] = ("radius",)) -> bool:

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import cos, over, sin
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.expression.spatial import (

@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.model.kinds import Resistance
 from eomgen.model.parts import Body, Model
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 
 
 @dataclass(frozen=True)
 class Contact:
-    """A tie, or the joint of a body on a path.
+    """A constraint, or the joint of a body on a path.
 
     Args:
-        name: of the tie, or of the body.
+        name: of the constraint, or of the body.
         kind: as the model file says it: "support", "link", "path".
         of_joint: the contact of a body with its path.
         pulls: a wire or string, which goes slack; anything else opens.
@@ -51,15 +51,15 @@ class Contact:
 
 
 def contacts_of(model: Model) -> tuple[Contact, ...]:
-    """Every tie that can end or has friction, and every body with friction on its path."""
+    """Every constraint that can end or has friction, and every body with friction on its path."""
     laws = ((name, getattr(body.joint, "friction", None)) for name, body in model.bodies.items())
-    return (*_ties(model), *(_on_path(model, name, law) for name, law in laws if law is not None))
+    return (*_constraints(model), *(_on_path(model, name, law) for name, law in laws if law is not None))
 
 
 def rough_contacts(model: Model) -> tuple[Contact, ...]:
-    """Every tie with dry friction, and every body on a path of which a piece has it."""
+    """Every constraint with dry friction, and every body on a path of which a piece has it."""
     pieces = (_on_path(model, name, piece.friction) for name, body in model.bodies.items() for piece in pieces_of(body))
-    return tuple(contact for contact in (*_ties(model), *pieces) if contact.mu is not None)
+    return tuple(contact for contact in (*_constraints(model), *pieces) if contact.mu is not None)
 
 
 def pieces_of(body: Body) -> tuple[Any, ...]:
@@ -71,17 +71,17 @@ def _on_path(model: Model, body: str, law: Resistance | None) -> Contact:
     return Contact(body, "path", False, law, of_joint=True, round=model.space == "space")
 
 
-def _ties(model: Model) -> Iterator[Contact]:
-    for name, tie in model.constraints.items():
-        friction, unilateral = getattr(tie, "friction", None), bool(getattr(tie, "unilateral", False))
+def _constraints(model: Model) -> Iterator[Contact]:
+    for name, constraint in model.constraints.items():
+        friction, unilateral = getattr(constraint, "friction", None), bool(getattr(constraint, "unilateral", False))
         if unilateral or friction is not None:
             rough = model.space == "space" and friction is not None
             yield Contact(
                 name,
-                tie.kind,
+                constraint.kind,
                 unilateral,
                 friction,
-                pulls=tie.pulls,
-                surface=rough and not tie.on_line,
-                round=rough and tie.on_line,
+                pulls=constraint.pulls,
+                surface=rough and not constraint.on_line,
+                round=rough and constraint.on_line,
             )

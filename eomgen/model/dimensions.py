@@ -6,12 +6,12 @@ from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.fields import Leaf, WrittenEquation, named
-from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import formula_at
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import (
     NUMBER,
     SECOND,
@@ -30,7 +30,7 @@ RATES = {"start": 0, "near": 0, "motion": 0, "speed": 1, "rate": 1, "acceleratio
 """The fields of a coordinate: how often it is differentiated in each."""
 
 
-def dimensions(catalog: Catalog) -> Iterator[Finding]:
+def dimensions(catalog: Catalog) -> Iterator[Diagnostic]:
     """Terms whose declared units do not fit one another, or the place in which they stand."""
     yield from inferred(catalog).errors
 
@@ -45,8 +45,8 @@ class Inferred:
         names: the dimension of every name, with its unknowns.
     """
 
-    errors: tuple[Finding, ...]
-    warnings: tuple[Finding, ...]
+    errors: tuple[Diagnostic, ...]
+    warnings: tuple[Diagnostic, ...]
     names: Names
     found: dict[str, Dimension]
 
@@ -75,7 +75,7 @@ class Names:
         return found if base == name else found.times(SECOND, len(base) - len(name))
 
     def of_call(self, call: Call) -> Dimension | None:
-        """Of a function of the motion; None where a tie's gap decides it, or it is none."""
+        """Of a function of the motion; None where a constraint's gap decides it, or it is none."""
         function = FUNCTIONS.get(call.name)
         if function is None or max(function.per, default=-1) >= len(call.args):
             return None
@@ -92,7 +92,7 @@ class Names:
 
     def walk(self) -> Walk:
         """One pass over a formula, whatever does not fit in it left alone."""
-        return Walk(self.of, self.inference, self.of_call, self.parameters, self.moves, mends=False)
+        return Walk(self.of, self.inference, self.of_call, self.parameters, self.moves, fixes=False)
 
     def is_declared(self, name: str) -> bool:
         """By the file itself: what a joint implies of its speeds may hide a factor 1: `couple = ["-w1", 0, 0]`."""
@@ -102,18 +102,20 @@ class Names:
 def inferred(catalog: Catalog) -> Inferred:
     """Every expression of a model walked through once."""
     names, sound = Names(catalog), []
-    errors: list[Finding] = []
-    warnings: list[Finding] = []
+    errors: list[Diagnostic] = []
+    warnings: list[Diagnostic] = []
     for leaf in catalog.leaves:
         clashes = list(_clashes(catalog, leaf, names, strict=False))[:1]  # what follows from it is no news
         for clash in clashes:
             certain = bool(clash.names) and all(names.is_declared(name) for name in clash.names)
-            (errors if certain else warnings).append(_finding(catalog, leaf, clash, names))
+            (errors if certain else warnings).append(_diagnostic(catalog, leaf, clash, names))
         if not clashes:
             sound.append(leaf)
     found = {name: names.inference.reduced(names.of(name)) for name in catalog.symbols if name not in ("t", "pi")}
     strict = (
-        _finding(catalog, leaf, clash, names) for leaf in sound for clash in _clashes(catalog, leaf, names, strict=True)
+        _diagnostic(catalog, leaf, clash, names)
+        for leaf in sound
+        for clash in _clashes(catalog, leaf, names, strict=True)
     )
     return Inferred(tuple(errors), (*warnings, *strict), names, found)
 
@@ -186,8 +188,8 @@ def _needed(leaf: Leaf, names: Names) -> Dimension | None:
     return None if unit is None else _dimension(unit)
 
 
-def _finding(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Finding:
-    what, mend = clash.what, clash.mend
+def _diagnostic(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Diagnostic:
+    what, fix = clash.what, clash.fix
     if clash.other is None and not clash.in_function:
         name = clash.one.text
         kind = catalog.symbols.get(name)
@@ -197,9 +199,9 @@ def _finding(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Findin
         needed = str(clash.needed) if equation else _own_text(leaf) or str(clash.needed)
         place = "the left side" if equation else whereabouts(leaf.path)
         what = f"{whole} is in {unit}, but {place} is in {named(needed)}"
-        mend = mend or ("" if kind is None else f"give another {kind}, or mend its unit")
+        fix = fix or ("" if kind is None else f"give another {kind}, or fix its unit")
     other = None if clash.other is None else (clash.other.column, len(clash.other.text))
-    return Finding(leaf.path, what, mend, clash.one.column, len(clash.one.text), beside=other)
+    return Diagnostic(leaf.path, what, fix, clash.one.column, len(clash.one.text), beside=other)
 
 
 def _own_text(leaf: Leaf) -> str | None:

@@ -1,6 +1,6 @@
 """What a model moves by itself: driven coordinates, laws of inputs, speeds at the start.
 
-Model -> the coordinates that move as functions of time: driven by themselves, or by a tie that says so.
+Model -> the coordinates that move as functions of time: driven by themselves, or by a constraint that says so.
 """
 
 from __future__ import annotations
@@ -12,19 +12,19 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import nearest
 from eomgen.model.fields import MOTION, Table, WrittenEquation
-from eomgen.model.findings import nearest
 from eomgen.model.part import Part, altered, part_of_values, slots_of
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference
 from eomgen.symbolic.expression.text import as_expression
 
 
-def driving_ties(model: Model) -> dict[str, tuple[str, ...]]:
-    """{coordinate: the ties that give it as a function of time}, of those that have one."""
+def driving_constraints(model: Model) -> dict[str, tuple[str, ...]]:
+    """{coordinate: the constraints that give it as a function of time}, of those that have one."""
     found: dict[str, tuple[str, ...]] = {}
-    for name, tie in model.constraints.items():
-        if coordinate := tie.drives():
+    for name, constraint in model.constraints.items():
+        if coordinate := constraint.drives():
             found[coordinate] = (*found.get(coordinate, ()), name)
     return found
 
@@ -32,7 +32,7 @@ def driving_ties(model: Model) -> dict[str, tuple[str, ...]]:
 def driven_coordinates(model: Model) -> frozenset[str]:
     """The names of all of them."""
     own = (name for name, part in model.coordinates.items() if part.driven)
-    return frozenset((*own, *driving_ties(model)))
+    return frozenset((*own, *driving_constraints(model)))
 
 
 # -------- feedback --------------------------------------------------------------------------------------------
@@ -70,7 +70,7 @@ def with_feedback(model: Model, laws: Laws) -> Model:
         if strangers:
             what = f"inputs: {name} = {law.text}: '{strangers[0]}' cannot stand in it"
             raise UsageError(
-                what, mend=nearest(strangers[0], allowed) or "coordinates, rates, t, parameters, other inputs"
+                what, fix=nearest(strangers[0], allowed) or "coordinates, rates, t, parameters, other inputs"
             )
     left = {name: part for name, part in model.inputs.items() if name not in laws}
     fields = {slot.name: getattr(model, slot.name) for slot in slots_of(Model) if slot.name != "inputs"}

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
-from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import Decimal, Diagnostic, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.rational import EXACT
 from eomgen.symbolic.expression.text import as_expression
@@ -48,16 +48,16 @@ class WholeRule:
         yield Leaf(path, self, value, part)
 
 
-def read_text(parse: Callable[[], Parsed], raw: Any, path: DocumentPath, found: list[Finding]) -> Parsed | None:
+def read_text(parse: Callable[[], Parsed], raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Parsed | None:
     """What a grammar makes of a text; what is wrong with it is found at its column."""
     try:
         return parse()
     except ExpressionError as error:
-        found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
+        found.append(Diagnostic(path, error.what, error.fix, error.column, error.length, raw=raw))
         return None
 
 
-def read_items(rule: Any, raw: Iterable[Any], path: DocumentPath, found: list[Finding]) -> tuple[Any, ...] | None:
+def read_items(rule: Any, raw: Iterable[Any], path: DocumentPath, found: list[Diagnostic]) -> tuple[Any, ...] | None:
     """Every item by one rule; None where one of them is wrong."""
     items = [rule.read(x, (*path, i), found) for i, x in enumerate(raw)]
     return None if None in items else tuple(items)
@@ -89,22 +89,22 @@ class FormulaRule(WholeRule):
     same_as: str = ""
     works_on: str = ""
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, Mapping):
             return self._quantity(raw, path, found)
         if isinstance(raw, str) and raw in self.words:
             return str(raw)
         return _expression(raw, path, found, references=bool(self.functions))
 
-    def _quantity(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Finding]) -> Expression | None:
+    def _quantity(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Diagnostic]) -> Expression | None:
         unknown_keys(raw, ("value", "unit"), path, found, "a quantity")
         if "value" not in raw:
-            found.append(Finding(path, "a quantity without 'value'", 'write { value = 40, unit = "cm" }'))
+            found.append(Diagnostic(path, "a quantity without 'value'", 'write { value = 40, unit = "cm" }'))
             return None
         unit = UNIT.read(raw["unit"], (*path, "unit"), found) if "unit" in raw else None
         if unit is not None and self.unit is not None and not unit.fits(parse_unit(self.unit)):
             what = f"the unit '{unit.text}' does not fit: this is in {named(self.unit)}"
-            found.append(Finding((*path, "unit"), what))
+            found.append(Diagnostic((*path, "unit"), what))
         value = _expression(raw["value"], (*path, "value"), found)
         if value is not None and unit is not None and is_mixed(value, unit):
             found.append(mixed(value, unit, (*path, "value")))
@@ -131,15 +131,15 @@ def is_mixed(value: Expression, unit: Unit) -> bool:
     return bool(value.names - {"pi", "t"}) and (unit.factor != 1 or unit.pi_power != 0)
 
 
-def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Finding:
+def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Diagnostic:
     """What is wrong with a value that is_mixed."""
     what = f"'{value.text}' has names in it, which are in SI, but the unit '{unit.text}' is not"
-    return Finding(path, what, "leave the unit out, or give it to the numbers")
+    return Diagnostic(path, what, "leave the unit out, or give it to the numbers")
 
 
-def _expression(raw: Any, path: DocumentPath, found: list[Finding], references: bool = False) -> Expression | None:
+def _expression(raw: Any, path: DocumentPath, found: list[Diagnostic], references: bool = False) -> Expression | None:
     if isinstance(raw, bool) or not isinstance(raw, (float, str, *EXACT, Expression)):
-        found.append(Finding(path, f"a number or an expression is needed here, not {shown(raw)}"))
+        found.append(Diagnostic(path, f"a number or an expression is needed here, not {shown(raw)}"))
         return None
     return read_text(lambda: as_expression(raw, references=references), raw, path, found)
 
@@ -150,7 +150,7 @@ class OutputRule(WholeRule):
 
     scope: str = EVERYTHING
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Expression | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Expression | None:
         return _expression(raw, path, found, references=True)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
@@ -177,11 +177,11 @@ class EquationRule(WholeRule):
 
     scope: str = EVERYTHING
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> WrittenEquation | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> WrittenEquation | None:
         if isinstance(raw, WrittenEquation):
             return raw
         if not isinstance(raw, str) or isinstance(raw, Decimal):
-            found.append(Finding(path, f"an equation is needed here, not {shown(raw)}", 'like "theta = pi/2"'))
+            found.append(Diagnostic(path, f"an equation is needed here, not {shown(raw)}", 'like "theta = pi/2"'))
             return None
         sides = read_text(lambda: parse_typed_equation(raw), raw, path, found)
         if sides is None:
@@ -204,7 +204,7 @@ class AtRest:
 class InstantRule(EquationRule):
     """An equation that says when, or the word "equilibrium"."""
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, AtRest) or raw == AtRest.text:
             return AtRest()
         return EquationRule.read(self, raw, path, found)
@@ -232,14 +232,14 @@ class VectorRule:
     nonzero: bool = False
     downward: bool = False
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if (self.point or self.own_point) and isinstance(raw, str) and not isinstance(raw, Decimal):
             return str(raw)
         if not isinstance(raw, (list, tuple)):
             of = "ground" if self.point else "body"
             also = f" or the name of a point of the {of}" if self.point or self.own_point else ""
             what = f"a list of components{also} is needed here, not {shown(raw)}"
-            found.append(Finding(path, what, 'write one for each axis: [1, 0], [0, "-g"]'))
+            found.append(Diagnostic(path, what, 'write one for each axis: [1, 0], [0, "-g"]'))
             return None
         return read_items(self.item, raw, path, found)
 
@@ -267,7 +267,7 @@ class AxialRule:
     item: FormulaRule
     lengths: tuple[int, ...] = (3,)
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if not isinstance(raw, (list, tuple)):
             value = self.item.read(raw, path, found)
             return None if value is None else (value,)
@@ -295,12 +295,12 @@ class NameRule(WholeRule):
 
     of: str
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> str | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> str | None:
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
-        mend = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
+        fix = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
         what = f"the name of {article(self.of)} is needed here, not {shown(raw)}"
-        found.append(Finding(path, what, mend if self.of == "point" else ""))
+        found.append(Diagnostic(path, what, fix if self.of == "point" else ""))
         return None
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
@@ -313,15 +313,15 @@ class TextRule(WholeRule):
 
     options: tuple[str, ...] = ()
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> str | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> str | None:
         if not isinstance(raw, str) or isinstance(raw, Decimal):
-            mend = "write " + " or ".join(f'"{word}"' for word in self.options) if self.options else ""
-            found.append(Finding(path, f"a text is needed here, not {shown(raw)}", mend))
+            fix = "write " + " or ".join(f'"{word}"' for word in self.options) if self.options else ""
+            found.append(Diagnostic(path, f"a text is needed here, not {shown(raw)}", fix))
             return None
         if self.options and raw not in self.options:
             listed = ", ".join(f"'{word}'" for word in self.options)
-            mend = nearest(raw, self.options) or f"use one of {listed}"
-            found.append(Finding(path, f"unknown word {shown(raw)}", mend))
+            fix = nearest(raw, self.options) or f"use one of {listed}"
+            found.append(Diagnostic(path, f"unknown word {shown(raw)}", fix))
             return None
         return str(raw)
 
@@ -333,13 +333,15 @@ class TextRule(WholeRule):
 class EventRule(WholeRule):
     """Which of several events: a number from 1 on, or "every"."""
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> int | str | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> int | str | None:
         whole = not isinstance(raw, (bool, str)) and isinstance(raw, (int, Decimal)) and raw == int(raw)
         if raw == EVERY:
             return EVERY
         if whole and int(raw) >= 1:
             return int(raw)
-        found.append(Finding(path, f"the number of an event is needed here, not {shown(raw)}", f'like 2, or "{EVERY}"'))
+        found.append(
+            Diagnostic(path, f"the number of an event is needed here, not {shown(raw)}", f'like 2, or "{EVERY}"')
+        )
         return None
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
@@ -350,10 +352,10 @@ class EventRule(WholeRule):
 class FlagRule(WholeRule):
     """true or false."""
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> bool | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> bool | None:
         if isinstance(raw, bool):
             return raw
-        found.append(Finding(path, f"true or false is needed here, not {shown(raw)}"))
+        found.append(Diagnostic(path, f"true or false is needed here, not {shown(raw)}"))
         return None
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
@@ -368,7 +370,7 @@ class ParsedTextRule(WholeRule, Generic[Parsed]):
         of: what it is read into.
         parse: reads it.
         needed: what is asked for.
-        like: an example, as the mend of another thing.
+        like: an example, as the fix of another thing.
         limits: of the text, in the words of JSON Schema.
     """
 
@@ -378,11 +380,11 @@ class ParsedTextRule(WholeRule, Generic[Parsed]):
     like: str
     limits: tuple[tuple[str, int], ...] = ()
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Parsed | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Parsed | None:
         if isinstance(raw, self.of):
             return raw
         if not isinstance(raw, str) or isinstance(raw, Decimal):
-            found.append(Finding(path, f"{self.needed} is needed here, not {shown(raw)}", self.like))
+            found.append(Diagnostic(path, f"{self.needed} is needed here, not {shown(raw)}", self.like))
             return None
         return read_text(lambda: self.parse(raw), raw, path, found)
 
@@ -442,17 +444,17 @@ class ListRule:
     most: int | None = None
     single: bool = False
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> tuple[Any, ...] | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> tuple[Any, ...] | None:
         if self.single and not isinstance(raw, (list, tuple)):
             one = self.item.read(raw, path, found)
             return None if one is None else (one,)
         if not isinstance(raw, (list, tuple)):
-            found.append(Finding(path, f"a list is needed here, not {shown(raw)}"))
+            found.append(Diagnostic(path, f"a list is needed here, not {shown(raw)}"))
             return None
         if len(raw) < self.least or (self.most is not None and len(raw) > self.most):
             count = str(self.least) if self.least == self.most else f"at least {self.least}"
             count = f"at most {self.most}" if self.most is not None and len(raw) > self.most > self.least else count
-            found.append(Finding(path, f"{count} entries are needed here, not {len(raw)}"))
+            found.append(Diagnostic(path, f"{count} entries are needed here, not {len(raw)}"))
             return None
         return read_items(self.item, raw, path, found)
 
@@ -474,9 +476,9 @@ class TableRule:
     item: Any
     what: str
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Table[Any] | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Table[Any] | None:
         if not isinstance(raw, Mapping):
-            found.append(Finding(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
+            found.append(Diagnostic(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
             return None
         return Table({str(name): self.item.read(x, (*path, name), found) for name, x in raw.items()})
 
@@ -499,7 +501,7 @@ class EitherRule:
     def _rule(self, value: Any) -> Any:
         return self.text if isinstance(value, str) and not isinstance(value, Decimal) else self.other
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         return self._rule(raw).read(raw, path, found)
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:

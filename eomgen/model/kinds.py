@@ -6,6 +6,8 @@ The concepts that several parts share, each with its rule: what a mass, a length
 from collections.abc import Callable, Iterator, Mapping
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import Diagnostic, unknown_keys
 from eomgen.model.fields import (
     CONFIGURATION,
     MOTION,
@@ -23,11 +25,9 @@ from eomgen.model.fields import (
     TextRule,
     VectorRule,
 )
-from eomgen.model.findings import Finding, unknown_keys
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.samples import TimeLawRule
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.splines import SMOOTH
 from eomgen.symbolic.print.names import LONGEST, Symbol, parse_symbol
@@ -125,7 +125,7 @@ SYMBOL = ParsedTextRule(
 
 @dataclass(frozen=True)
 class ReactionSymbols:
-    """What the reactions of a joint or a tie are called.
+    """What the reactions of a joint or a constraint are called.
 
     Args:
         letter: of all of them: A gives A_x, A_y, M_A; of one that is alone its symbol.
@@ -140,7 +140,7 @@ class ReactionSymbols:
 class ReactionSymbolsRule:
     """One symbol for all reactions, or a table with one for each: { x = 'H', y = 'V' }."""
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> ReactionSymbols | None:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> ReactionSymbols | None:
         if isinstance(raw, ReactionSymbols):
             return raw
         if not isinstance(raw, Mapping):

@@ -7,24 +7,24 @@ from typing import Any
 from eomgen.errors import ModelError, Problem
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.everything import ALL
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import Table, WrittenEquation
-from eomgen.model.findings import Finding
 from eomgen.model.part import Made, altered, read_part, slots_of
 from eomgen.model.typed import Typing, typing_of
 
-MOST_FINDINGS = 200  # of one model: more say nothing new
+MOST_DIAGNOSTICS = 200  # of one model: more say nothing new
 
 
-def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Finding]) -> Any:
+def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
     """A model from the tables of a file, unchecked; what could not be read is None and among the findings."""
     return read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
 
 
-def findings_of(model: Any, found: list[Finding]) -> list[Finding]:
+def diagnostics_of(model: Any, found: list[Diagnostic]) -> list[Diagnostic]:
     """What is wrong with a model that was read, beyond what reading found already."""
     catalog = Catalog(model, tuple(found))
-    every = (finding for check in ALL for finding in check(catalog))
-    return list(dict.fromkeys(islice(every, MOST_FINDINGS)))
+    every = (diagnostic for check in ALL for diagnostic in check(catalog))
+    return list(dict.fromkeys(islice(every, MOST_DIAGNOSTICS)))
 
 
 def finish(model: Any) -> None:
@@ -33,14 +33,14 @@ def finish(model: Any) -> None:
     Raises:
         ModelError: every problem at once, by path ("bodies.arm.joint.on").
     """
-    found: list[Finding] = []
+    found: list[Diagnostic] = []
     for slot in slots_of(type(model)):
         raw = getattr(model, slot.name)
         if raw is not slot.default:
             object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
-    found += findings_of(model, found)
+    found += diagnostics_of(model, found)
     if found:
-        raise ModelError(tuple(Problem(".".join(map(str, f.path)), f.what, mend=f.mend) for f in found))
+        raise ModelError(tuple(Problem(".".join(map(str, f.path)), f.what, fix=f.fix) for f in found))
     for name, value in _resolved_tables(model).items():
         object.__setattr__(model, name, value)
 
@@ -70,19 +70,19 @@ def _resolved_tables(model: Any) -> dict[str, Any]:
 
 
 def _with_centers(model: Any) -> tuple[Table[Any], dict[str, dict[str, Any]]]:
-    """The ties, each place that is the center of a body a point of it; and these points, by body."""
+    """The constraints, each place that is the center of a body a point of it; and these points, by body."""
     found: dict[str, Any] = {}
     points: dict[str, dict[str, Any]] = {}
-    for name, tie in model.constraints.items():
-        center = getattr(tie, "center", None)
-        found[name] = tie
+    for name, constraint in model.constraints.items():
+        center = getattr(constraint, "center", None)
+        found[name] = constraint
         if isinstance(center, tuple):
-            body = model.bodies[tie.body]
+            body = model.bodies[constraint.body]
             own = f"center_of_{name}"
-            while own in (body.points or {}) or own in points.get(tie.body, {}):
+            while own in (body.points or {}) or own in points.get(constraint.body, {}):
                 own += "_"
-            points.setdefault(tie.body, {})[own] = center
-            found[name] = altered(tie, center=own)
+            points.setdefault(constraint.body, {})[own] = center
+            found[name] = altered(constraint, center=own)
     return Table(found), points
 
 

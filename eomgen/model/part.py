@@ -8,10 +8,10 @@ from types import NoneType, UnionType
 from typing import Any, ClassVar, TypeVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import Diagnostic, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.fields import Leaf, WrittenEquation, in_si
-from eomgen.model.findings import Finding, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.text import other_words
 from eomgen.symbolic.expression.units import Unit
@@ -118,7 +118,7 @@ class Part:
         return f"{type(self).__name__}({', '.join(f'{name}={_shown(value)}' for name, value in given)})"
 
     def __post_init__(self) -> None:
-        found: list[Finding] = []
+        found: list[Diagnostic] = []
         raw = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
         given = [slot for slot in slots_of(type(self)) if raw[slot.name] is not slot.default]
         values = {slot.name: slot.rule.read(raw[slot.name], (slot.key,), found) for slot in given}
@@ -126,7 +126,7 @@ class Part:
             object.__setattr__(self, name, value)
         if found:
             raise ModelError(
-                tuple(Problem(".".join([title_of(type(self)), *map(str, f.path)]), f.what, mend=f.mend) for f in found)
+                tuple(Problem(".".join([title_of(type(self)), *map(str, f.path)]), f.what, fix=f.fix) for f in found)
             )
 
 
@@ -158,17 +158,17 @@ class PartRule:
 
     cls: Any
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, self.cls):
             return raw
         if not isinstance(raw, Mapping):
             if not self.cls.shorthand or isinstance(raw, (list, tuple)):
-                found.append(Finding(path, f"a table is needed here ({title_of(self.cls)}), not {shown(raw)}"))
+                found.append(Diagnostic(path, f"a table is needed here ({title_of(self.cls)}), not {shown(raw)}"))
                 return None
             return self._shorthand(raw, path, found)
         return read_part(self.cls, raw, path, found)
 
-    def _shorthand(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def _shorthand(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         (slot,) = (s for s in slots_of(self.cls) if s.name == self.cls.shorthand)
         return part_of_values(self.cls, {slot.name: slot.rule.read(raw, path, found)})
 
@@ -180,7 +180,7 @@ class PartRule:
 
 
 def read_part(
-    cls: Any, raw: Mapping[str, Any], path: DocumentPath, found: list[Finding], known: tuple[str, ...] = ()
+    cls: Any, raw: Mapping[str, Any], path: DocumentPath, found: list[Diagnostic], known: tuple[str, ...] = ()
 ) -> Any:
     """A part from a table: unknown keys and missing ones are findings; what can be read is kept."""
     slots = slots_of(cls)
@@ -201,14 +201,16 @@ def read_part(
         elif slot.key in raw:
             values[slot.name] = slot.rule.read(raw[slot.key], (*path, slot.key), found)
         elif slot.required:
-            found.append(Finding(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'"))
+            found.append(
+                Diagnostic(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'")
+            )
             values[slot.name] = None
     return part_of_values(cls, _in_si(cls, values, raw))
 
 
-def _read_instead(slot: Slot, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+def _read_instead(slot: Slot, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
     """A value under a key that was mistyped, so that what follows from it is no error; a table tells its own."""
-    wrong: list[Finding] = []
+    wrong: list[Diagnostic] = []
     value = slot.rule.read(raw, path, wrong)
     if isinstance(raw, Mapping):
         found += wrong
@@ -240,31 +242,31 @@ class SeamRule:
     what: str
     members: tuple[Any, ...]
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding], beside: tuple[str, ...] = ()) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic], beside: tuple[str, ...] = ()) -> Any:
         """A member of the seam; the keys `beside` its own are read already, and are known here."""
         if isinstance(raw, self.members):
             return raw
         if not isinstance(raw, Mapping):
             named = f"each has a name of its own: [{path[0]}.NAME]" if len(path) == 2 else ""
-            found.append(Finding(path, f"a {self.what} is a table with a 'kind', not {shown(raw)}", named))
+            found.append(Diagnostic(path, f"a {self.what} is a table with a 'kind', not {shown(raw)}", named))
             return None
         kinds = {member.kind: member for member in self.members}
         kind = raw.get("kind")
         given = next((key for key in raw if other_words(str(key), ("kind",)) and key not in beside), None)
         if kind is None and given is not None:
             found.append(
-                Finding(
+                Diagnostic(
                     (*path, given), f"unknown key '{given}' in {whereabouts(path, self.what)}", "write kind", key=True
                 )
             )
             return self.read({**{k: x for k, x in raw.items() if k != given}, "kind": raw[given]}, path, found, beside)
         if kind is None:
             what = f"{whereabouts(path, self.what)} has no 'kind'"
-            found.append(Finding(path, what, f"one of {', '.join(kinds)}", raw=raw))
+            found.append(Diagnostic(path, what, f"one of {', '.join(kinds)}", raw=raw))
             return None
         if not isinstance(kind, str) or kind not in kinds:
-            mend = nearest(str(kind), kinds) or f"one of {', '.join(kinds)}"
-            found.append(Finding((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", mend, raw=raw))
+            fix = nearest(str(kind), kinds) or f"one of {', '.join(kinds)}"
+            found.append(Diagnostic((*path, "kind"), f"unknown kind of {self.what}: {shown(kind)}", fix, raw=raw))
             return self._as_meant(kinds, str(kind), raw, path, found, beside)
         return read_part(kinds[kind], raw, path, found, known=("kind", *beside))
 
@@ -274,12 +276,12 @@ class SeamRule:
         kind: str,
         raw: Mapping[str, Any],
         path: DocumentPath,
-        found: list[Finding],
+        found: list[Diagnostic],
         beside: tuple[str, ...],
     ) -> Any:
         """A member whose kind was mistyped, read as the one that its keys fit, with its other errors; else None."""
         for guess in meant(kind, kinds)[:1]:
-            wrong: list[Finding] = []
+            wrong: list[Diagnostic] = []
             value = read_part(kinds[guess], raw, path, wrong, known=("kind", *beside))
             if not any(each.key or each.path == path for each in wrong):
                 found += wrong

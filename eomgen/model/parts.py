@@ -5,6 +5,7 @@ from importlib import import_module
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import EomgenError
+from eomgen.frozen import RECALLED, dataclass
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
 from eomgen.model.fields import (
@@ -45,7 +46,6 @@ from eomgen.model.kinds import (
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
-from eomgen.records import RECALLED, dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.units import Unit
 
@@ -238,7 +238,7 @@ class Linearize(Part):
     """The state about which the equations are linearized, and in which coordinates.
 
     Args:
-        about: the place of rest nearest to the start; the start, which must be a steady motion; or the steady motion
+        about: the equilibrium nearest to the start; the start, which must be a steady motion; or the steady motion
             sought from there.
         coordinates: that are asked for alone (None: all).
     """

@@ -5,7 +5,7 @@ from bisect import bisect_right
 from contextlib import suppress
 from dataclasses import field
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 DocumentPath = tuple[str | int, ...]
 

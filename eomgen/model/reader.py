@@ -11,8 +11,8 @@ from typing import Any
 
 from eomgen.errors import ModelError, Problem, UsageError
 from eomgen.files import read, read_stdin
-from eomgen.model.findings import TABLES, Decimal, Finding, shown
-from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
+from eomgen.model.diagnostics import TABLES, Decimal, Diagnostic, shown
+from eomgen.model.making import MOST_DIAGNOSTICS, diagnostics_of, draft_of, resolved
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
 from eomgen.model.replaced import Values, with_values
@@ -43,14 +43,14 @@ def bytes_at(path: str | FilePath) -> bytes:
         UsageError: no path is given.
     """
     if not isinstance(path, (str, os.PathLike)):
-        raise UsageError(f"{path!r} is neither a model nor a path to one", mend='give eomgen.load("crane.toml")')
+        raise UsageError(f"{path!r} is neither a model nor a path to one", fix='give eomgen.load("crane.toml")')
     try:
         return read_stdin(LARGEST) if path == "-" else read(path, LARGEST)
     except OSError as error:
         if "\n" in str(path):
             raise ModelError("this is no path but the text of a model", "", "read it by eomgen.loads") from error
-        name, mend = ("<stdin>", "check what writes it") if path == "-" else (str(path), "check the path")
-        raise ModelError(f"cannot be read: {error.strerror or error}", name, mend) from error
+        name, fix = ("<stdin>", "check what writes it") if path == "-" else (str(path), "check the path")
+        raise ModelError(f"cannot be read: {error.strerror or error}", name, fix) from error
 
 
 def model_at(model: ModelOrPath, parameters: Values | None = None, start: Values | None = None) -> Model:
@@ -95,7 +95,7 @@ def located(problem: Problem, data: bytes, name: str, *, by_name: bool = False) 
     if not path:
         return problem
     key = path if path in index.keys else path[:2]
-    return _problem(Finding(path, problem.what, problem.mend), index.nearest(key, key=True), index, name)
+    return _problem(Diagnostic(path, problem.what, problem.fix), index.nearest(key, key=True), index, name)
 
 
 _QUOTED = re.compile(r"'([^\W\d]\w*)'*'")
@@ -120,12 +120,12 @@ def _loads(data: bytes, name: str, title: str) -> Model:
     text = _text(data, name)
     index = index_of(text)
     if index.deep is not None:
-        deep = Finding((), "a key with too many pieces", "a model needs at most bodies.arm.joint")
+        deep = Diagnostic((), "a key with too many pieces", "a model needs at most bodies.arm.joint")
         raise ModelError((_problem(deep, index.deep, index, name),))
     raw, twice = _table(text, index, name)
     found = _version(raw)
     draft: Model = draft_of(Model, raw, title, found)
-    found += findings_of(draft, found)
+    found += diagnostics_of(draft, found)
     if found or twice:
         raise ModelError((*twice, *_problems(found, index, name)))
     return resolved(draft)
@@ -140,8 +140,8 @@ def _text(data: bytes, name: str) -> str:
         before = data[: error.start].decode("utf-8-sig", "replace")
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
         what, binary = f"not UTF-8: byte 0x{data[error.start]:02x}", b"\0" in data and not data.startswith(UTF_16)
-        mend = "it is no text: give the model, a file .toml" if binary else "save it as UTF-8"
-        raise ModelError(what, f"{name}:{line}:{column}", mend) from error
+        fix = "it is no text: give the model, a file .toml" if binary else "save it as UTF-8"
+        raise ModelError(what, f"{name}:{line}:{column}", fix) from error
 
 
 def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Problem]]:
@@ -150,12 +150,12 @@ def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Pro
         return tomllib.loads(text, parse_float=_decimal), []
     except (ValueError, RecursionError) as error:
         failure = error
-    told = index.twice[:MOST_FINDINGS]
-    twice = [_problem(_again(path, index), span, index, name) for path, span, _ in told]
+    reported = index.twice[:MOST_DIAGNOSTICS]
+    twice = [_problem(_again(path, index), span, index, name) for path, span, _ in reported]
     if not twice:
         raise ModelError((_not_toml(failure, index, name),)) from failure
     try:
-        return tomllib.loads(_without(text, [s for _, _, s in told if s]), parse_float=_decimal), twice
+        return tomllib.loads(_without(text, [s for _, _, s in reported if s]), parse_float=_decimal), twice
     except (ValueError, RecursionError):
         raise ModelError(tuple(twice)) from failure
 
@@ -168,9 +168,9 @@ def _without(text: str, spans: list[Span]) -> str:
     return text
 
 
-def _again(path: DocumentPath, index: Index) -> Finding:
+def _again(path: DocumentPath, index: Index) -> Diagnostic:
     line = index.line_and_column(index.keys[path].start)[0]
-    return Finding(path, f"'{path[-1]}' is given twice", f"first given in line {line}")
+    return Diagnostic(path, f"'{path[-1]}' is given twice", f"first given in line {line}")
 
 
 def _decimal(word: str) -> Decimal:
@@ -191,31 +191,33 @@ def _not_toml(error: Exception, index: Index, name: str) -> Problem:
         offset = sum(len(line) + 1 for line in lines[: int(place.group(1)) - 1]) + int(place.group(2)) - 1
     else:
         offset = max(0, len(index.text.rstrip()) - 1) if place is not None else 0
-    what, mend = told_of_toml(what, index.text, offset)
-    return _problem(Finding((), f"not TOML: {what}", mend), Span(offset, offset + 1), index, name)
+    what, fix = reported_of_toml(what, index.text, offset)
+    return _problem(Diagnostic((), f"not TOML: {what}", fix), Span(offset, offset + 1), index, name)
 
 
-def _version(raw: dict[str, Any]) -> list[Finding]:
+def _version(raw: dict[str, Any]) -> list[Diagnostic]:
     """The findings of the first key, `eomgen = 1`."""
     if "eomgen" not in raw:
-        return [Finding((), "the file does not say that it is a model", "begin it with the line: eomgen = 1")]
+        return [Diagnostic((), "the file does not say that it is a model", "begin it with the line: eomgen = 1")]
     version = raw["eomgen"]
     if type(version) is not int or version != VERSION:
         what = f"version {shown(version)} of the model file is not known here, only version {VERSION}"
-        return [Finding(("eomgen",), what, "write eomgen = 1")]
+        return [Diagnostic(("eomgen",), what, "write eomgen = 1")]
     return []
 
 
-def _problems(found: list[Finding], index: Index, name: str) -> tuple[Problem, ...]:
+def _problems(found: list[Diagnostic], index: Index, name: str) -> tuple[Problem, ...]:
     """Each finding at its place, in the order of the file."""
     found = _as_written(found)
-    placed = sorted(((_span(finding, index), finding) for finding in found), key=lambda pair: pair[0].start)
-    problems = tuple(dict.fromkeys(_problem(finding, span, index, name) for span, finding in placed[:MOST_FINDINGS]))
-    more = len(placed) - MOST_FINDINGS
+    placed = sorted(((_span(diagnostic, index), diagnostic) for diagnostic in found), key=lambda pair: pair[0].start)
+    problems = tuple(
+        dict.fromkeys(_problem(diagnostic, span, index, name) for span, diagnostic in placed[:MOST_DIAGNOSTICS])
+    )
+    more = len(placed) - MOST_DIAGNOSTICS
     return (*problems, Problem(name, f"and {more} more problems")) if more > 0 else problems
 
 
-def _as_written(found: list[Finding]) -> list[Finding]:
+def _as_written(found: list[Diagnostic]) -> list[Diagnostic]:
     """The findings, their paths through the keys that stand in the file, where some were read for others."""
     written = {(*f.path[:-1], f.instead): f.path for f in found if f.instead}
     return [replace(f, path=_through(f.path, written)) for f in found] if written else found
@@ -227,17 +229,17 @@ def _through(path: DocumentPath, written: Mapping[DocumentPath, DocumentPath]) -
     return path
 
 
-def _span(finding: Finding, index: Index) -> Span:
-    if finding.column is not None:
-        return index.within(finding.path, finding.column, finding.length or 1)
-    return index.nearest(finding.path, finding.key)
+def _span(diagnostic: Diagnostic, index: Index) -> Span:
+    if diagnostic.column is not None:
+        return index.within(diagnostic.path, diagnostic.column, diagnostic.length or 1)
+    return index.nearest(diagnostic.path, diagnostic.key)
 
 
-def _problem(finding: Finding, span: Span, index: Index, name: str) -> Problem:
+def _problem(diagnostic: Diagnostic, span: Span, index: Index, name: str) -> Problem:
     line, column = index.line_and_column(span.start)
-    beside = None if finding.beside is None else index.within(finding.path, *finding.beside)
+    beside = None if diagnostic.beside is None else index.within(diagnostic.path, *diagnostic.beside)
     excerpt = _excerpt(index, span, beside)
-    return Problem(f"{name}:{line}:{column}", finding.what, excerpt, finding.mend)
+    return Problem(f"{name}:{line}:{column}", diagnostic.what, excerpt, diagnostic.fix)
 
 
 def _excerpt(index: Index, span: Span, beside: Span | None = None) -> str:
@@ -256,7 +258,7 @@ def _excerpt(index: Index, span: Span, beside: Span | None = None) -> str:
 
 
 # -------- not toml --------------------------------------------------------------------------------------------
-# What tomllib refuses -> what is wrong and how it is mended: other formats, other habits of writing.
+# What tomllib refuses -> what is wrong and how it is fixed: other formats, other habits of writing.
 
 
 _TABLES = 'write: name = "crane", and [bodies.boom] for a table'
@@ -271,16 +273,16 @@ _WORDS = re.compile(r"\s*(name|about|source|space)\s*=\s*([A-Za-z][\w ]*)$")
 _COMMA = re.compile(r"=\s*([-+]?\d+(?:\.\d{3})*),(\d+)\b")
 
 
-def told_of_toml(what: str, text: str, offset: int) -> tuple[str, str]:
-    """(what is wrong, how to mend it) where tomllib stops.
+def reported_of_toml(what: str, text: str, offset: int) -> tuple[str, str]:
+    """(what is wrong, how to fix it) where tomllib stops.
 
     Args:
         what: it says.
         offset: of the place at which it stops.
     """
-    for begins, looks, mend in _OTHERS:
+    for begins, looks, fix in _OTHERS:
         if begins.match(text):
-            return looks, mend
+            return looks, fix
     before, culprit = text[:offset], text[offset : offset + 1]
     return what, _of_character(before, culprit) or _of_line(what, text, before, culprit) or _of_words(what)
 

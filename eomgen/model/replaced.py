@@ -16,16 +16,16 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.model.arithmetic import value_of
+from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.fields import Table, WrittenEquation, is_mixed
-from eomgen.model.findings import Finding, nearest
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.samples import TimeLawRule
 from eomgen.model.typed import Settled, Typing, shown
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.units import Typed, Unit, parse_typed_equation, parse_unit
 
@@ -46,11 +46,11 @@ class Taken:
     typed: str
     value: float | tuple[float, ...] | None
     unit: str
-    told: str = ""
+    reported: str = ""
 
     def __str__(self) -> str:
-        if self.told or self.value is None:
-            return f"{self.name} = {self.told or self.typed}"
+        if self.reported or self.value is None:
+            return f"{self.name} = {self.reported or self.typed}"
         return f"{self.name} = {self.value:.10g} {self.unit}".rstrip()
 
     def as_dict(self) -> dict[str, Any]:
@@ -97,7 +97,7 @@ def with_values(
             what = f"{options[0]}: there is no parameter '{name}'"
             is_start = name.rstrip("'") in model.coordinates or name in model.speeds
             near = _near(name, model.parameters)
-            raise UsageError(what, mend=f"its start is given by {options[1]}" if is_start else near)
+            raise UsageError(what, fix=f"its start is given by {options[1]}" if is_start else near)
         found = _settled(typing, name, typed, options[0])
         changed[name] = _with_value(model.parameters[name], "value", found.value)
         settled.append(found)
@@ -126,7 +126,7 @@ def with_values(
         replace(model, **changes)  # what is wrong with a model is wrong with this one
     except ModelError as error:
         names = ", ".join(option for option, given in zip(options, (parameters, start), strict=True) if given)
-        raise UsageError(f"{names}: {error.problems[0].what}", mend=error.problems[0].mend) from error
+        raise UsageError(f"{names}: {error.problems[0].what}", fix=error.problems[0].fix) from error
     valued = altered(model, **changes)
     taken = tuple(taken_of(valued, each) for each in settled)
     numbers = {**exact_parameters(valued), "pi": math.pi}
@@ -142,8 +142,8 @@ def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
         number = float(typed) if isinstance(typed, (int, float, str)) else math.nan
     if angle and abs(number) > 2 * math.pi:
         unit = found.unit.text if found.unit is not None else ""
-        told = f"{name} = {number:g} is {number:g} rad: plain numbers are in SI; '{number:g} {unit}' has its unit"
-        warnings.warn(told, RuntimeWarning, stacklevel=5)
+        reported = f"{name} = {number:g} is {number:g} rad: plain numbers are in SI; '{number:g} {unit}' has its unit"
+        warnings.warn(reported, RuntimeWarning, stacklevel=5)
 
 
 def _with_value(part: Any, key: str, value: Expression) -> Any:
@@ -156,7 +156,7 @@ def _settled(typing: Typing, name: str, typed: Typed, option: str) -> Settled:
     try:
         return typing.value(name, typed)
     except ExpressionError as error:
-        raise UsageError(f"{option} {name}={shown(typed)}: {error.what}", mend=error.mend) from error
+        raise UsageError(f"{option} {name}={shown(typed)}: {error.what}", fix=error.fix) from error
 
 
 def taken_of(model: Model, settled: Settled) -> Taken:
@@ -197,11 +197,11 @@ def _refuse_given(model: Model, name: str, option: str) -> None:
         what = f"{option}: there is no coordinate or speed '{name}'"
         near = _near(name, (*model.coordinates, *rates, *model.speeds))
         other = "--set" if option.startswith("--") else "parameters="
-        raise UsageError(what, mend=f"a parameter is given by {other}" if name in model.parameters else near)
+        raise UsageError(what, fix=f"a parameter is given by {other}" if name in model.parameters else near)
     part = model.coordinates.get(base)
     if part is not None and (part.motion is not None or (part.rate is not None and base != name)):
         way = "motion" if part.motion is not None else "rate"
-        raise UsageError(f"{option}: '{name}' starts where its `{way}` says", mend="give no other start")
+        raise UsageError(f"{option}: '{name}' starts where its `{way}` says", fix="give no other start")
 
 
 def time_law(model: Model, name: str, value: Any, option: str) -> Expression:
@@ -213,10 +213,10 @@ def time_law(model: Model, name: str, value: Any, option: str) -> Expression:
         UsageError: it is none, or its unit does not fit.
     """
     if isinstance(value, Mapping):
-        found: list[Finding] = []
+        found: list[Diagnostic] = []
         law: Expression | None = TimeLawRule().read(value, (option, name), found)
         if law is None or found:
-            raise UsageError(f"{option}: {name}: {found[0].what}", mend=found[0].mend)
+            raise UsageError(f"{option}: {name}: {found[0].what}", fix=found[0].fix)
         return law
     if isinstance(value, Expression):
         return value
@@ -237,10 +237,10 @@ def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
     """
     for name, value in inputs.items():
         if name not in model.inputs:
-            raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
+            raise UsageError(f"there is no input '{name}'", fix=nearest(name, model.inputs))
         if callable(value):
             what = f"input '{name}' is given by a Python function"
-            raise UsageError(what, mend="give an expression of t or the state, or eomgen.samples(times, values)")
+            raise UsageError(what, fix="give an expression of t or the state, or eomgen.samples(times, values)")
     laws = {name: law for name, value in inputs.items() if (law := law_of(model, value)) is not None}
     values = {name: time_law(model, name, value, "inputs") for name, value in inputs.items() if name not in laws}
     changed = {name: _with_value(model.inputs[name], "value", value) for name, value in values.items()}
@@ -303,7 +303,7 @@ class TypedNumbers:
         """Of a plain number, in SI."""
         return 1.0 if self.unit is None or not self.declared else self.unit.size
 
-    def taken(self, typed: str, texts: Sequence[str], told: Callable[[list[str]], str]) -> Taken:
+    def taken(self, typed: str, texts: Sequence[str], reported: Callable[[list[str]], str]) -> Taken:
         """What is said of numbers that belong together.
 
         Args:
@@ -314,7 +314,7 @@ class TypedNumbers:
         found = [taken_of(self.model, Typing(self.model, self.declared).value(self.name, text)) for text in texts]
         values = tuple(each.value for each in found if isinstance(each.value, float))
         words = [str(each).partition(" = ")[2] for each in found]
-        return Taken(self.name, typed, values, found[0].unit, told(words))
+        return Taken(self.name, typed, values, found[0].unit, reported(words))
 
     def number(self, text: Typed) -> float:
         """In SI.
@@ -362,7 +362,7 @@ def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
     known = [*model.parameters, *moving]
     if name not in known:
         what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"
-        raise UsageError(what, mend=nearest(name, known) or LIKE)
+        raise UsageError(what, fix=nearest(name, known) or LIKE)
 
 
 def range_of(model: Model, text: str, *, starts: bool = False, declared: bool = True) -> Range:
@@ -378,13 +378,13 @@ def range_of(model: Model, text: str, *, starts: bool = False, declared: bool = 
     name, equals, rest = text.removeprefix("log:").partition("=")
     name = name.strip()
     if not equals:
-        raise UsageError(f"'{text}' is no range", mend=LIKE)
+        raise UsageError(f"'{text}' is no range", fix=LIKE)
     refuse_what_is_not_set(model, name, starts=starts)
     typed = TypedNumbers(model, name, declared)
     try:
         values = _values(rest, logarithmic, text, typed.number)
     except ExpressionError as error:
-        raise UsageError(f"'{text}' is no range: {error.what}", mend=error.mend or LIKE) from error
+        raise UsageError(f"'{text}' is no range: {error.what}", fix=error.fix or LIKE) from error
     unit, size = ("", 1.0) if typed.unit is None else (typed.unit.text, typed.unit.size)
     return Range(name, tuple(values), unit, size, _taken(typed, rest, logarithmic))
 
@@ -397,8 +397,8 @@ def _taken(typed: TypedNumbers, rest: str, logarithmic: bool) -> Taken:
         more = "" if few is texts else f", {len(texts)} values"
         return typed.taken(rest, [x.strip() for x in few], lambda x: ", ".join(x) + more)
     spread = "each by one factor" if logarithmic else "equally apart"
-    told = f", {int(ends[2])} values {spread}"
-    return typed.taken(rest, [x.strip() for x in ends[:2]], lambda x: " to ".join(x) + told)
+    reported = f", {int(ends[2])} values {spread}"
+    return typed.taken(rest, [x.strip() for x in ends[:2]], lambda x: " to ".join(x) + reported)
 
 
 def _values(rest: str, logarithmic: bool, text: str, number: Callable[[str], float]) -> list[float]:
@@ -413,10 +413,10 @@ def _values(rest: str, logarithmic: bool, text: str, number: Callable[[str], flo
         start, stop, count = rest.split(":")
         low, high, n = number(start), number(stop), int(count)
     except ValueError as error:
-        raise UsageError(f"'{text}' is no range", mend=LIKE) from error
+        raise UsageError(f"'{text}' is no range", fix=LIKE) from error
     if not 2 <= n <= MOST or (logarithmic and min(low, high) <= 0):
         what = "a range of powers has ends above 0" if logarithmic and min(low, high) <= 0 else f"{n} values"
-        raise UsageError(f"'{text}' is no range: {what}", mend=f"from 2 to {MOST} values, like {LIKE}")
+        raise UsageError(f"'{text}' is no range: {what}", fix=f"from 2 to {MOST} values, like {LIKE}")
     _finite([low, high], text)
     shares = [k / (n - 1) for k in range(n)]
     if logarithmic:
@@ -427,4 +427,4 @@ def _values(rest: str, logarithmic: bool, text: str, number: Callable[[str], flo
 def _finite(values: list[float], text: str) -> list[float]:
     if all(math.isfinite(x) for x in values):
         return values
-    raise UsageError(f"'{text}' is no range: its values are no numbers", mend=LIKE)
+    raise UsageError(f"'{text}' is no range: its values are no numbers", fix=LIKE)

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, Problem
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import Diagnostic, shown, unknown_keys
 from eomgen.model.fields import FormulaRule, Leaf, TextRule
-from eomgen.model.findings import Finding, shown, unknown_keys
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, is_exact
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import ENDS, SMOOTH, WAYS, DeclaredSamples, Sampled, spline_of
@@ -29,17 +29,17 @@ class TimeLawRule(FormulaRule):
 
     ways: tuple[str, ...] = WAYS
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, Mapping) and "samples" in raw:
             return self._sampled(raw, path, found)
         return FormulaRule.read(self, raw, path, found)
 
-    def _sampled(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Finding]) -> Expression | None:
+    def _sampled(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Diagnostic]) -> Expression | None:
         unknown_keys(raw, KEYS, path, found, "samples")
         way = TextRule(self.ways).read(raw.get("between", "cubic"), (*path, "between"), found)
         ends = TextRule(ENDS).read(raw.get("ends", ENDS[0]), (*path, "ends"), found)
         if way in self.ways and way != "cubic" and "ends" in raw:
-            found.append(Finding((*path, "ends"), f"'ends' is for 'cubic', not for {way}", "leave it out"))
+            found.append(Diagnostic((*path, "ends"), f"'ends' is for 'cubic', not for {way}", "leave it out"))
         pairs = _pairs(raw["samples"], (*path, "samples"), found)
         if pairs is None or way is None or ends is None:
             return None
@@ -70,11 +70,11 @@ def samples(times: Iterable[Any], values: Iterable[Any], between: str = "cubic",
     Raises:
         ModelError: times that do not ascend, too few or too many of them, what is no number.
     """
-    found: list[Finding] = []
+    found: list[Diagnostic] = []
     pairs = [[_plain(t), _plain(value)] for t, value in zip(times, values, strict=True)]
     law: Expression = TimeLawRule().read({"samples": pairs, "between": between, **_given_ends(ends)}, (), found)
     if found:
-        raise ModelError(tuple(Problem(".".join(["samples", *map(str, f.path)]), f.what, mend=f.mend) for f in found))
+        raise ModelError(tuple(Problem(".".join(["samples", *map(str, f.path)]), f.what, fix=f.fix) for f in found))
     return law
 
 
@@ -101,7 +101,7 @@ def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
         first, last = float(given.times[0]), float(given.times[-1])
         if given.way in SMOOTH and not given.ends_given and (first > 0 or last < end):
             what = f"samples from {first:g} to {last:g} s in a run from 0 to {end:g} s: beyond them it goes on straight"
-            found.append(Problem(".".join(map(str, path)), what, mend="give samples for all of it, or say its `ends`"))
+            found.append(Problem(".".join(map(str, path)), what, fix="give samples for all of it, or say its `ends`"))
     return tuple(found)
 
 
@@ -120,37 +120,37 @@ def _plain(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
 
 
-def _pairs(raw: Any, path: DocumentPath, found: list[Finding]) -> list[tuple[Fraction, Fraction]] | None:
+def _pairs(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> list[tuple[Fraction, Fraction]] | None:
     """The samples as exact numbers, times ascending."""
     if not isinstance(raw, (list, tuple)) or not 2 <= len(raw) <= MOST:
-        told = f"{len(raw)}" if isinstance(raw, (list, tuple)) else shown(raw)
-        found.append(Finding(path, f"a list of 2 to {MOST} samples is needed here, not {told}", EXAMPLE))
+        reported = f"{len(raw)}" if isinstance(raw, (list, tuple)) else shown(raw)
+        found.append(Diagnostic(path, f"a list of 2 to {MOST} samples is needed here, not {reported}", EXAMPLE))
         return None
     pairs: list[tuple[Fraction, Fraction]] = []
     for i, pair in enumerate(raw):
         if not isinstance(pair, (list, tuple)) or len(pair) != 2:
-            found.append(Finding((*path, i), f"a time and a value are needed here, not {shown(pair)}", EXAMPLE))
+            found.append(Diagnostic((*path, i), f"a time and a value are needed here, not {shown(pair)}", EXAMPLE))
             return None
         time, value = (_number(x, (*path, i, j), found) for j, x in enumerate(pair))
         if time is None or value is None:
             return None
         if pairs and time <= pairs[-1][0]:
             what = f"the times of samples ascend, but {_short(time)} comes after {_short(pairs[-1][0])}"
-            found.append(Finding((*path, i, 0), what))
+            found.append(Diagnostic((*path, i, 0), what))
             return None
         pairs.append((time, value))
     return pairs
 
 
-def _number(raw: Any, path: DocumentPath, found: list[Finding]) -> Fraction | None:
+def _number(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Fraction | None:
     value: Any = None
     try:
         value = None if isinstance(raw, bool) else as_expression(raw).evaluate({})
     except ExpressionError as error:
-        found.append(Finding(path, error.what, "samples are plain numbers", error.column, error.length, raw=raw))
+        found.append(Diagnostic(path, error.what, "samples are plain numbers", error.column, error.length, raw=raw))
         return None
     if not is_exact(value):
-        found.append(Finding(path, f"samples are plain numbers, not {shown(raw)}"))
+        found.append(Diagnostic(path, f"samples are plain numbers, not {shown(raw)}"))
         return None
     return Fraction(value)
 

@@ -1,7 +1,8 @@
-"""Model -> the same model in bodies and ties alone: nodes of trusses are massless points, their members ties.
+"""Model -> the same model in bodies and constraints alone: nodes of trusses are massless points, their members
+constraints.
 
 A node "T.n1" is a body of that name: a particle without mass, placed where the node is. The members of truss T are
-the rows of one tie T.
+the rows of one constraint T.
 """
 
 from eomgen.model.constraints.link import Members

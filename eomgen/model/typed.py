@@ -13,12 +13,12 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import nearest
 from eomgen.model.dimensions import Inferred, inferred
 from eomgen.model.fields import WrittenEquation
-from eomgen.model.findings import nearest
-from eomgen.records import dataclass
-from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, quoted, told
+from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, quoted, reported
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import Typed, Unit, is_plain, read_typed, unit_for_name
@@ -122,21 +122,21 @@ class Typing:
     def _needed(self, of: Expression) -> Dimension:
         """The dimension of a name, or of one side of an equation."""
         names = self._inferred.names
-        return names.inference.reduced(Walk(names.of, names.inference, names.of_call, mends=False).of(of))
+        return names.inference.reduced(Walk(names.of, names.inference, names.of_call, fixes=False).of(of))
 
     def _refuse_clash(self, of: Expression, value: Expression, needed: Dimension) -> None:
         names, symbols = self._inferred.names, Catalog(self.model, ()).symbols
         for name, column in value.occurrences:
             if name.rstrip("'") not in symbols:
-                mend = unit_for_name(name, value) or nearest(name, symbols)
-                raise ExpressionError(f"unknown name '{name}'", column, mend, len(name))
+                fix = unit_for_name(name, value) or nearest(name, symbols)
+                raise ExpressionError(f"unknown name '{name}'", column, fix, len(name))
         walk = Walk(names.of, names.inference, names.of_call, names.parameters, names.moves)
         walk.of(value, needed=needed)
         for clash in walk.clashes:
             what = clash.what
             if clash.other is None and not clash.in_function:
-                what = f"{quoted(clash.one)} is {told(clash.one_is)}, but '{of.text}' is {told(clash.needed)}"
-            raise ExpressionError(what, clash.one.column, clash.mend, len(clash.one.text))
+                what = f"{quoted(clash.one)} is {reported(clash.one_is)}, but '{of.text}' is {reported(clash.needed)}"
+            raise ExpressionError(what, clash.one.column, clash.fix, len(clash.one.text))
 
 
 def typing_of(model: Any, table: str) -> Typing:
@@ -162,5 +162,5 @@ def _ambiguous(why: str, of: Expression, value: Expression, unit: Unit) -> Expre
     own = f"{float(unit.from_si(number, math.pi)):.10g}" if "pi" in value.names else value.text
     si = unit.si if unit.si != unit.text else "rad"
     return ExpressionError(
-        f"{why} '{of.text}' is declared in {unit.text}", mend=f"write {own} {unit}, or {value.text} {si}"
+        f"{why} '{of.text}' is declared in {unit.text}", fix=f"write {own} {unit}, or {value.text} {si}"
     )

@@ -12,9 +12,9 @@ from typing import Any
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
 from eomgen.model.checks.bodies import possible
+from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.dimensions import inferred
 from eomgen.model.fields import Leaf, NameRule, WrittenEquation
-from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath
@@ -26,8 +26,9 @@ from eomgen.symbolic.print.names import Symbol, symbol_of
 
 
 def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
-    """(where, kind) of every joint, tie, force and table that waits for a later version, in the model's order."""
-    return (*unbuilt_bodies(model), *unbuilt_ties(model), *_unbuilt_forces(model))
+    """(where, kind) of every joint, constraint, force and table that waits for a later version, in the model's
+    order."""
+    return (*unbuilt_bodies(model), *unbuilt_constraints(model), *_unbuilt_forces(model))
 
 
 def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
@@ -39,10 +40,14 @@ def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
     return tuple(waiting)
 
 
-def unbuilt_ties(model: Model) -> tuple[tuple[str, str], ...]:
+def unbuilt_constraints(model: Model) -> tuple[tuple[str, str], ...]:
     """Constraints among them: what cannot be counted in the degrees of freedom."""
-    ties = model.constraints.items()
-    return tuple((f"constraints.{name}", tie.kind) for name, tie in ties if not tie.works_in(model.space))
+    constraints = model.constraints.items()
+    return tuple(
+        (f"constraints.{name}", constraint.kind)
+        for name, constraint in constraints
+        if not constraint.works_in(model.space)
+    )
 
 
 def _unbuilt_forces(model: Model) -> tuple[tuple[str, str], ...]:
@@ -57,14 +62,14 @@ TURN = 2 * math.pi
 DWELL = Fraction(1, 1000)  # of what samples span: by so much a cubic leaves equal ones unseen
 
 
-def warnings_of(model: Any) -> tuple[Finding, ...]:
+def warnings_of(model: Any) -> tuple[Diagnostic, ...]:
     """What a user should look at again."""
     catalog = Catalog(model, ())
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
     more = (_impossible(catalog, values), _unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
     hardly = (_unused(catalog), _guessed(catalog), _overshoots(catalog))
-    return (*inferred(catalog).warnings, *(finding for check in (*checks, *more, *hardly) for finding in check))
+    return (*inferred(catalog).warnings, *(diagnostic for check in (*checks, *more, *hardly) for diagnostic in check))
 
 
 def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
@@ -77,7 +82,7 @@ def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
     return values
 
 
-def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Plain numbers of more than a turn among the terms of an angle."""
     for leaf, expression in catalog.expressions:
         if getattr(leaf.rule, "unit", None) != "rad":
@@ -86,7 +91,7 @@ def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Findi
             size = abs(number)
             if size > TURN:
                 what = f"{size:g} in {whereabouts(leaf.path)} is {size:g} rad: {size / TURN:.1f} turns"
-                yield Finding(leaf.path, what, f"for degrees write {_of_pi(size)}", column, len(f"{size:g}"))
+                yield Diagnostic(leaf.path, what, f"for degrees write {_of_pi(size)}", column, len(f"{size:g}"))
 
 
 def _terms(expression: Expression) -> Iterator[tuple[float, int]]:
@@ -118,17 +123,17 @@ def _of_pi(degrees: float) -> str:
     return f"{'' if above == 1 else f'{above}*'}pi{'' if below == 1 else f'/{below}'}"
 
 
-def _signs(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def _signs(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """What drives apart, or gives energy, where it ought to hold or take it."""
     for leaf, expression in catalog.expressions:
         law = getattr(leaf.rule, "usually", "")
         number = value_of(expression, values) if law else None
         if number is not None and number < 0:
             what = f"'{leaf.path[-1]}' of {whereabouts(leaf.path[:2])} is below zero: {law}"
-            yield Finding(leaf.path, what, "leave out the minus, if it is meant to resist")
+            yield Diagnostic(leaf.path, what, "leave out the minus, if it is meant to resist")
 
 
-def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Gravity upward."""
     for leaf in catalog.leaves:
         if getattr(leaf.rule, "downward", False) and not leaf.part.axis_down:
@@ -136,11 +141,11 @@ def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Find
             *across, up = parts
             if up is not None and up > 0 and not any(across):
                 axis = "xyz"[len(parts) - 1]
-                mend = f'write "-{leaf.value[-1].text}"; where {axis} points down, axis_down = true says so'
-                yield Finding(leaf.path, f"gravity pulls upward, along {axis}", mend)
+                fix = f'write "-{leaf.value[-1].text}"; where {axis} points down, axis_down = true says so'
+                yield Diagnostic(leaf.path, f"gravity pulls upward, along {axis}", fix)
 
 
-def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """An inertia in space that no body has, where nobody says that it was measured: published data are often so."""
     for name, body in catalog.table("bodies").items():
         if catalog.model.space != "space" or body.inertia is None or body.measured or len(body.inertia) not in (3, 6):
@@ -151,20 +156,22 @@ def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[F
         if len(moments) == len(body.inertia) and not possible(moments):
             shown = ", ".join(f"{x:g}" for x in moments)
             what = f"no body has the inertia of '{name}': [{shown}] breaks the triangle inequality"
-            mend = "a principal moment is at most the sum of the others; measured = true says that it is published data"
-            yield Finding(("bodies", name, "inertia"), what, mend)
+            fix = "a principal moment is at most the sum of the others; measured = true says that it is published data"
+            yield Diagnostic(("bodies", name, "inertia"), what, fix)
 
 
-def _unheld(catalog: Catalog) -> Iterator[Finding]:
-    """A body without a joint that no tie touches, in a model that moves by coordinates."""
+def _unheld(catalog: Catalog) -> Iterator[Diagnostic]:
+    """A body without a joint that no constraint touches, in a model that moves by coordinates."""
     if not catalog.table("coordinates"):
         return
     held = set()
-    for name, tie in catalog.table("constraints").items():
-        held |= {_body(leaf) for leaf in leaves_of(tie, ("constraints", name)) if isinstance(leaf.rule, NameRule)}
+    for name, constraint in catalog.table("constraints").items():
+        held |= {
+            _body(leaf) for leaf in leaves_of(constraint, ("constraints", name)) if isinstance(leaf.rule, NameRule)
+        }
         held |= {
             argument.name.partition(".")[0]
-            for leaf in leaves_of(tie, ("constraints", name))
+            for leaf in leaves_of(constraint, ("constraints", name))
             if isinstance(leaf.value, Expression)
             for call in leaf.value.calls
             for argument in call.args
@@ -173,19 +180,20 @@ def _unheld(catalog: Catalog) -> Iterator[Finding]:
     held |= {body.joint.parent for body in catalog.table("bodies").values() if body.joint is not None}
     for name, body in catalog.table("bodies").items():
         if body.joint is None and name not in held:
-            what = f"body '{name}' has no joint, and no tie holds it"
-            mend = 'give it a joint: joint = { kind = "revolute", on = ..., angle = ... }'
-            yield Finding(("bodies", name), what, mend, key=True)
+            what = f"body '{name}' has no joint, and no constraint holds it"
+            fix = 'give it a joint: joint = { kind = "revolute", on = ..., angle = ... }'
+            yield Diagnostic(("bodies", name), what, fix, key=True)
 
 
-def _guessed(catalog: Catalog) -> Iterator[Finding]:
-    """Ties whose place follows from a guess: `near` is where a coordinate is sought, and says nothing of geometry."""
+def _guessed(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Constraints whose place follows from a guess: `near` is where a coordinate is sought, and says nothing of
+    geometry."""
     coordinates, bodies = catalog.table("coordinates"), catalog.table("bodies")
     guessed = {name for name, q in coordinates.items() if q is not None and q.dependent and q.start is None}
-    for name, tie in catalog.table("constraints").items():
-        if tie is None or not tie.lies_by_start:
+    for name, constraint in catalog.table("constraints").items():
+        if constraint is None or not constraint.lies_by_start:
             continue
-        leaves = leaves_of(tie, ("constraints", name))
+        leaves = leaves_of(constraint, ("constraints", name))
         waiting = [owner_of(x) for leaf in leaves for x in _NAME.findall(_written(leaf.value)) if owner_of(x) in bodies]
         carried: set[str] = set()
         while waiting:
@@ -196,10 +204,12 @@ def _guessed(catalog: Catalog) -> Iterator[Finding]:
                 waiting += [body.joint.parent] if body.joint.parent in bodies else []
         for q in sorted(carried):
             what = f"where '{name}' lies follows from where '{q}' starts, and of that there is only the guess `near`"
-            yield Finding(("coordinates", q), what, f"give '{q}' a `start`, or the tie its own place", key=True)
+            yield Diagnostic(
+                ("coordinates", q), what, f"give '{q}' a `start`, or the constraint its own place", key=True
+            )
 
 
-def _overshoots(catalog: Catalog) -> Iterator[Finding]:
+def _overshoots(catalog: Catalog) -> Iterator[Diagnostic]:
     """Cubics that leave a dwell: between two equal samples they go elsewhere."""
     for path, law, given in laws_through_samples((leaf.path, leaf.value) for leaf in catalog.leaves):
         if given.way != "cubic":
@@ -210,7 +220,7 @@ def _overshoots(catalog: Catalog) -> Iterator[Finding]:
             if away > DWELL * size * abs(given.factor):
                 when = f"between the equal samples at {float(t):g} and {float(later):g} s"
                 what = f"{when} {whereabouts(path)} goes elsewhere, by {float(away):.3g} [SI]"
-                yield Finding(path, what, 'write between = "pchip" for what is to dwell')
+                yield Diagnostic(path, what, 'write between = "pchip" for what is to dwell')
                 break
 
 
@@ -218,7 +228,7 @@ PROSE = ("about", "source", "name", "text", "unit", "symbol")
 _NAME = re.compile(r"[^\W\d]\w*(?:\.\w+)?")
 
 
-def _unused(catalog: Catalog) -> Iterator[Finding]:
+def _unused(catalog: Catalog) -> Iterator[Diagnostic]:
     """Parameters and points of the ground that nothing names."""
     named: dict[str, set[DocumentPath]] = {}
     for leaf in catalog.leaves:
@@ -231,7 +241,9 @@ def _unused(catalog: Catalog) -> Iterator[Finding]:
         for name in catalog.table(table):
             seated = table == "points" and catalog.table(table)[name] in seats
             if not seated and not named.get(name, set()) - {(table, name)}:
-                yield Finding((table, name), f"nothing uses the {what} '{name}'", "use it, or leave it out", key=True)
+                yield Diagnostic(
+                    (table, name), f"nothing uses the {what} '{name}'", "use it, or leave it out", key=True
+                )
 
 
 def _written(value: Any) -> str:
@@ -245,7 +257,7 @@ def _body(leaf: Leaf) -> str:
     return owner_of(leaf.value) or str(leaf.value)
 
 
-def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Masses so far apart that doubles do not see the one beside the other."""
     found = []
     for leaf, expression in catalog.expressions:
@@ -264,10 +276,10 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Findi
         what = (
             f"{whereabouts(leaf.path)} is {most:g} kg, and the least mass {least:g} kg: {most / least:.0e} times less"
         )
-        yield Finding(leaf.path, what, "look at the units; what does not move needs no body")
+        yield Diagnostic(leaf.path, what, "look at the units; what does not move needs no body")
 
 
-def _symbols_twice(catalog: Catalog) -> Iterator[Finding]:
+def _symbols_twice(catalog: Catalog) -> Iterator[Diagnostic]:
     """Two things that formulas cannot tell apart, because one of them declares its symbol."""
     declared = dict(_declared(catalog))
     looks = {symbol.tex: path for path, symbol in declared.items()}
@@ -288,8 +300,8 @@ def _declared(catalog: Catalog) -> Iterator[tuple[DocumentPath, Symbol]]:
             yield leaf.path, leaf.value
 
 
-def _alike(path: DocumentPath, symbol: Symbol, other: str) -> Finding:
-    return Finding(path, f"{symbol.tex} stands for {other} too", "give one of them another symbol")
+def _alike(path: DocumentPath, symbol: Symbol, other: str) -> Diagnostic:
+    return Diagnostic(path, f"{symbol.tex} stands for {other} too", "give one of them another symbol")
 
 
 def _valued(catalog: Catalog) -> set[str]:

@@ -73,18 +73,24 @@ def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, s
     found = inferred(Catalog(model, ()))
     known, reduced = found.names, found.names.inference.reduced
 
-    def told(dimension: Dimension) -> str:
+    def reported(dimension: Dimension) -> str:
         dimension = reduced(dimension)
         return "?" if dimension.unknowns else str(dimension)
 
     walk, of_outputs = known.walk(), units_of_outputs(model)
     outputs = {
-        name: of_outputs[part].text if part in of_outputs else told(walk.of(part.value))
+        name: of_outputs[part].text if part in of_outputs else reported(walk.of(part.value))
         for name, part in model.outputs.items()
     }
-    names = {name: known.declared[name].text if name in known.declared else told(x) for name, x in found.found.items()}
+    names = {
+        name: known.declared[name].text if name in known.declared else reported(x) for name, x in found.found.items()
+    }
     power = dimension_of_unit(parse_unit("W"))
-    return {"names": names, "equations": {u: told(power.times(known.of(u), -1)) for u in speeds}, "outputs": outputs}
+    return {
+        "names": names,
+        "equations": {u: reported(power.times(known.of(u), -1)) for u in speeds},
+        "outputs": outputs,
+    }
 
 
 def _unit(known: Names, name: str) -> Unit | None:

@@ -8,7 +8,7 @@ from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.formula import Expression
 
-ASKED = ("given", "outputs", "unknowns")
+REQUESTED = ("given", "outputs", "unknowns")
 """Tables in which an unknown is asked for, or is one of the kinematics of an instant."""
 EFFORTS = ("torque", "force")
 """Loads at a joint."""
@@ -19,7 +19,7 @@ def uses(model: Model) -> Iterator[tuple[DocumentPath, str]]:
     if not model.unknowns:
         return
     for leaf in leaves_of(model, ()):
-        if leaf.path[0] not in ASKED and isinstance(leaf.value, Expression):
+        if leaf.path[0] not in REQUESTED and isinstance(leaf.value, Expression):
             yield from ((leaf.path, name) for name in sorted(leaf.value.names & model.unknowns.keys()))
 
 
@@ -34,8 +34,8 @@ def in_loads(model: Model) -> tuple[str, ...]:
         if not _is_load(path):
             where = ".".join(map(str, path))
             what = f"the unknown '{name}' stands where no balance gives it ({where})"
-            mend = "an unknown may stand in forces, couples and drives, and in [given]"
-            raise DerivationError(what, f"unknowns.{name}", mend)
+            fix = "an unknown may stand in forces, couples and drives, and in [given]"
+            raise DerivationError(what, f"unknowns.{name}", fix)
         found.add(name)
     return tuple(name for name in model.unknowns if name in found)
 

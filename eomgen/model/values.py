@@ -5,10 +5,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, MissingValues, ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.arithmetic import AnyNumber, in_order
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import as_expression
@@ -138,7 +138,7 @@ def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Express
         try:
             read[name] = as_expression(value.item() if hasattr(value, "item") else value)
         except ExpressionError as error:
-            raise ModelError(error.what, f"parameters.{name}", error.mend) from error
+            raise ModelError(error.what, f"parameters.{name}", error.fix) from error
     return read
 
 
@@ -147,7 +147,7 @@ def _value(expression: Expression, values: Mapping[str, Any], where: str) -> Any
         found: AnyNumber = expression.evaluate(values)
         return found
     except ExpressionError as error:
-        raise ModelError(f"'{expression.text}': {error.what}", where, error.mend) from error
+        raise ModelError(f"'{expression.text}': {error.what}", where, error.fix) from error
 
 
 def _float(expression: Expression | None, values: Mapping[str, Any], where: str) -> float:

@@ -14,10 +14,10 @@ import numpy as np
 
 from eomgen.documents.document import Document
 from eomgen.documents.statements import Prose, Step
+from eomgen.frozen import Pickled, dataclass
 from eomgen.model.fields import Table
 from eomgen.page.markup import Html
 from eomgen.proof.check import Certificate, Check
-from eomgen.records import Pickled, dataclass
 
 SECTIONS = {
     "figure": "Figure",

@@ -17,6 +17,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.documents.equilibrium_picture import rest_picture
 from eomgen.documents.figures import (
     KINDS,
     Picture,
@@ -29,13 +30,12 @@ from eomgen.documents.figures import (
     reactions_by_unit,
 )
 from eomgen.documents.latex_math import Notation
-from eomgen.documents.rest_picture import rest_picture
 from eomgen.documents.statements import Code, Piece, prose
 from eomgen.documents.statics.pictures import missing_values
+from eomgen.frozen import dataclass
 from eomgen.model.parts import Model
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, curve_path, element, in_a_row, stepped
-from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
@@ -233,7 +233,7 @@ def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) ->
         Line(run.reactions[name], f"curve c{color}{DASHED[kind]}", (Code(name),))
         for name, (color, kind) in looks.items()
     ]
-    few = f"; the largest, at {len(shown)} of {len(owners)} joints and ties" if len(shown) < len(owners) else ""
+    few = f"; the largest, at {len(shown)} of {len(owners)} joints and constraints" if len(shown) < len(owners) else ""
     return panel(run, lines, f"reactions{number}", f"Reactions [{unit.replace('*', '·')}] over time [s]{few}")
 
 

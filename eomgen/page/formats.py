@@ -112,15 +112,15 @@ def notebook_text(report: Report) -> str:
     """
     if not report.source:
         raise UsageError(
-            "a notebook holds the text of its model, and this one was made in Python", mend="write an .html"
+            "a notebook holds the text of its model, and this one was made in Python", fix="write an .html"
         )
     try:
         import nbformat
         from nbclient import NotebookClient
         from nbclient.exceptions import CellExecutionError
     except ImportError as error:
-        mend = "pip install 'eomgen[notebook]'; or write a .md or .html"
-        raise ToolMissing("a notebook is run by nbclient, which is not installed", "", mend) from error
+        fix = "pip install 'eomgen[notebook]'; or write a .md or .html"
+        raise ToolMissing("a notebook is run by nbclient, which is not installed", "", fix) from error
     v4: Any = nbformat.v4
     made = {True: v4.new_code_cell, False: v4.new_markdown_cell}
     cells = [
@@ -133,7 +133,7 @@ def notebook_text(report: Report) -> str:
         NotebookClient(notebook, timeout=WAIT, kernel_name="python3", record_timing=False).execute()
     except CellExecutionError as error:
         raise RunFailed(
-            f"a cell of the notebook fails: {error.ename}: {error.evalue}", mend="write an .html or .md"
+            f"a cell of the notebook fails: {error.ename}: {error.evalue}", fix="write an .html or .md"
         ) from error
     return json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 

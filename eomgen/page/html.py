@@ -131,7 +131,7 @@ def _live(live: Callable[[], Html]) -> Html:
     try:
         return live()
     except ToolMissing as error:
-        return element("p", f"Not here: {error.what}; {error.mend}.", class_="remark")
+        return element("p", f"Not here: {error.what}; {error.fix}.", class_="remark")
 
 
 def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:
@@ -255,11 +255,11 @@ def _attachments(files: Sequence[Attachment], computed: frozenset[str]) -> Html:
     rows = []
     for file in files:
         if isinstance(file.content, bytes):
-            told, size, content = None, f" ({max(1, round(len(file.content) / 1024))} KB)", file.content
+            reported, size, content = None, f" ({max(1, round(len(file.content) / 1024))} KB)", file.content
         else:
             carried = {name: column for name, column in file.content.items() if name not in computed}
-            told, size, content = json.dumps(tuple(file.content)), "", table_bytes(carried, DIGITS)
-        named = {"data_name": file.name, "data_media": file.media, "data_columns": told}
+            reported, size, content = json.dumps(tuple(file.content)), "", table_bytes(carried, DIGITS)
+        named = {"data_name": file.name, "data_media": file.media, "data_columns": reported}
         link = element("a", file.name, href="#downloads", data_packed=packed(with_far_copies(content)), **named)
         rows.append(element("li", link, f"{size}: {file.about}"))
     return element("ul", *rows, class_="files")

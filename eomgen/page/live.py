@@ -1,8 +1,8 @@
 """Phase, Scene -> Live: a model that a page can move by itself: its programs, and where their numbers lie.
 
 begin(p)        parameters that follow from others, start and first guess of each coordinate, start of each speed
-start, ties     phi, J u + sigma and their slopes, of the system as it is declared and as it is integrated
-inertia         M of the declared system, by which start speeds are brought onto the ties
+start, constraints     phi, J u + sigma and their slopes, of the system as it is declared and as it is integrated
+inertia         M of the declared system, by which start speeds are brought onto the constraints
 turned(x)       the rates of the coordinates by the declared speeds
 rate(t, x)      x' = (N u + nu, a)
 frame(t, x)     the scene's slots, T, V, the rates of the coordinates, the reactions
@@ -14,9 +14,17 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen.program import Program, kinematic_rates, program_in_motion, program_of, right_hand_side, spheres_of
+from eomgen.codegen.program import (
+    Program,
+    kinematic_rates,
+    program_in_motion,
+    program_of,
+    right_hand_side,
+    unit_quaternions_of,
+)
 from eomgen.codegen.programs import determinate
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.closure import gaps_of, is_guess, is_typed
 from eomgen.mechanics.constraints.rows import left_of
@@ -29,7 +37,6 @@ from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.mechanics.start.state import start_speeds
 from eomgen.model.arithmetic import in_order
 from eomgen.model.parts import Coordinate, Model
-from eomgen.records import dataclass
 from eomgen.scene.scene import Scene
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import breakpoints_of
@@ -41,11 +48,11 @@ Slopes = list[tuple[int, int]]
 
 
 @dataclass(frozen=True)
-class TieRows:
-    """The ties of one system, as numbers of (t, x, p).
+class ConstraintRows:
+    """The constraints of one system, as numbers of (t, x, p).
 
     Args:
-        gaps, rates: phi of the ties that have one, J u + sigma of those that close.
+        gaps, rates: phi of the constraints that have one, J u + sigma of those that close.
         speeds: J.
     """
 
@@ -64,7 +71,7 @@ class TieRows:
         """dphi/dq"""
         return tuple(map(tuple, jacobian(self.gaps, self.system.symbols.q)))
 
-    def told(self) -> dict[str, Any]:
+    def reported(self) -> dict[str, Any]:
         """Where the numbers lie."""
         symbols, model = self.system.symbols, self.system.scope.model
         return {
@@ -75,17 +82,18 @@ class TieRows:
             "positionSlopes": _places(self._positions),
             "speedSlopes": _places(self.speeds),
             "fixed": [k for k, q in enumerate(symbols.q) if model.coordinates[q.name].driven],
-            "spheres": spheres_of(self.program),
+            "spheres": unit_quaternions_of(self.program),
         }
 
 
-def tie_rows(system: System) -> TieRows:
-    """Of a system: the gaps of all ties, also of those that eliminated coordinates satisfy, and the rows that close."""
+def constraint_rows(system: System) -> ConstraintRows:
+    """Of a system: the gaps of all constraints, also of those that eliminated coordinates satisfy, and the rows that
+    close."""
     free = system if system.elimination is None else system.free or system
-    closing = system.ties.closing
-    J = tuple(map(tuple, system.ties.J)) if closing and system.symbols.u else ()
+    closing = system.constraints.closing
+    J = tuple(map(tuple, system.constraints.J)) if closing and system.symbols.u else ()
     rates = tuple(row.velocity for row in closing) if J else ()
-    return TieRows(system, gaps_of(free.ties), rates, J)
+    return ConstraintRows(system, gaps_of(free.constraints), rates, J)
 
 
 def _places(rows: Sequence[Sequence[Scalar]]) -> Slopes:
@@ -109,14 +117,14 @@ class Live:
         return self.phase.system.scope.model
 
     @cached_property
-    def start(self) -> TieRows:
-        """The ties of the system as it is declared."""
-        return tie_rows(self.phase.declared)
+    def start(self) -> ConstraintRows:
+        """The constraints of the system as it is declared."""
+        return constraint_rows(self.phase.declared)
 
     @cached_property
-    def ties(self) -> TieRows:
-        """The ties of the system as it is integrated."""
-        return self.start if self.phase.system is self.phase.declared else tie_rows(self.phase.system)
+    def constraints(self) -> ConstraintRows:
+        """The constraints of the system as it is integrated."""
+        return self.start if self.phase.system is self.phase.declared else constraint_rows(self.phase.system)
 
     @cached_property
     def programs(self) -> dict[str, Program]:
@@ -134,7 +142,7 @@ class Live:
             if self.start.rates:
                 found["inertia"] = _inertia(declared)
             if system is not declared:
-                found["ties"] = self.ties.program
+                found["ties"] = self.constraints.program
                 found["turned"] = program_of(declared.scope.rates, system.symbols, inputs=system.inputs)
             if self.phase.edges:
                 found["edges"] = program_of(left_of(self.phase.edges), system.symbols, inputs=system.inputs)
@@ -183,22 +191,24 @@ class Live:
         place = first + 2 + len(phase.coordinates)
         return found | {name: ("frame", place + k) for k, name in enumerate(self.reactions)}
 
-    def told(self) -> dict[str, Any]:
+    def reported(self) -> dict[str, Any]:
         """What the page has to know of the programs."""
         declared, model = self.phase.declared, self.model
         q, u, parts = declared.symbols.q, declared.symbols.u, model.coordinates
-        standing = set(symbols_of(gaps_of(declared.ties)))
-        sought = fixed_by_position(declared.ties)
+        standing = set(symbols_of(gaps_of(declared.constraints)))
+        sought = fixed_by_position(declared.constraints)
         return {
             "parameters": list(declared.symbols.parameters),
             "derived": list(self.derived),
             "coordinates": [x.name for x in q],
             "speeds": [x.name for x in u],
             "phase": {"coordinates": self.phase.coordinates, "speeds": self.phase.speeds},
-            "start": self.start.told(),
-            "ties": self.ties.told(),
+            "start": self.start.reported(),
+            "ties": self.constraints.reported(),
             "sought": [k for k, x in enumerate(q) if x in sought],
-            "gapTies": [row.tie for row in declared.ties.rows if row.gap is not None and not row.identical],
+            "gapTies": [
+                row.constraint for row in declared.constraints.rows if row.gap is not None and not row.identical
+            ],
             "near": [k for k, x in enumerate(q) if x in sought and parts[x.name].near is not None],
             "own": [k for k, x in enumerate(q) if x in standing and x not in sought and not parts[x.name].driven],
             "guesses": [x.name for x in (*q, *u) if is_guess(model, x.name)],

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 # -------- columns ---------------------------------------------------------------------------------------------
 # Columns of numbers -> few bytes: whole multiples of a power of ten, of these the differences that are shortest.
@@ -47,7 +47,7 @@ def packed_columns(columns: Iterable[np.ndarray], digits: int) -> PackedColumns:
         columns: each of the same length n.
         digits: at most 12.
     """
-    told, content, rows = [], [], 0
+    reported, content, rows = [], [], 0
     for column in columns:
         rows = len(column)
         finite = np.isfinite(column)
@@ -60,9 +60,9 @@ def packed_columns(columns: Iterable[np.ndarray], digits: int) -> PackedColumns:
         for _ in range(MOST_DIFFERENCES):
             tried.append(np.diff(tried[-1], prepend=0))
         order = min(range(len(tried)), key=lambda k: float(np.log2(1.0 + np.abs(tried[k])).sum()))
-        told.append((power, order, holes))
+        reported.append((power, order, holes))
         content.append(_seven_bits(tried[order]))
-    return PackedColumns(rows, tuple(told), b"".join(content))
+    return PackedColumns(rows, tuple(reported), b"".join(content))
 
 
 def table_bytes(columns: Mapping[str, np.ndarray], digits: int) -> bytes:

@@ -14,6 +14,7 @@ from eomgen import files, pipeline
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.base import TestVector
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
@@ -22,7 +23,6 @@ from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.run import run_of_a_page
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 
@@ -134,14 +134,14 @@ def play(
 def played(model: Model, time: float | None, options: PlayerOptions) -> Played:
     """The page of a model whose values stand."""
     if not model.coordinates:
-        raise UsageError("nothing moves: the model has no coordinates", mend="`statics` and `kinematics` answer it")
+        raise UsageError("nothing moves: the model has no coordinates", fix="`statics` and `kinematics` answer it")
     if not (options.speed > 0 and math.isfinite(options.speed)):
-        raise UsageError(f"a speed of {options.speed:g} makes no sense", mend="1 is as fast as it moves")
+        raise UsageError(f"a speed of {options.speed:g} makes no sense", fix="1 is as fast as it moves")
     found, shorter = run_of_a_page(pipeline.derive(model), time, SAMPLES)
     made = Played(PlayedRun(found, options), shorter)
     points = [point["name"] for point in made.played.drawn[0]["points"]]
     if options.trail and options.trail not in points:
-        raise UsageError(f"there is no point '{options.trail}'", mend=f"there are {', '.join(points)}")
+        raise UsageError(f"there is no point '{options.trail}'", fix=f"there are {', '.join(points)}")
     return made
 
 
@@ -162,22 +162,22 @@ def slider_ranges(
         first, colon, last = (part.strip() for part in ends.partition(":"))
         known = (*model.parameters, *model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds)
         if name not in known:
-            raise UsageError(f"there is no slider for '{name}'", mend=f"there are {', '.join(known)}")
+            raise UsageError(f"there is no slider for '{name}'", fix=f"there are {', '.join(known)}")
         if name in found:
-            raise UsageError(f"the slider '{name}' is given twice", mend="give it once")
+            raise UsageError(f"the slider '{name}' is given twice", fix="give it once")
         if equals and not (colon and first and last):
-            raise UsageError(f"'{text}' is no slider", mend=LIKE)
+            raise UsageError(f"'{text}' is no slider", fix=LIKE)
         found[name] = None
         if equals:
             typed = TypedNumbers(model, name, declared)
             try:
                 low, high = typed.number(first), typed.number(last)
             except ValueError as error:
-                raise UsageError(f"'{text}' is no slider: its ends are no numbers", mend=LIKE) from error
+                raise UsageError(f"'{text}' is no slider: its ends are no numbers", fix=LIKE) from error
             except ExpressionError as error:
-                raise UsageError(f"'{text}' is no slider: {error.what}", mend=error.mend or LIKE) from error
+                raise UsageError(f"'{text}' is no slider: {error.what}", fix=error.fix or LIKE) from error
             if not low < high < math.inf:
-                raise UsageError(f"the slider '{name}' ends before it begins", mend=LIKE)
+                raise UsageError(f"the slider '{name}' ends before it begins", fix=LIKE)
             found[name] = (low, high)
             taken.append(typed.taken(ends, [first, last], " to ".join))
     return found, tuple(taken)

@@ -29,9 +29,9 @@ from eomgen.page.markup import in_a_script, mathml, packed
 from eomgen.page.packing import packed_columns
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally, differing
-from eomgen.proof.pictures_told import picture_of_page, pictures_told, states_shown
+from eomgen.proof.pictures_reported import picture_of_page, pictures_reported, states_shown
 from eomgen.proof.reports_read import columns_unpacked, unpacked
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.scene.connections import reaction_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import joined, phase_frames
@@ -140,7 +140,7 @@ class PlayedRun:
         """Whether the model lives in the page."""
         return self.options.moves and not self.rests
 
-    def told(self) -> dict[str, Any]:
+    def reported(self) -> dict[str, Any]:
         """What the player is told."""
         run, names = self.run, (*self.run.coordinates, *self.run.speeds)
         moves = self.moves
@@ -162,7 +162,7 @@ class PlayedRun:
             "conservative": run.drift is not None,
             "energy": energy,
             "run": self._recorded(),
-            "live": self.live.told() if self.live else None,
+            "live": self.live.reported() if self.live else None,
             "moves": moves,
             "parameters": self._parameters(),
             "sliders": self._sliders() if self.options.moves else [],
@@ -180,21 +180,21 @@ class PlayedRun:
     def _signs(self, plotted: Sequence[str]) -> dict[str, str]:
         """The names as formulas have them, MathML."""
         names = dict.fromkeys((*self.run.coordinates, *self.run.speeds, *self.model.parameters))
-        notation = notation_of(self.model).told_apart(names)
+        notation = notation_of(self.model).reported_apart(names)
         return {name: mathml(notation.latex(name)) for name in names if name in plotted or self.options.moves}
 
     def _recorded(self) -> dict[str, Any]:
         """The run: states as they are integrated, or of contacts that change as they are named, with frames."""
         run = self.run
-        told = {"t": rows_told(run.t[:, None]), "message": "" if run.ok else run.message}
+        reported = {"t": rows_reported(run.t[:, None]), "message": "" if run.ok else run.message}
         if self.live is not None:
             assert run.phases[0].track is not None
             times, states = run.phases[0].track
             x = states[np.searchsorted(times, run.t)]
-            return {**told, "x": rows_told(x)}
+            return {**reported, "x": rows_reported(x)}
         frames = self.drawn[1]
         assert frames is not None
-        return {**told, "x": rows_told(run.x), "frames": rows_told(frames, DRAWN)}
+        return {**reported, "x": rows_reported(run.x), "frames": rows_reported(frames, DRAWN)}
 
     def _parameters(self) -> list[dict[str, Any]]:
         names = self.phase.declared.symbols.parameters
@@ -228,18 +228,22 @@ class PlayedRun:
             if name not in derived
         }
         first = dict(zip((*self.run.coordinates, *self.run.speeds), self.run.x[0].tolist(), strict=True))
-        spheres = {e.name for four in self.phase.declared.scope.quaternions for e in four}
+        unit_quaternions = {e.name for four in self.phase.declared.scope.quaternions for e in four}
         for name, part in self.model.coordinates.items():
-            if name in first and not part.driven and not part.dependent and name not in spheres:
+            if name in first and not part.driven and not part.dependent and name not in unit_quaternions:
                 values[name] = (first[name], "coordinate", part.about or "")
-        values |= {name: (first[name], "speed", "") for name in self.run.speeds if name.rstrip("'") not in spheres}
-        asked = self.options.sliders
-        unknown = [name for name in asked if name not in values]
+        values |= {
+            name: (first[name], "speed", "") for name in self.run.speeds if name.rstrip("'") not in unit_quaternions
+        }
+        requested = self.options.sliders
+        unknown = [name for name in requested if name not in values]
         if unknown:
-            raise UsageError(f"there is no slider for '{unknown[0]}'", mend=f"there are {', '.join(values)}")
+            raise UsageError(f"there is no slider for '{unknown[0]}'", fix=f"there are {', '.join(values)}")
         units = units_of(self.model, values)
-        chosen = {name: values[name] for name in asked} if asked else values
-        return [self._slider(name, *told, units.get(name), asked.get(name)) for name, told in chosen.items()]
+        chosen = {name: values[name] for name in requested} if requested else values
+        return [
+            self._slider(name, *reported, units.get(name), requested.get(name)) for name, reported in chosen.items()
+        ]
 
     def _slider(
         self, name: str, value: float, kind: str, about: str, unit: Any, range_: SliderRange | None
@@ -277,7 +281,7 @@ def _unit(unit: Any) -> dict[str, Any]:
     return {"unit": "" if unit is None else unit.text, "size": 1.0 if unit is None else float(unit.size)}
 
 
-def rows_told(rows: np.ndarray, digits: int = STATES) -> dict[str, Any]:
+def rows_reported(rows: np.ndarray, digits: int = STATES) -> dict[str, Any]:
     """Numbers as a page reads them.
 
     Args:
@@ -365,7 +369,7 @@ class Playable(Protocol):
     def live(self) -> Live | None: ...
     @property
     def moves(self) -> bool: ...
-    def told(self) -> dict[str, Any]: ...
+    def reported(self) -> dict[str, Any]: ...
 
 
 def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
@@ -388,15 +392,15 @@ def player_page_of(played: Playable) -> str:
 def player_parts_of(played: Playable, identity: str, *, page: bool = False) -> PlayerParts:
     """A player, to be put into a page, or alone in one."""
     library = {} if played.model.space == "plane" else {"three": three_js()}
-    told = json.dumps({**played.told(), **library, "page": page}, separators=(",", ":"), allow_nan=False)
+    reported = json.dumps({**played.reported(), **library, "page": page}, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
-        told = told.replace(letter, f"\\u{ord(letter):04x}")
+        reported = reported.replace(letter, f"\\u{ord(letter):04x}")
     live = played.live
     needed = () if live is None else live.programs if played.moves else ("begin", "rate", "frame")
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
     programs = _LAID_OUT.sub("\n", programs)
     text = "\n".join(in_a_script(_asset(name)) for name in SCRIPTS if library or name != IN_SPACE)
-    begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'
+    begin = f'begun(document.getElementById("{identity}"), {reported}, {{{programs}}});'
     body = f'<div class="eomgen-player" id="{identity}"></div>'
     whole = f"(() => {{\n{_harmless(text)}\n{begin}\n}})();"
     if not page:
@@ -413,8 +417,8 @@ def three_js() -> str:
     try:
         folder = resources.files("jupyter_threejs_sage")
     except ModuleNotFoundError:
-        mend = "pip install 'eomgen[space]'"
-        raise ToolMissing("there is no library for pictures in space in a page", mend=mend) from None
+        fix = "pip install 'eomgen[space]'"
+        raise ToolMissing("there is no library for pictures in space in a page", fix=fix) from None
     return packed(folder.joinpath("static", "r130", "three.min.js").read_bytes())
 
 
@@ -437,7 +441,7 @@ _PACKED = re.compile(r'atob\("([A-Za-z0-9+/=]+)"\)')
 _BEGUN = "begun(document.getElementById("
 
 
-def player_told(page: str) -> Mapping[str, Any]:
+def player_reported(page: str) -> Mapping[str, Any]:
     """What the player in a page is told.
 
     Raises:
@@ -452,13 +456,13 @@ def player_told(page: str) -> Mapping[str, Any]:
 
 def player_read_back(played: PlayedRun, page: str) -> Iterator[Check]:
     """Whether a page holds the run that it plays, and draws its model."""
-    told, tally = player_told(page), Tally(NAME, HOW)
-    for what, wrong in _compared(played, told):
+    reported, tally = player_reported(page), Tally(NAME, HOW)
+    for what, wrong in _compared(played, reported):
         tally.add(what, wrong)
     yield from tally.checks()
     if not played.changes:
-        yield from pictures_told(
-            (state, picture_of_page(told["scene"], _slots(played, state)))
+        yield from pictures_reported(
+            (state, picture_of_page(reported["scene"], _slots(played, state)))
             for _, state in states_shown(played.run, played.run.t)
         )
 
@@ -498,38 +502,38 @@ def _slots(played: PlayedRun, state: NumericState) -> list[float]:
     return [float(x) for x in evaluate(played.scene.values, state.values | known, fifty_digits(partial=True))]
 
 
-def _compared(played: PlayedRun, told: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def _compared(played: PlayedRun, reported: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
     run = played.run
-    yield "time", partial(differing, told["time"], run.phases[-1].end)
+    yield "time", partial(differing, reported["time"], run.phases[-1].end)
     names = [*run.coordinates, *run.speeds]
-    yield "what moves it", partial(_otherwise_moved, played, told)
-    yield "names", lambda: "" if list(told["names"]) == names else ", ".join(told["names"])
-    yield "instants", partial(_other_column, told["run"]["t"], [run.t])
-    yield "states", partial(_other_column, told["run"]["x"], list(_states(played).T))
-    if told.get("live") and {*played.phase.coordinates, *played.phase.speeds} <= {*names}:
-        yield "numbers by their names", partial(_named_otherwise, played, told["live"]["columns"])
+    yield "what moves it", partial(_otherwise_moved, played, reported)
+    yield "names", lambda: "" if list(reported["names"]) == names else ", ".join(reported["names"])
+    yield "instants", partial(_other_column, reported["run"]["t"], [run.t])
+    yield "states", partial(_other_column, reported["run"]["x"], list(_states(played).T))
+    if reported.get("live") and {*played.phase.coordinates, *played.phase.speeds} <= {*names}:
+        yield "numbers by their names", partial(_named_otherwise, played, reported["live"]["columns"])
     model, p = played.model, dict(zip(played.phase.declared.symbols.parameters, played.phase.p, strict=True))
-    for each in told["parameters"]:
+    for each in reported["parameters"]:
         yield f"parameter {each['name']}", partial(_other_value, each, p.get(each["name"]))
     first = dict(zip(names, run.x[0].tolist(), strict=True))
-    for each in told["sliders"]:
+    for each in reported["sliders"]:
         yield f"slider {each['name']}", partial(_other_slider, each, p | first)
     parts = {**model.parameters, **model.coordinates}
-    plotted = [each for each in told["plotted"] if each["name"] in model.coordinates]
-    for each in (*told["sliders"], *plotted):
+    plotted = [each for each in reported["plotted"] if each["name"] in model.coordinates]
+    for each in (*reported["sliders"], *plotted):
         unit = getattr(parts.get(each["name"]), "unit", None)
         declared = "" if unit is None else unit.text
         yield f"unit of {each['name']}", partial(_other_unit, each, declared)
 
 
-def _otherwise_moved(played: PlayedRun, told: Mapping[str, Any]) -> str:
+def _otherwise_moved(played: PlayedRun, reported: Mapping[str, Any]) -> str:
     """Whether a page says that contacts change where none is declared, or moves by itself where they do."""
-    model, asked = played.model, played.options.moves
+    model, requested = played.model, played.options.moves
     could = bool(contacts_of(model)) or any(len(pieces_of(body)) > 1 for body in model.bodies.values())
-    if asked and "contacts" in told["rests"] and not could:
+    if requested and "contacts" in reported["rests"] and not could:
         return "it says that contacts change, and none is declared"
     alone = len(played.run.phases) == 1
-    return "" if alone or not told["moves"] else "it moves by itself, and the run has several phases"
+    return "" if alone or not reported["moves"] else "it moves by itself, and the run has several phases"
 
 
 def _states(played: PlayedRun) -> np.ndarray:
@@ -540,8 +544,8 @@ def _states(played: PlayedRun) -> np.ndarray:
     return np.array([x[int(np.argmin(np.abs(t - each)))] for each in played.run.t])
 
 
-def _other_column(told: Mapping[str, Any], right: list[np.ndarray]) -> str:
-    found = list(columns_unpacked(told, b64decode(told["content"])))
+def _other_column(reported: Mapping[str, Any], right: list[np.ndarray]) -> str:
+    found = list(columns_unpacked(reported, b64decode(reported["content"])))
     if len(found) != len(right):
         return f"{len(found)} columns for {len(right)}"
     for k, (a, b) in enumerate(zip(found, right, strict=True)):
@@ -592,7 +596,7 @@ class PlayedDisplacements:
     def model(self) -> Model:
         return self.found[0].structure.system.scope.model
 
-    def told(self) -> dict[str, Any]:
+    def reported(self) -> dict[str, Any]:
         """What the player is told."""
         share = np.arange(STEPS + 1) / STEPS
         size = len(share)
@@ -601,8 +605,13 @@ class PlayedDisplacements:
         ]
         numbers = joined(pieces)
         t = PERIOD * np.concatenate([k + share for k in range(len(pieces))])
-        states = rows_told(np.empty((len(t), 0)))
-        run = {"t": rows_told(t[:, None]), "message": "", "x": states, "frames": rows_told(numbers.frames, DRAWN)}
+        states = rows_reported(np.empty((len(t), 0)))
+        run = {
+            "t": rows_reported(t[:, None]),
+            "message": "",
+            "x": states,
+            "frames": rows_reported(numbers.frames, DRAWN),
+        }
         return {
             "name": self.model.name,
             "time": float(t[-1]),

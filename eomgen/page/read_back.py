@@ -23,7 +23,7 @@ from eomgen.proof.pages_read import PageLine, SetLetters, spoken, tokens_of, typ
 from eomgen.proof.reports_read import (
     ReadCurves,
     ReadReport,
-    columns_told,
+    columns_reported,
     html_report,
     latex_report,
     markdown_report,
@@ -246,7 +246,7 @@ def _unlike_table(run: Trajectory, content: bytes, columns: Sequence[str]) -> st
     right = run.columns()
     if list(columns) != list(right):
         return f"columns {', '.join(columns)}"
-    for name, column in columns_told(content).items():
+    for name, column in columns_reported(content).items():
         size = float(np.max(np.abs(right[name]), where=np.isfinite(right[name]), initial=0.0))
         if len(column) != len(run.t) or not np.allclose(column, right[name], 0, NINE_DIGITS * size, equal_nan=True):
             return name

@@ -16,6 +16,7 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations, with_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
@@ -31,7 +32,6 @@ from eomgen.proof.in_numbers import pushes_of, with_inputs
 from eomgen.proof.printed import least_multipliers
 from eomgen.proof.states import TrialState
 from eomgen.proof.trials import Trials, refuse_noise
-from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import Call, Expression

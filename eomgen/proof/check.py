@@ -7,7 +7,7 @@ from dataclasses import field
 from typing import Any, Literal
 
 from eomgen.errors import EomgenError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 

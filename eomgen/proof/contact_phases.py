@@ -5,7 +5,8 @@ The phases of a run -> checks: what its contacts do within each, and that nothin
     closed, can end or slide  push N >= 0             open     gap >= 0
     sticks                     |F| <= mu |N|           slides   sense v >= 0
     from phase to phase        dP_k = sum_b m dv . dv/du_k + I dw . dw/du_k + armature ds' ds'/du_k
-                               dP in span(ties) + cone(contacts that touch and are at rest after),   J u+ + sigma >= 0
+                               dP in span(constraints) + cone(contacts that touch and are at rest after),   J u+ +
+                               sigma >= 0
 
 The momenta are those of the bodies, by their twists; M, the impulses and the functions that end a phase are not used.
 N and F are the columns of reactions. An impact is plastic and without friction, as the model file's manual says.
@@ -23,8 +24,9 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres
-from eomgen.mechanics.constraints.rows import Row, rows_of_tie
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_norms
+from eomgen.mechanics.constraints.rows import Row, rows_of_constraint
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies.friction import frictions
 from eomgen.mechanics.kinematics.inertia import armatures, given_momenta, mass_properties
@@ -39,7 +41,6 @@ from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import sliding_velocity
 from eomgen.simulation.phase_model import PhaseModel, Values, slack_name
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -115,7 +116,7 @@ class _Seen:
         return functions.kinematic((scalar,)).many(t, functions.inner(x), self.model.p)[:, 0]
 
     def _gap(self, contact: Contact) -> np.ndarray:
-        gap = rows_of_tie(self.model.system.motion, contact.name)[0].gap
+        gap = rows_of_constraint(self.model.system.motion, contact.name)[0].gap
         if gap is not None:
             return self._along(gap)
         return self.model.functions.slacks(self.track[1])[:, self.model.loose.index(contact.name)]
@@ -137,17 +138,17 @@ class _Seen:
 
     def _forces(self, contact: Contact, labels: tuple[str, ...]) -> np.ndarray:
         """Components of a contact's force, k x n."""
-        kind = "joint" if contact.of_joint and labels[0] == "n" else "tie"
+        kind = "joint" if contact.of_joint and labels[0] == "n" else "constraint"
         mine = [c for c in self.model.reactions.components if c.owner == contact.name and c.kind == kind]
         names, found = self._columns
-        asked = [names.index(c.name) for c in mine if c.label in labels]
-        if not asked or np.isnan(found[:, asked]).all():
+        requested = [names.index(c.name) for c in mine if c.label in labels]
+        if not requested or np.isnan(found[:, requested]).all():
             raise NoValue("its force has no single value")
-        known = found[:, asked]
+        known = found[:, requested]
         return np.asarray(known[np.isfinite(known).all(axis=1)].T)
 
 
-def bodies_stand_as_told(phases: Sequence[Phase], apart: System) -> Iterator[Check]:
+def bodies_stand_as_reported(phases: Sequence[Phase], apart: System) -> Iterator[Check]:
     """In every phase bodies are where the whole model has them, and that where their joints say.
 
     Args:
@@ -181,7 +182,7 @@ def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
     """A state of the run at 50 digits; quaternions of doubles miss norm 1 by 1e-16 and are put to it."""
     symbols = system.symbols
     known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
-    known |= on_unit_spheres(system.scope.quaternions, known)
+    known |= on_unit_norms(system.scope.quaternions, known)
     given = zip(symbols.parameters.values(), p, strict=True)
     return {**known, symbols.t: of_50_digits(t)} | {node: of_50_digits(float(x)) for node, x in given}
 
@@ -190,7 +191,7 @@ def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
 
 
 def changes_follow_impulses(phases: Sequence[Phase], apart: System, contacts: Sequence[str]) -> Iterator[Check]:
-    """At every change of phase only ties, and contacts that touch, give momentum; none where nothing changes.
+    """At every change of phase only constraints, and contacts that touch, give momentum; none where nothing changes.
 
     Args:
         apart: the model without its contacts that can end.
@@ -219,7 +220,7 @@ class _Bodies:
         size = max(1.0, float(np.max(np.abs([early, late]))))
         if np.max(np.abs(early[:q] - late[:q]), initial=0.0) > OPEN_GAP * size:
             return "a coordinate jumps"
-        pushes, frees = [], [J for J, _ in self._rows_at(self.system.ties.closing, late)]
+        pushes, frees = [], [J for J, _ in self._rows_at(self.system.constraints.closing, late)]
         for name, rows in self._rows.items():
             found = self._rows_at(rows, late)
             speeds = [v for _, v in found]
@@ -273,7 +274,7 @@ class _Bodies:
 
     @cached_property
     def _rows(self) -> dict[str, tuple[Row, ...]]:
-        return {name: rows_of_tie(self.system.motion, name) for name in self.contacts}
+        return {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
 
     def _touches(self, name: str, rows: Sequence[Row]) -> bool:
         """Whether a contact is closed before or after, or its gap is 0."""
@@ -343,7 +344,7 @@ def other_friction(system: System, state: State) -> str:
     Raises:
         NoValue: something has no value there.
     """
-    proof, surfaces = InNumbers(system, state), {row.tie for row in system.ties.rows if row.shares}
+    proof, surfaces = InNumbers(system, state), {row.constraint for row in system.constraints.rows if row.shares}
     for name, factor, sliding in frictions(system):
         found, v = proof.at((factor, sliding))
         along = 1 if name in surfaces else abs(v)  # on a surface viscous friction is for a unit of v
@@ -357,7 +358,7 @@ def other_friction(system: System, state: State) -> str:
 
 
 def _laws(system: System, name: str) -> Iterator[Resistance | None]:
-    """Of a tie its own; of a path those of its pieces."""
+    """Of a constraint its own; of a path those of its pieces."""
     model = system.scope.model
     if name in model.constraints:
         yield getattr(model.constraints[name], "friction", None)
@@ -395,7 +396,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
     known = own_start(free)
     if known is None:
         return ""
-    rows = {name: rows_of_tie(free.motion, name)[0] for name in ending}
+    rows = {name: rows_of_constraint(free.motion, name)[0] for name in ending}
     gaps = [row.gap for row in rows.values() if row.gap is not None]
     if any(abs(x) > CARRIED for x in evaluate(gaps, known, fifty_digits())):
         return ""  # it does not begin in contact: where it does, somebody else says

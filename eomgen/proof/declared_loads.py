@@ -8,6 +8,7 @@ from itertools import pairwise
 from random import Random
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics.inertia import HALF, mass_properties
 from eomgen.mechanics.kinematics.loads import Applied, JointEffort, weights
@@ -38,7 +39,6 @@ from eomgen.proof.in_numbers import (
     way_through,
 )
 from eomgen.proof.states import refuse_open
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.expression.spatial import (
     ZERO,
@@ -350,14 +350,14 @@ def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -
     n, Q = apply(here.R, column), product(here.R, transposed(home.R))
     own = link.twist.w if turning else plus(link.twist.v, cross(link.twist.w, link.point))
     against = minus(apply(link.pose.R, own), apply(parent.R, carried.w if turning else carried.v))
-    asked = (
+    requested = (
         dot(n, (Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
         Q[0][0] + Q[1][1] + Q[2][2] - 1,
         dot(n, minus(here.p, home.p)),
         dot(column, column),
         dot(against, apply(link.pose.R, column)),
     )
-    sine, cosine, way, square, rate = evaluate(asked, state, fifty_digits())
+    sine, cosine, way, square, rate = evaluate(requested, state, fifty_digits())
     size = square**0.5
     return square.context.atan2(sine / size, cosine) / size if turning else way / square, rate / square
 
@@ -486,9 +486,11 @@ class ActingElement(InNumbers):
 
 
 def threads_of(system: System) -> dict[str, Thread]:
-    """What runs straight from point to point, by its tie, where that is closed."""
-    closed = {row.tie for row in system.ties.rows}
-    threads = {name: tie.thread() for name, tie in system.scope.model.constraints.items() if name in closed}
+    """What runs straight from point to point, by its constraint, where that is closed."""
+    closed = {row.constraint for row in system.constraints.rows}
+    threads = {
+        name: constraint.thread() for name, constraint in system.scope.model.constraints.items() if name in closed
+    }
     return {name: thread for name, thread in threads.items() if thread is not None}
 
 
@@ -496,7 +498,7 @@ def strung_otherwise(system: System, state: State) -> str:
     """Which string or link runs or pulls otherwise than it is declared; "" where none does.
 
     Raises:
-        NoValue: something has no value there, or the ties do not hold.
+        NoValue: something has no value there, or the constraints do not hold.
     """
     refuse_open(system, state)
     for name, thread in threads_of(system).items():
@@ -527,7 +529,9 @@ class _Strung(InNumbers):
 
     @property
     def wrong(self) -> str:
-        rows = [row for row in self.system.ties.rows if row.tie == self.name and row.component == "tension"]
+        rows = [
+            row for row in self.system.constraints.rows if row.constraint == self.name and row.component == "tension"
+        ]
         if len(rows) != len(self._ropes):
             return f"has {len(rows)} tensions for {len(self._ropes)}"
         for row, rope in zip(rows, self._ropes, strict=True):

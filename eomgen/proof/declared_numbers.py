@@ -56,7 +56,7 @@ def _parameters(found: Mapping[str, Any], model: Model) -> Iterator[str]:
     known = {name: float(x) for name, x in exact_parameters(model).items()}
     for name, entry in _table(found, "parameters"):
         value, unit = (entry.get("value"), entry.get("unit", "1")) if isinstance(entry, dict) else (entry, "1")
-        due, size = _worth(value, known), _size(unit)
+        due, size = _value(value, known), _size(unit)
         if name in known and due is not None and size is not None:
             yield _apart(name, known[name], due * size)
 
@@ -104,7 +104,7 @@ def _size(text: Any) -> float | None:
     return size if at == len(flat) and at else None
 
 
-def _worth(value: Any, known: Mapping[str, float]) -> float | None:
+def _value(value: Any, known: Mapping[str, float]) -> float | None:
     """Of a number, or of a formula of parameters; None of what Python does not read."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return float(value)

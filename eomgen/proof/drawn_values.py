@@ -82,13 +82,13 @@ def _chance(seed: int, k: int) -> float:
     return ((z ^ (z >> 31)) // 2**11 + 0.5) / 2**53
 
 
-def told_of_all(
+def reported_of_all(
     columns: Mapping[str, Sequence[float | None]],
     summary: Mapping[str, Sequence[float | None]],
     remarks: Sequence[str],
     critical: str,
     fine: float,
-    asked: Sequence[str],
+    requested: Sequence[str],
 ) -> Check:
     """(how many, least, mean, largest) of each column, and which are called the same in all runs.
 
@@ -100,26 +100,26 @@ def told_of_all(
         asked: of which columns it is told where they are the same in all runs.
     """
     wrong = (
-        *(_summed(name, columns[name], told) for name, told in summary.items()),
-        *(_remarked(name, columns[name], remarks, name == critical, fine) for name in asked),
+        *(_summed(name, columns[name], reported) for name, reported in summary.items()),
+        *(_remarked(name, columns[name], remarks, name == critical, fine) for name in requested),
     )
     return checked("what is told of all runs is of their rows", first_wrong(wrong), HOW)
 
 
-def _summed(name: str, column: Sequence[float | None], told: Sequence[float | None]) -> str:
+def _summed(name: str, column: Sequence[float | None], reported: Sequence[float | None]) -> str:
     values = [x for x in column if x is not None]
     due = [len(values), *((min(values), math.fsum(values) / len(values), max(values)) if values else (None,) * 3)]
-    pairs = zip(told, due, strict=True)
+    pairs = zip(reported, due, strict=True)
     same = all(x == y if x is None or y is None else abs(x - y) <= COMPUTED * (1 + abs(y)) for x, y in pairs)
-    return "" if same else f"'{name}': {list(told)} for {due}"
+    return "" if same else f"'{name}': {list(reported)} for {due}"
 
 
 def _remarked(name: str, column: Sequence[float | None], remarks: Sequence[str], critical: bool, fine: float) -> str:
     """Whether "is ... in all runs" is said exactly of what is the same in them, "goes from" of what is not."""
     values = [x for x in column if x is not None]
-    told = any(f"'{name}' is " in x and " in all runs" in x for x in remarks)
+    reported = any(f"'{name}' is " in x and " in all runs" in x for x in remarks)
     if len(values) < 2:
-        return f"'{name}' has no value to be the same" if told else ""
+        return f"'{name}' has no value to be the same" if reported else ""
     same = max(values) - min(values) <= fine * max(map(abs, values))
     wanted = same and not (critical and min(values) < 0 < max(values))
-    return "" if told == wanted else f"'{name}' goes from {min(values):.9g} to {max(values):.9g}"
+    return "" if reported == wanted else f"'{name}' goes from {min(values):.9g} to {max(values):.9g}"

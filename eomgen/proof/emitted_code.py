@@ -24,6 +24,7 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets.base import RHS, FileContent, Role, TestVector
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import closed, movable, speeds_closed
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
@@ -33,7 +34,6 @@ from eomgen.mechanics.kinematics.inertia import joint_row
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import instant_of, with_inputs
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length
@@ -89,14 +89,15 @@ class PhaseMotion:
         return (*self.equations.system.scope.rates, *matrices, *equations.forcing, *equations.gamma)
 
     def torn(self, code: Code, at: TriedState) -> str | None:
-        """What the code's accelerations leave of the free bodies that all ties hold at once; "" where nothing.
+        """What the code's accelerations leave of the free bodies that all constraints hold at once; "" where nothing.
 
-        None at a state in which the ties do not hold, and where no tie closes. Where the code's numbers hang on the
+        None at a state in which the constraints do not hold, and where no constraint closes. Where the code's numbers
+        hang on the
         last digits of the state, this is held against it only if the rows themselves are far from singular.
         """
         equations, symbols = self.equations, self.equations.symbols
         system = equations.system
-        if not (system.free or system).ties.closing:
+        if not (system.free or system).constraints.closing:
             return None
         given = self.values(at)
         found = _held(system, given)
@@ -155,7 +156,7 @@ class RunNumbers:
         return float(parts[worst]), worst
 
     def refuse_contradiction(self) -> None:
-        """Redundant rows contradict one another where the ties are open.
+        """Redundant rows contradict one another where the constraints are open.
 
         Raises:
             NoValue: no a fulfils J a + gamma = 0.
@@ -167,7 +168,7 @@ class RunNumbers:
         gamma = self.gamma / np.where(sizes > 0, sizes, 1.0)
         least = J @ np.linalg.lstsq(J, -gamma, rcond=COMPUTED)[0] + gamma
         if np.max(np.abs(least)) > COMPUTED * (1 + np.max(np.abs(gamma))):
-            raise NoValue("the ties contradict one another")
+            raise NoValue("the constraints contradict one another")
 
     def left_of_forces(self, a: np.ndarray, acting: np.ndarray | float = 0.0) -> float:
         """Of M a - J^T lam = forcing + acting, rows weighted by 1/sqrt(M_kk), with the lam that leaves least.
@@ -194,19 +195,19 @@ class RunNumbers:
 
 
 def _held(system: System, given: State) -> State | None:
-    """The nearest state at which all ties hold, positions and speeds; None where none is near."""
-    found = closed(system.ties, given, movable(system.ties))
+    """The nearest state at which all constraints hold, positions and speeds; None where none is near."""
+    found = closed(system.constraints, given, movable(system.constraints))
     if found is None or system.free is None or system.declared:
-        return None if found is None else speeds_closed(system.ties, found)
+        return None if found is None else speeds_closed(system.constraints, found)
     free = system.free
     rates = evaluate(free_rates(system, free), found, fifty_digits())
-    return speeds_closed(free.ties, found | dict(zip(free.scope.symbols.u, rates, strict=True)))
+    return speeds_closed(free.constraints, found | dict(zip(free.scope.symbols.u, rates, strict=True)))
 
 
 def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], name: str) -> Check:
     """The code's accelerations fulfil the equations at states; one next to a singular position says nothing.
 
-    Where the ties hold they are put to the free bodies too, which choose no rows: at the first PUT states.
+    Where the constraints hold they are put to the free bodies too, which choose no rows: at the first PUT states.
     """
     put: list[str] = []
 
@@ -366,12 +367,12 @@ def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -
     tests += [
         x for name, x in texts.items() if isinstance(x, str) and any(name in text for text in tests)
     ]  # read there
-    told = np.array(sorted({0.0, *(float(x.lower().replace("d", "e")) for x in LITERAL.findall("\n".join(tests)))}))
+    reported = np.array(sorted({0.0, *(float(x.lower().replace("d", "e")) for x in LITERAL.findall("\n".join(tests)))}))
     for v in vectors if tests else ():
         numbers = np.array([v.t, *v.x, *v.a, *v.p, *(v.inputs or ()), *v.result])
         numbers = np.abs(numbers[np.isfinite(numbers)])
-        k = np.clip(np.searchsorted(told, numbers), 1, max(len(told) - 1, 1))
-        apart = np.min(np.abs(np.take(told, [k, k - 1], mode="clip") - numbers), axis=0)
+        k = np.clip(np.searchsorted(reported, numbers), 1, max(len(reported) - 1, 1))
+        apart = np.min(np.abs(np.take(reported, [k, k - 1], mode="clip") - numbers), axis=0)
         missing = numbers[(apart > SEVEN_DIGITS * numbers) & (numbers > np.finfo(np.float32).tiny)]
         if len(missing):
             what = f"{missing[0]:.9g} at t = {v.t:.6g} s is not written"
@@ -429,11 +430,11 @@ class Judged:
         if wide:
             return checked(name, f"a tolerance of {wide[0].tolerance:.2g} at t = {wide[0].t:.6g} s", "as written")
 
-        def told(at: TriedState) -> np.ndarray:
+        def reported(at: TriedState) -> np.ndarray:
             nearest = min(written.vectors, key=lambda v: abs(v.t - at.t) + np.abs(np.array(v.x) - at.x).max(initial=0))
             return np.array(nearest.result)
 
-        return self._by_symbols(written, told, (), name)
+        return self._by_symbols(written, reported, (), name)
 
     def _by_symbols(self, written: Written, code: Code, start: Sequence[TriedState], name: str) -> Check:
         """What is given at a state, against the symbols there."""
@@ -487,7 +488,7 @@ class Judged:
         """a by dense linear algebra.
 
         Raises:
-            NoValue: redundant ties contradict one another at the state.
+            NoValue: redundant constraints contradict one another at the state.
         """
         self.motion.numbers(at).refuse_contradiction()
         found = accelerations_at(self.motion.equations, self.motion.values(at))
@@ -540,7 +541,7 @@ def start_state_tried(t: float, x0: np.ndarray | None, p0: np.ndarray | None) ->
 # parameter starts where it does in the model.
 
 
-def fmu_told(packed: bytes, states: Mapping[str, float], parameters: Mapping[str, float]) -> Check:
+def fmu_reported(packed: bytes, states: Mapping[str, float], parameters: Mapping[str, float]) -> Check:
     """The description of variables.
 
     Args:
@@ -574,8 +575,8 @@ def _wrong(text: str, states: Mapping[str, float], parameters: Mapping[str, floa
     if not states and not parameters:
         raise NoValue("the model has no start")
     for name, right in (*states.items(), *parameters.items()):
-        told = named[name].get("start") if name in named else None
-        if told is None or abs(float(told) - right) > SOLVED * (1 + abs(right)):
-            return f"'{name}' starts at {told} for {right:.12g}"
+        reported = named[name].get("start") if name in named else None
+        if reported is None or abs(float(reported) - right) > SOLVED * (1 + abs(right)):
+            return f"'{name}' starts at {reported} for {right:.12g}"
     missing = [name for name in states if f"der({name})" not in named]
     return f"'{missing[0]}' has no derivative" if missing else ""

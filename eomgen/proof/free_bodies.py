@@ -10,7 +10,8 @@ System, state -> what its free bodies ask for at any accelerations, in numbers: 
 s is the spin of a body against its parent and r its place there; their rates along a motion with the accelerations a
 are differences of numbers. No B, no energy, no derivative of a twist is used, and no equation is solved: r is compared
 at accelerations and multipliers that are as free as the coordinates. Dependent coordinates are free bodies' coordinates
-here, and every tie that closes them pushes with a lam of its own, which must do no work: so the elimination is checked.
+here, and every constraint that closes them pushes with a lam of its own, which must do no work: so the elimination is
+checked.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import System, joint_forces, placeless_forces
@@ -37,7 +39,6 @@ from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.mechanics.reactions.inverse import with_drive_let_go
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.spatial import (
@@ -70,7 +71,7 @@ class Demand:
     Args:
         forces: M a + c - Q - J^T lam, one a speed.
         sizes: of each the sum of the sizes of its terms.
-        rates: d/dt (J u + sigma) of every closing row, by (tie, number).
+        rates: d/dt (J u + sigma) of every closing row, by (constraint, number).
     """
 
     forces: list[Any]
@@ -99,7 +100,7 @@ def demand_of(system: System, state: State, h: Any = STEP) -> Demand:
 
 
 def multipliers_demanded(system: System, state: State, friction: Sequence[Any] = ()) -> dict[tuple[str, int], float]:
-    """lam of every closing and eliminated row, by (tie, number), for which the free bodies ask for nothing more.
+    """lam of every closing and eliminated row, by (constraint, number), for which the free bodies ask for nothing more.
 
     Their demand is linear in lam: it is taken without any, and with each alone. Rows that share a force are left out.
 
@@ -112,7 +113,7 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
         raise NoValue("there is friction")
     free = system.free or system
     known = _with_free_motion(system, free, state)
-    closing, none = free.ties.closing, dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
+    closing, none = free.constraints.closing, dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
     still = _demand(free, known | none)
     alone = [_demand(free, known | none | {lam: fifty_digits().number(1)}).forces for lam in free.symbols.lam]
     known_forces = friction or [0] * len(still.forces)
@@ -122,20 +123,20 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
     A, right = rows[:, None] * A * columns, rows * right
     lam = np.linalg.lstsq(A, right, rcond=RANK)[0]
     if np.any(abs(A @ lam - right) > COMPUTED * (abs(rows * [float(x) for x in still.sizes]) + abs(A) @ abs(lam))):
-        raise NoValue("the forces of the ties do not balance the free bodies")
+        raise NoValue("the forces of the constraints do not balance the free bodies")
     single = [rank(np.delete(A, k, axis=1)) < rank(A) for k in range(len(closing))]
     values = zip(closing, columns * lam, single, strict=True)
-    return {(row.tie, row.number): float(x) for row, x, has_one in values if has_one}
+    return {(row.constraint, row.number): float(x) for row, x, has_one in values if has_one}
 
 
 def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, Any]:
     """(M a + c - Q - J^T lam of a driven coordinate that is freed, at the motion as given; the size of its terms).
 
     Raises:
-        NoValue: a tie drives it; there is friction; ties follow from others only while it is driven.
+        NoValue: a constraint drives it; there is friction; constraints follow from others only while it is driven.
     """
     if not system.scope.model.coordinates[coordinate].driven:
-        raise NoValue("a tie drives it")
+        raise NoValue("a constraint drives it")
     if frictions(system):  # of what is driven alone too, where no equation of motion holds it
         raise NoValue("there is friction")
     free = with_drive_let_go(system, coordinate)
@@ -144,7 +145,7 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
     moving = (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
     nodes = (*symbols.parameters.values(), *moving)
     if not {x.name for x in nodes} <= {*own}:
-        raise NoValue("ties that follow from others do not without the drive")
+        raise NoValue("constraints that follow from others do not without the drive")
     there = dict(zip(nodes, evaluate([own[x.name] for x in nodes], known, fifty_digits()), strict=True))
     demand, k = demand_of(free, there), [u.name for u in symbols.u].index(f"{coordinate}'")
     return demand.forces[k], demand.sizes[k]
@@ -153,15 +154,17 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
 def moved_otherwise(
     system: System, state: State, friction: Sequence[Any] = (), *, regular: float = NEARLY_SINGULAR
 ) -> str:
-    """What the accelerations of a state leave of the free bodies, whatever all their ties carry; "" where nothing.
+    """What the accelerations of a state leave of the free bodies, whatever all their constraints carry; "" where
+    nothing.
 
         z . (M a + c - Q) = 0  for every z with J z = 0,      d/dt (J u + sigma) = 0
 
-    J holds every row of every tie that closes, those too that determine dependent coordinates or follow from others:
+    J holds every row of every constraint that closes, those too that determine dependent coordinates or follow from
+    others:
     its rank is that at the state, and no row is chosen. So a is that of the bodies with multipliers of least norm.
 
     Args:
-        state: one in which the ties hold, positions and speeds, at 50 digits, accelerations included.
+        state: one in which the constraints hold, positions and speeds, at 50 digits, accelerations included.
         friction: that of the contacts along the speeds; () where there is none.
         regular: how independent rows must be, or not at all.
     Raises:
@@ -171,13 +174,13 @@ def moved_otherwise(
     if friction and free is not system:
         raise NoValue("there is friction")
     known = _of_all_rates(system, free, state)
-    needed, J = _demand(free, known), rows_where_closed(free.ties, known)
+    needed, J = _demand(free, known), rows_where_closed(free.constraints, known)
     held = np.vstack([J, *_unit_lengths(free, known)])
     turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # what the rate of J brings is of the size J u^2
     a = np.abs([float(known[x]) for x in free.scope.symbols.a]) + np.fromiter(turning, float)
-    for row, line in zip(free.ties.closing, J, strict=True):
-        if abs(needed.rates[row.tie, row.number]) > COMPUTED * (1 + abs(line) @ a):
-            return f"row {row.number} of '{row.tie}' is torn open"
+    for row, line in zip(free.constraints.closing, J, strict=True):
+        if abs(needed.rates[row.constraint, row.number]) > COMPUTED * (1 + abs(line) @ a):
+            return f"row {row.number} of '{row.constraint}' is torn open"
     own = [float(x) for x in friction] or [0.0] * len(needed.forces)
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
     sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
@@ -206,11 +209,11 @@ def _rounded(system: System, free: System, state: State, needed: Demand) -> np.n
 
 
 def _motions_elsewhere(free: System, state: State, regular: float) -> float:
-    """How many motions the ties allow at another state in which they hold; without end where none is found."""
+    """How many motions the constraints allow at another state in which they hold; without end where none is found."""
     if ELSEWHERE not in free.found:
         try:
-            there = state | generic_state(free.ties, 1)
-            held = np.vstack([rows_where_closed(free.ties, there), *_unit_lengths(free, there)])
+            there = state | generic_state(free.constraints, 1)
+            held = np.vstack([rows_where_closed(free.constraints, there), *_unit_lengths(free, there)])
             free.found[ELSEWHERE] = _allowed(held, regular).shape[1]
         except (DerivationError, MissingValues, ModelError, NoValue):
             free.found[ELSEWHERE] = np.inf
@@ -250,22 +253,22 @@ def _with_free_motion(system: System, free: System, state: State, h: Any = STEP)
     speeds, a = _Bodies(system, state, h).along_motion(free_rates(system, free))
     symbols = free.scope.symbols
     motion = dict(zip(symbols.u, speeds, strict=True)) | dict(zip(symbols.a, a, strict=True))
-    pushing = {(row.tie, row.number) for row in system.ties.rows if row.eliminates}
-    rows = zip(free.ties.closing, free.symbols.lam, strict=True)
-    lam = {x: fifty_digits().number(int((row.tie, row.number) in pushing)) for row, x in rows}
+    pushing = {(row.constraint, row.number) for row in system.constraints.rows if row.eliminates}
+    rows = zip(free.constraints.closing, free.symbols.lam, strict=True)
+    lam = {x: fifty_digits().number(int((row.constraint, row.number) in pushing)) for row, x in rows}
     return lam | state | motion
 
 
 def _demand(system: System, state: State, h: Any = STEP) -> Demand:
-    """The same where every tie that closes has its multiplier."""
-    closing, bodies = system.ties.closing, _Bodies(system, state, h)
+    """The same where every constraint that closes has its multiplier."""
+    closing, bodies = system.constraints.closing, _Bodies(system, state, h)
     forces = bodies.at(bodies.formulas.direct)
     sizes = [abs(x) for x in forces]
     others = ((k, x, abs(x)) for k, x in (*bodies.of_rotors(), *bodies.of_equations()))
     for k, x, size in (*bodies.along_joints(), *others):
         forces[k], sizes[k] = forces[k] + x, sizes[k] + size
     _, rates = bodies.along_motion(bodies.formulas.rates)
-    return Demand(forces, sizes, {(r.tie, r.number): x for r, x in zip(closing, rates, strict=True)})
+    return Demand(forces, sizes, {(r.constraint, r.number): x for r, x in zip(closing, rates, strict=True)})
 
 
 @dataclass(frozen=True)
@@ -312,9 +315,9 @@ class _Formulas:
     @cached_property
     def pushes(self) -> list[tuple[str, Wrench, Node | None]]:
         """(body, wrench about its origin in its axes, lam by which it goes): loads and weights, then closing rows."""
-        ties, loads = self.system.ties, self.system.loads
+        constraints, loads = self.system.constraints, self.system.loads
         found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
-        rows = zip(ties.closing, self.system.symbols.lam, strict=True)
+        rows = zip(constraints.closing, self.system.symbols.lam, strict=True)
         of_rows = [(body, wrench, lam) for row, lam in rows for body, wrench in row.wrenches]
         return [*((*pair, None) for pair in found if pair is not None), *of_rows]
 
@@ -329,13 +332,13 @@ class _Formulas:
     @cached_property
     def rates(self) -> tuple[Scalar, ...]:
         """Of closing rows."""
-        return tuple(row.velocity for row in self.system.ties.closing)
+        return tuple(row.velocity for row in self.system.constraints.closing)
 
     @cached_property
     def slopes(self) -> tuple[Scalar, ...]:
         """Of what no twist sees of closing rows, along every speed."""
         u = self.system.scope.symbols.u
-        return tuple(x for row in self.system.ties.closing for x in gradient(row.direct, u))
+        return tuple(x for row in self.system.constraints.closing for x in gradient(row.direct, u))
 
 
 @dataclass(frozen=True)
@@ -477,7 +480,8 @@ class _Bodies(InNumbers):
         return ((i, value * self.state[a[j]]) for (i, j, _), value in zip(found, values, strict=True))
 
     def of_equations(self) -> Iterator[tuple[int, Any]]:
-        """-lam of every row along what no twist sees: the slide of points in their bodies, ties of coordinates."""
+        """-lam of every row along what no twist sees: the slide of points in their bodies, constraints of
+        coordinates."""
         slopes = _in_parts(self.at(self.formulas.slopes), len(self.system.scope.symbols.u) or 1)
         for lam, slope in zip(self.system.symbols.lam, slopes, strict=False):
             yield from ((k, -x * self.state[lam]) for k, x in enumerate(slope))
@@ -562,7 +566,7 @@ def driven_otherwise(reactions: Reactions, state: State) -> str:
             return f"{named.name} = {float(stated):.10g}, and the bodies ask for {float(due):.10g}"
         found += 1
     if not found:
-        raise NoValue("no drive is determinate, or ties follow from others only while it drives")
+        raise NoValue("no drive is determinate, or constraints follow from others only while it drives")
     return ""
 
 

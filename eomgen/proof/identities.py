@@ -9,6 +9,7 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import formulations
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, powered_forces, summed
@@ -17,7 +18,6 @@ from eomgen.mechanics.kinematics.inertia import kinetic_energy
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import Equality, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
 from eomgen.symbolic.expression.formula import inner
@@ -128,7 +128,7 @@ def energy(equations: EquationsOfMotion) -> Claim:
     """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
 
     With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself. Where dependent
-    rates follow from ties that move by themselves, what `_carried_power` says comes in addition.
+    rates follow from constraints that move by themselves, what `_carried_power` says comes in addition.
     """
     scope, symbols = equations.system.scope, equations.symbols
     power = given_power(equations)
@@ -147,7 +147,7 @@ def energy_function(equations: EquationsOfMotion) -> Scalar:
 
 
 def given_power(equations: EquationsOfMotion) -> Scalar:
-    """dH/dt but for the ties' power u . J^T lam: Q_nc . u - dT/dt + dV/dt of what moves by itself."""
+    """dH/dt but for the constraints' power u . J^T lam: Q_nc . u - dT/dt + dV/dt of what moves by itself."""
     system = equations.system
     speeds = equations.symbols.u
     powered = summed([powered_forces(system.loads), equations.friction or (0,) * len(speeds)], len(speeds))
@@ -158,7 +158,7 @@ def given_power(equations: EquationsOfMotion) -> Scalar:
 def _carried_power(system: System) -> Scalar:
     """p . ((N u)' along nu and t - nu' along N u), p the momenta of the free system: 0 where nothing moves by itself.
 
-    The motions N u and those by themselves do not commute where rolling ties carry dependent coordinates along.
+    The motions N u and those by themselves do not commute where rolling constraints carry dependent coordinates along.
     """
     if system.free is None:
         return 0
@@ -185,7 +185,7 @@ def closing_rows(equations: EquationsOfMotion) -> Claim:
     pairs, labels = [], []
     for i, phi in enumerate(equations.phi):
         row = sum((x * u for x, u in zip(equations.J[i], symbols.u, strict=True)), start=equations.sigma[i])
-        pairs.append((row, equations.system.ties.closing[i].velocity))
+        pairs.append((row, equations.system.constraints.closing[i].velocity))
         labels.append(f"J u + sigma of row {i + 1}")
         if phi is not None:
             pairs.append((row, scope.time_derivative((phi,))[0]))

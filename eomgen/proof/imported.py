@@ -441,7 +441,7 @@ class _ImportedUrdf:
         if q is None:
             return ""
         about = self.model.coordinates[q].about or ""
-        told = {key: x.findall(about) for key, x in LIMITS.items()}
+        reported = {key: x.findall(about) for key, x in LIMITS.items()}
         due: dict[str, float] = {}
         if limit is not None:
             ends = [] if joint.get("type") == "continuous" else [key for key in ("lower", "upper") if limit.get(key)]
@@ -450,8 +450,8 @@ class _ImportedUrdf:
             due |= {key: float(x) for key in ("effort", "velocity") if (x := limit.get(key)) is not None}
         else_none = {"lower": -UNLIMITED, "upper": UNLIMITED, "effort": UNLIMITED, "velocity": UNLIMITED}
         for key, none in else_none.items():
-            found, wanted = float(told[key][0]) if told[key] else none, due.get(key, none)
-            if abs(found - wanted) > COMPUTED * abs(wanted) and not (key not in due and not told[key]):
+            found, wanted = float(reported[key][0]) if reported[key] else none, due.get(key, none)
+            if abs(found - wanted) > COMPUTED * abs(wanted) and not (key not in due and not reported[key]):
                 return f"the limits of '{q}' are told otherwise"
         return ""
 

@@ -30,7 +30,8 @@ OTHER_THINGS = "motors on other things than joints, tendons between two places, 
 NO_LAWS, OFF, STANDING = "motors that are no linear laws", "motors that are switched off", "motors on the ground"
 LIMITS = ("actuator_ctrl", "actuator_force", "actuator_act", "jnt_actfrc", "tendon_actfrc")
 PUSHED = 0.7  # of every input
-OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
+# what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
+OF_CONSTRAINTS = (
     *("limits of joints", "limits of tendons", "limits of free and ball joints", "limits of motors", "frictionloss"),
     *("geoms that touch", "pairs of geoms that touch", "friction of free and ball joints", "inputs of motors"),
     *("softness of equalities", "equalities that are switched off", "motion of a mocap body"),
@@ -58,7 +59,7 @@ def mjcf_otherwise(
     except ValueError:  # files of pictures are missing
         return ""
     proof = _Compiled(mujoco, m, model)
-    more = {what for what, _ in left_out} - {*OF_TIES, *NAMED, "filters of motors"}
+    more = {what for what, _ in left_out} - {*OF_CONSTRAINTS, *NAMED, "filters of motors"}
     push = PUSHED if not more else 0.0 if more == {DELAYS} else None
     left = proof.lacks(left_out)  # they are silenced before forces are compared
     forces = () if equations is None else proof.accelerates(equations, push)

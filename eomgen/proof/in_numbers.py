@@ -9,12 +9,12 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.loads import in_ground_axes
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.samples import given_samples
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar, State
 from eomgen.symbolic.expression.spatial import (
     ZERO,

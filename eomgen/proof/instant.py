@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.instant.kinematic_state import BodyMotion, KinematicState, composition_of
 from eomgen.mechanics.instant.mechanism import FIXED
@@ -33,11 +34,10 @@ from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
 from eomgen.proof.declared_loads import acting
+from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
-from eomgen.proof.freedoms import Nearby
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through, with_inputs
 from eomgen.proof.states import closed_state
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import Call
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -78,8 +78,8 @@ def instant_checks(
     """
     proof = _Proof(state)
     checks = [
-        ("the freedoms are those that the gaps of the ties leave", proof.wrong_freedoms),
-        ("the ties stay closed along the motion", proof.wrong_ties),
+        ("the degrees of freedom are those that the gaps of the constraints leave", proof.wrong_degrees_of_freedom),
+        ("the constraints stay closed along the motion", proof.wrong_constraints),
         ("what is given holds", proof.wrong_given),
         ("velocities and accelerations of points are the differences of their places", proof.wrong_points),
         ("spins and angular accelerations are the differences of the bodies' axes", proof.wrong_fields),
@@ -186,14 +186,14 @@ class _Proof:
             raise NoValue("too far from the origin for differences")
         return now, first, second
 
-    def wrong_freedoms(self) -> str | None:
+    def wrong_degrees_of_freedom(self) -> str | None:
         """Against the rank of the slopes of the gaps there; in a special position, of those in another one."""
-        system, told = self.state.system, self.state.freedoms
-        if not system.symbols.u or all(row.identical for row in system.ties.rows):
+        system, reported = self.state.system, self.state.degrees_of_freedom
+        if not system.symbols.u or all(row.identical for row in system.constraints.rows):
             return None
-        left = _freedoms_left(system, self.values)
-        if told != left and _freedoms_left(system, closed_state(system, Random(8))[0]) != told:
-            return f"{told} for {left}"
+        left = _degrees_of_freedom_left(system, self.values)
+        if reported != left and _degrees_of_freedom_left(system, closed_state(system, Random(8))[0]) != reported:
+            return f"{reported} for {left}"
         return ""
 
     def here(self, scalars: Sequence[Scalar]) -> Numbers:
@@ -235,20 +235,20 @@ class _Proof:
         """Of what equations say of the state, which may be known in doubles only."""
         return DIFFERENCE_AT_50 if self.state.exact and not self.state.rounded else COMPUTED
 
-    # -- ties and what is given ------------------------------------------------------------------------------
+    # -- constraints and what is given ------------------------------------------------------------------------------
 
-    def wrong_ties(self) -> str | None:
+    def wrong_constraints(self) -> str | None:
         """phi stays 0: its first and second differences; of velocity rows W^T xi + s_t and its difference."""
-        rows = self.state.system.ties.rows
+        rows = self.state.system.constraints.rows
         gaps = [row for row in rows if row.gap is not None]
         _, first, second = self.along([row.gap for row in gaps if row.gap is not None])
         rolling = [row for row in rows if row.gap is None]
         slip, rate, _ = self.along([row.velocity for row in rolling])
         for row, v, a in [*zip(gaps, first, second, strict=True), *zip(rolling, slip, rate, strict=True)]:
             if self.differs((v,), (0,), 1, self.tolerance):
-                return f"'{row.tie}' opens at {float(v):.3g} m/s"
+                return f"'{row.constraint}' opens at {float(v):.3g} m/s"
             if self.accelerated and self.differs((a,), (0,), 2, self.tolerance):
-                return f"'{row.tie}' opens at {float(a):.3g} m/s^2"
+                return f"'{row.constraint}' opens at {float(a):.3g} m/s^2"
         return "" if rows else None
 
     def wrong_given(self) -> str | None:
@@ -271,7 +271,7 @@ class _Proof:
         for names, r, v, a in self.state.points:
             for name in names.split(", "):
                 place, first, second = self.along(motion.position(motion.place(name)))
-                held = self.tolerance if "," in names else 0.0  # ties that close in doubles hold them together
+                held = self.tolerance if "," in names else 0.0  # constraints that close in doubles hold them together
                 if self.differs(self.here(r), place, 1, self.tolerance) or self.differs(self.here(v), first, 1, held):
                     return f"velocity of {name}"
                 if a is not None and self.differs(self.here(a), second, 2, held):
@@ -444,10 +444,10 @@ def _least(start: Numbers, end: Numbers) -> Any:
     return _size(v)
 
 
-def _freedoms_left(system: System, values: Mapping[Node, Any]) -> int:
-    """How many speeds the ties leave: by differences of their gaps along each speed, else by their rates."""
+def _degrees_of_freedom_left(system: System, values: Mapping[Node, Any]) -> int:
+    """How many speeds the constraints leave: by differences of their gaps along each speed, else by their rates."""
     symbols, scope, digits = system.symbols, system.scope, fifty_digits()
-    rows = [row for row in system.ties.rows if not row.identical]
+    rows = [row for row in system.constraints.rows if not row.identical]
     speeds = {u.name for u in symbols.u}
     norms = [sum((e * e for e in four), start=0) for four in scope.quaternions if f"{four[0].name}'" in speeds]
     gaps, rates = (
@@ -614,14 +614,14 @@ class NearbyStates:
         """M a + c - Q - J^T lam of the freed coordinate, by the free bodies, at the motion as it is given."""
         return drive_demanded(self.state.equations.system, coordinate, self.state.values | self.state.unknowns)[0]
 
-    def held(self, tie: str) -> Any:
-        """lam of a tie of one row, by the balance of the free bodies on which all ties push."""
+    def held(self, constraint: str) -> Any:
+        """lam of a constraint of one row, by the balance of the free bodies on which all constraints push."""
         equations, known = self.state.equations, self.state.values | self.state.unknowns
         friction = evaluate(equations.friction or (), known, fifty_digits())
         found = multipliers_demanded(equations.system, known, friction)
-        if (tie, 1) not in found:
-            raise NoValue("it shares its force with other ties")
-        return found[tie, 1]
+        if (constraint, 1) not in found:
+            raise NoValue("it shares its force with other constraints")
+        return found[constraint, 1]
 
     def root(self, x: Any) -> Any:
         """Of a number."""

@@ -19,7 +19,8 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_norms
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import Motion, made_of
 from eomgen.mechanics.kinematics.symbols import Scope
@@ -28,7 +29,6 @@ from eomgen.model.composite import PlacedPiece, pose_of
 from eomgen.model.shapes import MassProperties, Shape
 from eomgen.model.shapes.base import Cell
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector
@@ -109,7 +109,7 @@ def tried(scope: Scope) -> dict[Node, float]:
     rng, symbols = Random(3), scope.symbols
     known = {x: float(v) for x, v in values_of_parameters(scope, rng).items()}
     known |= {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
-    return known | {e: float(v) for e, v in on_unit_spheres(scope.quaternions, known).items()}
+    return known | {e: float(v) for e, v in on_unit_norms(scope.quaternions, known).items()}
 
 
 # -- quadrature ----------------------------------------------------------------------------------------------------

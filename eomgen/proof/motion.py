@@ -1,6 +1,6 @@
 """A run -> checks: its steps, energy, constraints and norms.
 
-A run -> checks: the code that ran, its steps, the energy, the ties and the norms, all at states that it visited.
+A run -> checks: the code that ran, its steps, the energy, the constraints and the norms, all at states that it visited.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies.friction import with_rest
 from eomgen.mechanics.kinematics.inertia import HALF, mass_properties
@@ -22,7 +23,6 @@ from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.identities import energy_function, given_power
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.expression.spatial import apply, dot
@@ -47,7 +47,7 @@ class Leg:
         code: the right-hand side that ran.
         t, x: n instants in order, those asked for and the integrator's steps, and the states there.
         carried: starts and ends of singular crossings, in which nothing was integrated.
-        pulled: whether its ties were pulled together by Baumgarte's rows.
+        pulled: whether its constraints were pulled together by Baumgarte's rows.
         known: what was compiled of its equations, for all runs by them.
     """
 
@@ -89,7 +89,7 @@ class Promise:
     Args:
         rtol, atol: tolerances of the run.
         steps: how many it took.
-        projected: whether each of them ended on the ties: what opens does not add up.
+        projected: whether each of them ended on the constraints: what opens does not add up.
         levelled: whether each of them ended on the level of the energy of the start, where speeds say enough of it.
     """
 
@@ -106,7 +106,7 @@ class Promise:
         return self.of_one_step(size) * max(self.steps, 1)
 
     def open(self, size: float) -> float:
-        """How far ties may be open, where states are of some size."""
+        """How far constraints may be open, where states are of some size."""
         return PER_STEP * (self.atol + SUMMED * size) if self.projected else self.limit(size)
 
 
@@ -117,11 +117,16 @@ def run_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
 
 
 def watched_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
-    """What a run watches anyway: its energy against the power, its ties and norms."""
+    """What a run watches anyway: its energy against the power, its constraints and norms."""
     moving = _moving(legs)
     if not moving:
         return ()
-    found = (energy_kept(moving, promise), _level(moving, promise), _ties(moving, promise), _norms(moving, promise))
+    found = (
+        energy_kept(moving, promise),
+        _level(moving, promise),
+        _constraints(moving, promise),
+        _norms(moving, promise),
+    )
     return tuple(check for check in found if check is not None)
 
 
@@ -204,8 +209,10 @@ def energy_kept(legs: Sequence[Leg], promise: Promise) -> Check:
         return unchecked(name, "the energy has no value at some of the states", how)
     if not unsure <= SURE * limit:
         return unchecked(name, f"the integral of the power is not sure: by {unsure:.1e} J, limit {limit:.1e} J", how)
-    told = f"|E - E0 - W| <= {worst:.1e} J at t = {when:.6g} s, limit {limit:.1e} J, energy that moves {moving:.3g} J"
-    return Check(name, "holds" if worst <= limit else "fails", how, told)
+    reported = (
+        f"|E - E0 - W| <= {worst:.1e} J at t = {when:.6g} s, limit {limit:.1e} J, energy that moves {moving:.3g} J"
+    )
+    return Check(name, "holds" if worst <= limit else "fails", how, reported)
 
 
 def _level(legs: Sequence[Leg], promise: Promise) -> Check | None:
@@ -245,18 +252,18 @@ def _work(leg: Leg, wanted: float) -> tuple[np.ndarray, float]:
     return np.concatenate([[0.0], np.cumsum(work)]), float(np.sum(unsure))
 
 
-# -- ties and norms --------------------------------------------------------------------------------
+# -- constraints and norms --------------------------------------------------------------------------------
 
 
-def _ties(legs: Sequence[Leg], promise: Promise) -> Check | None:
+def _constraints(legs: Sequence[Leg], promise: Promise) -> Check | None:
     """|phi| and |J u + sigma| <= 10 (atol + rounding of the largest entry) at every state, which is put back onto them.
 
     Where it is not, 10 (rtol |q| + atol) steps and 10 (rtol |u| + atol) steps.
     """
-    name, how = "the ties stay closed", "gaps and their velocities at the steps, eliminated rows too"
+    name, how = "the constraints stay closed", "gaps and their velocities at the steps, eliminated rows too"
     judged = 0
     for leg in legs:
-        rows = [row for row in leg.equations.system.ties.rows if not row.identical]
+        rows = [row for row in leg.equations.system.constraints.rows if not row.identical]
         gaps = tuple(row.gap for row in rows if row.gap is not None)
         n = len(leg.equations.symbols.q)
         for scalars, part, what in (
@@ -328,7 +335,7 @@ class Energies:
 
     Args:
         p: the parameters' values.
-        pulled: whether the ties take power by being open: Baumgarte's rows.
+        pulled: whether the constraints take power by being open: Baumgarte's rows.
         known: what was compiled of the equations, whatever the parameters' values.
     """
 

@@ -14,7 +14,7 @@ from functools import cached_property, reduce
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import Arithmetic, NoValue
 

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.loads import body_wrench
@@ -29,7 +30,6 @@ from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, Numbers, cross, dot, minus, plus, times, vector_of
 from eomgen.symbolic.expression.traversal import Symbols
@@ -94,8 +94,8 @@ class PosedModel:
 
     def follows(self) -> Iterator[str]:
         """What equations between coordinates leave that are there because one mimics another."""
-        for name, tie in self.model.constraints.items():
-            gap = getattr(tie, "gap", None)
+        for name, constraint in self.model.constraints.items():
+            gap = getattr(constraint, "gap", None)
             if gap is not None and not gap.calls and name.startswith("mimic"):
                 left = self.number(gap)
                 yield f"'{name}' leaves {left:.3g}" if abs(left) > COMPUTED * 10 else ""
@@ -361,10 +361,10 @@ class _Form:
 
 
 def meetings_of(system: System) -> dict[str, Meeting]:
-    """What touches what in every tie that is closed."""
-    closed = {row.tie for row in system.ties.rows}
-    ties = system.scope.model.constraints
-    found = {name: ties[name].meeting() for name in ties if name in closed}
+    """What touches what in every constraint that is closed."""
+    closed = {row.constraint for row in system.constraints.rows}
+    constraints = system.scope.model.constraints
+    found = {name: constraints[name].meeting() for name in constraints if name in closed}
     return {name: x for name, x in found.items() if x is not None}
 
 
@@ -372,7 +372,7 @@ def apart(system: System, state: State) -> str:
     """Which contact does not touch, or parts, at a state; "" where none does.
 
     Raises:
-        NoValue: something has no value there, or the ties do not hold.
+        NoValue: something has no value there, or the constraints do not hold.
     """
     refuse_open(system, state)
     for name, meeting in meetings_of(system).items():
@@ -404,8 +404,8 @@ class _Contact(InNumbers):
 
     def _wrong_force(self, touch: Touch) -> str:
         """Which force of the contact is no unit force at its point, along the normal or across it, or ""."""
-        for row in self.system.ties.rows:
-            if row.tie != self.name:
+        for row in self.system.constraints.rows:
+            if row.constraint != self.name:
                 continue
             for label, pushes in ((row.component, row.pushes), ("t", row.tangent), ("s", row.cross_tangent)):
                 if pushes and label and self._misplaced(touch, label, pushes):

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
@@ -25,7 +26,6 @@ from eomgen.model.outputs.base import BALANCE
 from eomgen.model.values import exact_parameters
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.formula import Call, inner
 from eomgen.symbolic.expression.node import Node, Scalar, State
@@ -227,7 +227,8 @@ class ReadBack:
         return ""
 
     def wrong_law(self) -> str:
-        """Which law of motion does not begin at the start, breaks a tie or is accelerated otherwise; "" where none is.
+        """Which law of motion does not begin at the start, breaks a constraint or is accelerated otherwise; "" where
+        none is.
 
         Raises:
             NoValue: no law is read, or something has no value soon after the start.
@@ -249,8 +250,8 @@ class ReadBack:
             moved = _along(laws, start, instant)
             state = {**start, e.symbols.t: instant, **{q: worth for q, (worth, _, _) in moved.items()}}
             state |= {speeds[f"{q.name}'"]: rate for q, (_, rate, _) in moved.items()}
-            if len(laws) == len(names) and (tie := _broken(e, state)):
-                return f"'{tie}' does not hold at t = {float(instant):.3g} s"
+            if len(laws) == len(names) and (constraint := _broken(e, state)):
+                return f"'{constraint}' does not hold at t = {float(instant):.3g} s"
             a = dict(zip(speeds, exact_accelerations(e, state), strict=True))
             for q, (_, _, found) in moved.items():
                 due = a[f"{q.name}'"]
@@ -290,13 +291,13 @@ def _along(laws: Mapping[Node, Scalar], values: State, instant: Any) -> dict[Nod
 
 
 def _broken(equations: EquationsOfMotion, state: State) -> str:
-    """The first tie that is open at a state, or opens; ""."""
-    rows = equations.system.ties.closing
+    """The first constraint that is open at a state, or opens; ""."""
+    rows = equations.system.constraints.closing
     rates = (inner(line, equations.symbols.u) + rest for line, rest in zip(equations.J, equations.sigma, strict=True))
     gaps = (0 if row.gap is None else row.gap for row in rows)
     found = evaluate((*gaps, *rates), state, fifty_digits())
-    names = [row.tie for row in rows] * 2
-    return next((tie for tie, x in zip(names, found, strict=False) if abs(x) > COMPUTED), "")
+    names = [row.constraint for row in rows] * 2
+    return next((constraint for constraint, x in zip(names, found, strict=False) if abs(x) > COMPUTED), "")
 
 
 def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:

@@ -50,7 +50,7 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
 def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Check]:
     """Each number at the start is what its formula is worth there with 50 digits: as printed, else as it was solved."""
     tally = Tally("formulas, read back, give the numbers at the start", "50 digits against doubles")
-    untold = Tally("numbers too long to print a formula for are those of the balance", "50 digits against doubles")
+    unreported = Tally("numbers too long to print a formula for are those of the balance", "50 digits against doubles")
     solved = {} if values.keys() <= texts.keys() else determinate(reactions_of(start.equations.system))
     size = max(map(abs, values.values()), default=0.0)
 
@@ -65,5 +65,5 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
 
     for name in values:
         if name in texts or name in solved:
-            (tally if name in texts else untold).add(name, partial(compared, name))
-    return iter((*tally.checks(), *untold.checks()))
+            (tally if name in texts else unreported).add(name, partial(compared, name))
+    return iter((*tally.checks(), *unreported.checks()))

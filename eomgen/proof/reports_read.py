@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import visible
+from eomgen.frozen import dataclass
 from eomgen.proof.pages_read import (
     GREEK_LETTERS,
     PageBlock,
@@ -31,7 +32,6 @@ from eomgen.proof.pages_read import (
     markdown_page,
     spoken,
 )
-from eomgen.records import dataclass
 
 _ACCENTS = {"\u02d9": r"\dot", "\u00a8": r"\ddot", "\u20db": r"\dddot", "~": r"\widetilde"}
 _ACCENTS |= {"\u02c6": r"\hat", "\xaf": r"\bar", "\u02dc": r"\tilde", "\u20d7": r"\vec", "\u0302": r"\widehat"}
@@ -453,17 +453,17 @@ def notebook_report(text: str) -> ReadReport:
     return markdown_report("\n\n".join(said) + "\n")
 
 
-def columns_told(content: bytes) -> dict[str, np.ndarray]:
+def columns_reported(content: bytes) -> dict[str, np.ndarray]:
     """The columns of a table that a page carries: a line that tells of them, then their differences.
 
     A difference is a whole number, its sign the lowest bit, seven bits a byte, the lowest first.
     """
     head, _, packed = content.partition(b"\n")
-    told = json.loads(head)
-    return dict(zip(told["names"], columns_unpacked(told, packed), strict=True))
+    reported = json.loads(head)
+    return dict(zip(reported["names"], columns_unpacked(reported, packed), strict=True))
 
 
-def columns_unpacked(told: Mapping[str, object], packed: bytes) -> Iterable[np.ndarray]:
+def columns_unpacked(reported: Mapping[str, object], packed: bytes) -> Iterable[np.ndarray]:
     """The columns that are told of."""
     octets = np.frombuffer(packed, dtype=np.uint8)
     if not len(octets):
@@ -473,8 +473,8 @@ def columns_unpacked(told: Mapping[str, object], packed: bytes) -> Iterable[np.n
     weights = (octets & 127).astype(np.int64) << (7 * (np.arange(len(octets)) - np.repeat(first, last - first + 1)))
     zigzag = np.add.reduceat(weights, first) if len(first) else weights
     values = np.where(zigzag & 1, -(zigzag + 1) // 2, zigzag // 2)
-    rows, k = int(told["rows"]), 0  # type: ignore[call-overload]
-    for power, order, holes in told["columns"]:  # type: ignore[attr-defined]
+    rows, k = int(reported["rows"]), 0  # type: ignore[call-overload]
+    for power, order, holes in reported["columns"]:  # type: ignore[attr-defined]
         column = values[k : k + rows]
         k += rows
         for _ in range(order):

@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system
 from eomgen.mechanics.equilibrium.search import Equilibrium
 from eomgen.mechanics.linearization.first_order import FirstOrder
 from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
+from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
-from eomgen.proof.freedoms import Nearby
 from eomgen.proof.in_numbers import STEP, with_inputs
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -32,12 +32,12 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_P
 MOST = 12  # places that are looked at
 ASIDE = fifty_digits().number(1) / 100  # of a coordinate or 1: beside a place where nothing pushes back at first
 BY_MOTION = "50 digits"
-NOTHING_ACCELERATED = "nothing is accelerated at the places of rest"
+NOTHING_ACCELERATED = "nothing is accelerated at the equilibria"
 
 
 def balance_check(places: Sequence[Equilibrium]) -> Check:
     """Q + J^T lam = 0 and phi = 0, put back into the equations of statics."""
-    name = "the forces balance and the ties close at every place of rest"
+    name = "the forces balance and the constraints close at every equilibrium"
     return attempted(name, BY_MOTION, lambda: _first_at(places, _unbalanced))
 
 
@@ -76,8 +76,9 @@ def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
 
 
 def pushes_check(places: Sequence[Equilibrium]) -> Check:
-    """What the free bodies ask for at rest, their weights, loads and ties' pushes summed body by body: nothing."""
-    name = "the multipliers at every place of rest hold the free bodies"
+    """What the free bodies ask for at rest, their weights, loads and constraints' pushes summed body by body:
+    nothing."""
+    name = "the multipliers at every equilibrium hold the free bodies"
     return attempted(name, BY_MOTION, lambda: _first_at(places[:MOST], _pushed))
 
 
@@ -116,7 +117,7 @@ def _places(place: Equilibrium, wanted: Sequence[Node], known: Mapping[Node, Any
 
 
 def resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator[Check]:
-    """Of the places of rest of a system, whose equations of motion are given."""
+    """Of the equilibria of a system, whose equations of motion are given."""
     proofs = [_Proof(first, place) for place in places[:MOST]]
     yield _of_all(NOTHING_ACCELERATED, proofs, _Proof.wrong, BY_MOTION)
     said = [proof for proof in proofs if proof.place.stability.kind in ("stable", "unstable")]
@@ -192,10 +193,10 @@ class _Proof:
         return np.array(columns, dtype=object).reshape(len(columns), -1).T.astype(float)
 
     def wrong_rates(self) -> str:
-        """Which coordinate moves, or which tie of velocities runs on, with all speeds 0."""
+        """Which coordinate moves, or which constraint of velocities runs on, with all speeds 0."""
         system = self.first.system
-        rows = [row for row in system.ties.closing if row.gap is None]
-        names = (*(f"{q.name}'" for q in system.symbols.q), *(f"'{row.tie}'" for row in rows))
+        rows = [row for row in system.constraints.closing if row.gap is None]
+        names = (*(f"{q.name}'" for q in system.symbols.q), *(f"'{row.constraint}'" for row in rows))
         rates = evaluate((*system.scope.rates, *(row.velocity for row in rows)), self.numbers, fifty_digits())
         size = 1 + max((abs(self.numbers[q]) for q in system.symbols.q), default=0)
         moving = (
@@ -206,7 +207,8 @@ class _Proof:
         return next(moving, "")
 
     def wrong(self) -> str:
-        """Against what a displacement of one unit, or of the size of the coordinates, accelerates, the ties let go."""
+        """Against what a displacement of one unit, or of the size of the coordinates, accelerates, the constraints
+        let go."""
         if moving := self.wrong_rates():
             return moving
         rng, numbers = Random(5), self.numbers

@@ -9,7 +9,7 @@ motion say how it goes on. What it does against the reference, over h, must sati
 
 M against the kinetic energy: d . M d is the second difference of T along d. Shared with what is proven: the state of
 the reference, the equations of motion (proven by themselves) and the choice of coordinates; no derivative, nothing of
-how ties are taken out.
+how constraints are taken out.
 """
 
 from __future__ import annotations
@@ -23,14 +23,14 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.modes import Modes
 from eomgen.mechanics.linearization.polynomial import Polynomial
 from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
-from eomgen.proof.freedoms import Numbers50
-from eomgen.proof.motions_beside import Beside, Differences, DigitColumn
-from eomgen.records import dataclass
+from eomgen.proof.degrees_of_freedom import Numbers50
+from eomgen.proof.neighbouring_motions import Beside, Differences, DigitColumn
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, sums_of_products
 from eomgen.symbolic.numeric.tolerances import (
@@ -109,14 +109,14 @@ def _of_part(differences: Differences) -> Check:
     (s^2 M + s C + K)^-1 is their part of the first rows of (s 1 - A)^-1 [0; M^-1] of the whole, A and M by differences.
     """
     small, e = differences.small, differences.small.numbers
-    asked = [differences.moved.index(q) for q in e.coordinates]
+    requested = [differences.moved.index(q) for q in e.coordinates]
     whole = differences.whole()
     wrong = ""
     for s in (0.7 + 0.9j, -0.4 + 2.3j):
         s *= abs(small.state_matrix).max() ** 0.5 or 1.0
         pencil = sum((s**k * np.array(A, dtype=float) for k, A in enumerate((e.K, e.C, e.M))))
         answer = np.linalg.inv(pencil)
-        away = abs(answer - whole(s)[np.ix_(asked, asked)]).max() / abs(answer).max()
+        away = abs(answer - whole(s)[np.ix_(requested, requested)]).max() / abs(answer).max()
         wrong = wrong or ("" if away <= CARRIED else f"their answers differ by {away:.2g}")
     return checked("the coordinates that are asked move as they do in the whole", wrong, "differences, floating point")
 
@@ -434,11 +434,12 @@ class _Proof:
 
     @property
     def _drifts_away(self) -> bool:
-        """Whether what grows like t comes to where the equations are others; of ties and small turns none is said."""
+        """Whether what grows like t comes to where the equations are others; of constraints and small turns none is
+        said."""
         small = self.modes.small
         system, e, numbers = small.first.system, small.first.equations, small.reference.numbers
-        tied = system.ties.closing or system.elimination is not None
-        if tied or not {*small.numbers.coordinates} <= numbers.keys() or not self._has_chains:
+        constrained = system.constraints.closing or system.elimination is not None
+        if constrained or not {*small.numbers.coordinates} <= numbers.keys() or not self._has_chains:
             return False
         sizes, columns = np.linalg.svd(self.A @ self.A)[1:]
         slow = columns[sizes <= COMPUTED * sizes.max(initial=0)]

@@ -12,18 +12,18 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_spheres
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_norms
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.start.state import start_state
 from eomgen.model.values import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.pieces import Switch, switches_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
 
-CONSISTENT = (11,)  # seeds of states at which all ties hold
+CONSISTENT = (11,)  # seeds of states at which all constraints hold
 OWN_START = "own start"
 TRIES = 20  # random states, for one with a value
 NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
@@ -83,11 +83,12 @@ class States:
     @cached_property
     def _identities(self) -> tuple[Scalar, ...]:
         """Gaps that the coordinates satisfy by themselves, as far as that is not plain: |1 + s| + |1 - s| - 2."""
-        rows = (row for row in self.system.ties.rows if row.identical and row.gap is not None)
+        rows = (row for row in self.system.constraints.rows if row.identical and row.gap is not None)
         return tuple(row.gap for row in rows if row.gap is not None and not is_zero(row.gap))
 
     def _satisfied(self, state: State) -> bool:
-        """Whether ties that are identities about the start are so there: past its eyelet a string is too long."""
+        """Whether constraints that are identities about the start are so there: past its eyelet a string is too
+        long."""
         try:
             return all(abs(x) <= COMPUTED for x in evaluate(self._identities, state, fifty_digits()))
         except (NoValue, ZeroDivisionError):
@@ -161,12 +162,12 @@ class States:
             yield place
 
     def _closed(self, state: State, switch: Switch, piece: int) -> TrialState | None:
-        """The state with its ties closed; None where that takes it out of its piece: no motion comes there."""
-        state = state | on_unit_spheres(self.system.scope.quaternions, state)
-        ties = self.system.ties
-        if all(row.identical for row in ties.rows):
+        """The state with its constraints closed; None where that takes it out of its piece: no motion comes there."""
+        state = state | on_unit_norms(self.system.scope.quaternions, state)
+        constraints = self.system.constraints
+        if all(row.identical for row in constraints.rows):
             return TrialState(state, " (in one of its pieces)")
-        found = closed(ties, state, movable(ties))
+        found = closed(constraints, state, movable(constraints))
         if found is None or switch.piece(found) != piece:
             return None
         return TrialState(found, " (in one of its pieces)")
@@ -205,9 +206,9 @@ def _own_state(system: System, rng: Random) -> State | None:
         for node, value in given.items()
     }
     state |= {symbols.t: of_50_digits(0.0)} | {x: of_50_digits(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
-    state |= on_unit_spheres(system.scope.quaternions, state)
-    if not all(row.identical for row in system.ties.rows):
-        state = closed(system.ties, state, movable(system.ties)) or state
+    state |= on_unit_norms(system.scope.quaternions, state)
+    if not all(row.identical for row in system.constraints.rows):
+        state = closed(system.constraints, state, movable(system.constraints)) or state
     elif not system.scope.quaternions:
         state = in_doubles(state)
     return with_inputs(system, state)
@@ -219,15 +220,15 @@ def _set_moving(system: System, state: State, rng: Random) -> State:
 
 
 def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
-    """A state near another one, its ties closed where they close."""
+    """A state near another one, its constraints closed where they close."""
     symbols = system.symbols
     shifted = {x: state[x] + of_50_digits(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
     shifted[symbols.t] = state[symbols.t] + of_50_digits(rng.uniform(0, spread))
     state = state | shifted
-    state |= on_unit_spheres(system.scope.quaternions, state)
-    if all(row.identical for row in system.ties.rows):
+    state |= on_unit_norms(system.scope.quaternions, state)
+    if all(row.identical for row in system.constraints.rows):
         return state
-    return closed(system.ties, state, movable(system.ties)) or state
+    return closed(system.constraints, state, movable(system.constraints)) or state
 
 
 def real_state(system: System, rng: Random) -> State:
@@ -241,7 +242,7 @@ def real_state(system: System, rng: Random) -> State:
     state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
     state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
     state[symbols.t] = draw(0, 1)
-    return state | on_unit_spheres(system.scope.quaternions, state)
+    return state | on_unit_norms(system.scope.quaternions, state)
 
 
 def refuse_open(system: System, state: State) -> None:
@@ -250,14 +251,14 @@ def refuse_open(system: System, state: State) -> None:
     Raises:
         NoValue: they are not.
     """
-    rows = [row for row in system.ties.rows if not row.identical]
-    asked = [*(row.velocity for row in rows), *(row.gap for row in rows if row.gap is not None)]
-    if any(abs(x) > COMPUTED for x in evaluate(asked, state, fifty_digits())):
-        raise NoValue("the ties are open")
+    rows = [row for row in system.constraints.rows if not row.identical]
+    requested = [*(row.velocity for row in rows), *(row.gap for row in rows if row.gap is not None)]
+    if any(abs(x) > COMPUTED for x in evaluate(requested, state, fifty_digits())):
+        raise NoValue("the constraints are open")
 
 
 def is_open(system: System, state: State) -> bool:
-    """Whether the ties do not hold there, positions or speeds."""
+    """Whether the constraints do not hold there, positions or speeds."""
     try:
         refuse_open(system, state)
     except NoValue:
@@ -266,7 +267,7 @@ def is_open(system: System, state: State) -> bool:
 
 
 def consistent_states(system: System) -> tuple[tuple[str, Supply], ...]:
-    """States in motion at which every tie holds, positions and speeds, by where dependent coordinates are free.
+    """States in motion at which every constraint holds, positions and speeds, by where dependent coordinates are free.
 
     A row that is wrongly taken for one that holds something may keep the states of the system from moving.
     """
@@ -278,7 +279,9 @@ def consistent_states(system: System) -> tuple[tuple[str, Supply], ...]:
         for _ in range(TRIES):
             state = real_state(system, rng)
             with suppress(DerivationError, ModelError):
-                yield TrialState(state | generic_state(whole.ties, rng), " (at a state at which all ties hold)")
+                yield TrialState(
+                    state | generic_state(whole.constraints, rng), " (at a state at which all constraints hold)"
+                )
 
     begun = () if start is None else (TrialState(start, " (at the start)"),)
     random = [("at random", Supply(at_random(seed))) for seed in CONSISTENT]
@@ -291,11 +294,11 @@ def in_doubles(state: State) -> State:
 
 
 def closed_state(system: System, rng: Random) -> tuple[State, str]:
-    """A random real state, and a remark; where ties close, one in which they do if one is near the start."""
+    """A random real state, and a remark; where constraints close, one in which they do if one is near the start."""
     state = real_state(system, rng)
-    if all(row.identical for row in system.ties.rows):
+    if all(row.identical for row in system.constraints.rows):
         return state if system.scope.quaternions else in_doubles(state), ""
     try:
-        return state | generic_state(system.ties, rng), ""
+        return state | generic_state(system.constraints, rng), ""
     except (DerivationError, ModelError) as error:  # the equations still say what a is, if no row is redundant
         return state, f" ({error.what})"

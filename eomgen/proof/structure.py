@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies.named_reactions import named_reactions
 from eomgen.mechanics.free_bodies.wrenches import Axes
 from eomgen.mechanics.reactions.equilibrium import imbalance
@@ -33,7 +34,6 @@ from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import acting_otherwise
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector
@@ -116,8 +116,8 @@ def state_of(found: StaticReactions) -> dict[Node, Any]:
 
 def _left_out(found: StaticReactions) -> Iterator[Check]:
     """A contradiction where something that holds the bodies is in none of the reactions that are told; else nothing."""
-    told = {j for reaction in found.reactions if reaction.named for j in reaction.named.combination}
-    missing = [c.name for j, c in enumerate(found.structure.components) if j not in told]
+    reported = {j for reaction in found.reactions if reaction.named for j in reaction.named.combination}
+    missing = [c.name for j, c in enumerate(found.structure.components) if j not in reported]
     if missing:
         yield checked("every reaction is told", ", ".join(missing), "exact")
 

@@ -13,6 +13,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies.friction import friction_contacts, frictions, push_sizes
@@ -31,6 +32,7 @@ from eomgen.proof.declared_loads import (
     undeclared,
     working_otherwise,
 )
+from eomgen.proof.degrees_of_freedom import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
 from eomgen.proof.free_bodies import (
     Demand,
     demand_of,
@@ -39,13 +41,11 @@ from eomgen.proof.free_bodies import (
     moved_otherwise,
     named_otherwise,
 )
-from eomgen.proof.freedoms import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.motion import other_energies
 from eomgen.proof.posed_model import apart, meetings_of, misplaced
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import rounding_decides
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Scalar, State, is_zero
@@ -102,7 +102,7 @@ class Trials:
         """A check at the first state of each supply where everything has a value; `check` names what differs.
 
         Args:
-            moving: whether it takes accelerations, which contradict one another where ties are open.
+            moving: whether it takes accelerations, which contradict one another where constraints are open.
             supplies: of states; () for those of the system.
         """
         seen: dict[str, int] = {}
@@ -121,8 +121,8 @@ class Trials:
         if not seen:
             return unchecked(name, NOWHERE, how)
         pieces = seen.pop("in a piece", 0)
-        told = [*seen, *([f"in {pieces} piece{'s' * (pieces > 1)}"] if pieces else [])]
-        return checked(name, "", f"{how}, {', '.join(told)}")
+        reported = [*seen, *([f"in {pieces} piece{'s' * (pieces > 1)}"] if pieces else [])]
+        return checked(name, "", f"{how}, {', '.join(reported)}")
 
     @cached_property
     def _solved(self) -> dict[int, tuple[State, State]]:
@@ -142,10 +142,10 @@ class Trials:
     def eliminated_rows(self) -> Check:
         """W^T xi + s_t = 0 and dphi/dt = 0 whatever the independent speeds: what dependent rates were solved from.
 
-        Rows that follow from others do so where the ties hold, and are looked at there.
+        Rows that follow from others do so where the constraints hold, and are looked at there.
         """
         scope = self.equations.system.scope
-        rows = [row for row in self.equations.system.ties.rows if row.status == "eliminated"]
+        rows = [row for row in self.equations.system.constraints.rows if row.status == "eliminated"]
         gaps = [(row, row.gap) for row in rows if row.gap is not None]
         owners = [*rows, *(row for row, _ in gaps)]
         rates = (*(row.velocity for row in rows), *scope.time_derivative(tuple(gap for _, gap in gaps)))
@@ -154,7 +154,7 @@ class Trials:
             size = 1 + sum(abs(x) for x in evaluate(scope.rates, state, fifty_digits()))
             for row, value in zip(owners, evaluate(rates, state, fifty_digits()), strict=True):
                 if abs(value) > DIFFERENCE_AT_50 * size:
-                    return f"row {row.number} of '{row.tie}' opens"
+                    return f"row {row.number} of '{row.constraint}' opens"
             return ""
 
         return self._at_states("eliminated rows hold whatever the speeds", "50 digits", check)
@@ -230,7 +230,7 @@ class Trials:
 
     def free_bodies(self) -> Check:
         """M a + c - Q - J^T lam and J a + gamma at any a and lam, by the free bodies, which use no B and no energy."""
-        e, symbols, closing = self.equations, self.equations.symbols, self.equations.system.ties.closing
+        e, symbols, closing = self.equations, self.equations.symbols, self.equations.system.constraints.closing
         friction = e.friction or (0,) * len(e.Q)
         inertia = [inner(row, symbols.a) - b + f for row, b, f in zip(e.M, e.forcing, friction, strict=True)]
         forces = [x - inner(column, symbols.lam) for x, column in zip(inertia, _columns(e), strict=True)]
@@ -241,7 +241,7 @@ class Trials:
         ]
 
         def differ(own: Sequence[Any], needed: Demand) -> list[int]:
-            rates = [needed.rates[row.tie, row.number] for row in closing]
+            rates = [needed.rates[row.constraint, row.number] for row in closing]
             sizes = [*needed.sizes, *(1 + abs(x) for x in rates)]
             found = zip(own, (*needed.forces, *rates), sizes, strict=True)
             return [i for i, (x, y, size) in enumerate(found) if abs(x - y) > DIFFERENCE_AT_50 * size]
@@ -252,7 +252,7 @@ class Trials:
                 return ""
             finer = demand_of(self.equations.system, state, FINER_STEP)
             wrong = differ(own, finer)
-            if wrong and differ((*needed.forces, *(needed.rates[r.tie, r.number] for r in closing)), finer):
+            if wrong and differ((*needed.forces, *(needed.rates[r.constraint, r.number] for r in closing)), finer):
                 raise NoValue("differences depend on their step: next to a dead centre")
             return f"{names[wrong[0]]} differs" if wrong else ""
 
@@ -260,16 +260,17 @@ class Trials:
         return self._at_states(name, "differences at 50 digits", check)
 
     def accelerations(self) -> Iterable[Check]:
-        """a of the equations, put to the free bodies that all ties hold at once; none where no tie closes."""
-        if self._whole.ties.closing:
-            name = "accelerations are those of the free bodies, all ties holding at once"
+        """a of the equations, put to the free bodies that all constraints hold at once; none where no constraint
+        closes."""
+        if self._whole.constraints.closing:
+            name = "accelerations are those of the free bodies, all constraints holding at once"
             how = "differences at 50 digits, rank of all rows at the state"
             supplies = self._consistent
             yield self._at_states(name, how, lambda state: self._torn(state, self._moving(state)), supplies=supplies)
 
     @property
     def _consistent(self) -> Iterable[tuple[str, Iterable[TrialState]]]:
-        """States at which every tie holds: those of the other checks where no coordinate is dependent."""
+        """States at which every constraint holds: those of the other checks where no coordinate is dependent."""
         at_start, *random = consistent_states(self.equations.system)
         return (at_start, *(random if self.equations.system.free is not None else self.states.supplies[-1:]))
 
@@ -279,7 +280,7 @@ class Trials:
         return self.equations.system.free or self.equations.system
 
     def _torn(self, state: State, moving: State) -> str:
-        """What accelerations leave of the free bodies at a state in which the ties hold.
+        """What accelerations leave of the free bodies at a state in which the constraints hold.
 
         Raises:
             NoValue: they do not hold there.
@@ -371,18 +372,19 @@ class Trials:
             name = "strings and links touch what they are led over, keep their length and pull along it"
             yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
 
-    def kept_ties(self) -> Iterable[Check]:
+    def kept_constraints(self) -> Iterable[Check]:
         """What stays as at the start is closed there; none where nothing does."""
         if rows_that_stay(self.equations.system):
-            name = "ties that keep what is at the start are closed there"
+            name = "constraints that keep what is at the start are closed there"
             yield self._at_states(name, "50 digits", lambda state: open_at_start(self.equations.system, state))
 
     def slack_springs(self) -> Iterable[Check]:
-        """Springs that keep the length of the start have it there, ties closed; none where no ties are."""
+        """Springs that keep the length of the start have it there, constraints closed; none where no constraints
+        are."""
         system = self.equations.system
-        if springs_of_the_start(system) and system.ties.rows:
+        if springs_of_the_start(system) and system.constraints.rows:
             name = "springs that are slack at the start are so where the motion starts"
-            yield attempted(name, "the start that the ties complete", lambda: pulled_at_start(system))
+            yield attempted(name, "the start that the constraints complete", lambda: pulled_at_start(system))
 
     def elements(self) -> Iterable[Check]:
         """Springs, dampers and pulls act as they are declared; none where there are none."""

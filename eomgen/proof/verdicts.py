@@ -22,6 +22,7 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
@@ -35,7 +36,6 @@ from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
 from eomgen.proof.trials import Trials
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.rational import Fraction
@@ -88,10 +88,10 @@ class Judged:
         """Whether it holds in the motion from the start alone, or where something is driven by a law of time."""
         words = ("from the start", "at the start", "first piece", "first integral", "any start")
         driven = any(q.motion is not None for q in self.equations.system.scope.model.coordinates.values())
-        told = driven or any(word in self.up_to for word in words)
+        reported = driven or any(word in self.up_to for word in words)
         names = self.left.names | self.right.names
         of_places = self.kind not in ("energy", "force", "inertia") and not any(name.endswith("'") for name in names)
-        return told or (not self.is_right and (self.kind == "law" or of_places or self._gains))
+        return reported or (not self.is_right and (self.kind == "law" or of_places or self._gains))
 
     @property
     def _gains(self) -> bool:
@@ -154,7 +154,7 @@ class _Again:
     # -- states ------------------------------------------------------------------------------------
 
     def _beside(self) -> Iterator[NumericState]:
-        """States that satisfy the ties: beside the start, at random."""
+        """States that satisfy the constraints: beside the start, at random."""
         equations, up_to = self.judged.equations, self.judged.up_to
         own = any(word in up_to for word in (*OF_THE_FILE, "holds where", "a constant of"))
         for name, supply in Trials(equations).states.supplies:
@@ -268,9 +268,9 @@ def _conditions(up_to: str) -> list[Expression]:
     Raises:
         NoValue: the words are no such conditions.
     """
-    told = next((up_to.partition(words)[2] for words in ("what holds where ", "while ") if words in up_to), "")
+    reported = next((up_to.partition(words)[2] for words in ("what holds where ", "while ") if words in up_to), "")
     found = []
-    for each in told.split(" and ") if told else ():
+    for each in reported.split(" and ") if reported else ():
         sides = _COMPARED.fullmatch(each.strip())
         if sides is None:
             raise NoValue(f"where it holds is said in other words: {each}")

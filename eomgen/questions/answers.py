@@ -28,10 +28,11 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.mechanics.dynamics.pieces import Extent, refuse_jump, signs_of_rates
-from eomgen.mechanics.instant.quantities import asks_motion, asks_of
-from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
+from eomgen.mechanics.instant.quantities import requests_motion, requests_of
+from eomgen.mechanics.instant.velocity_analysis import InstantKinematics, instant_kinematics_of
 from eomgen.mechanics.integrals.first_integrals import stay_constant
 from eomgen.mechanics.integrals.speeds import rates_and_extent
 from eomgen.mechanics.start.exact import known_exactly, known_parameters
@@ -49,7 +50,6 @@ from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart, leaves_at
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Call
@@ -80,7 +80,7 @@ class Answers(dict[str, Answer], Result):
         self._solver, self.stopped = solver, stopped
 
     def __repr__(self) -> str:
-        return f"<answers: {', '.join(self) or 'none asked'}>"
+        return f"<answers: {', '.join(self) or 'none requested'}>"
 
     def _repr_markdown_(self) -> str:
         """Each by its name, exact and as a number, typeset."""
@@ -168,7 +168,7 @@ class _Solver:
 
     def unanswered(self, output: Output, error: EomgenError) -> Answer:
         """Why there is none."""
-        return Answer(unit=self._unit(output), message=f"{error.what}; {error.mend}" if error.mend else error.what)
+        return Answer(unit=self._unit(output), message=f"{error.what}; {error.fix}" if error.fix else error.what)
 
     def _unit(self, output: Output) -> str:
         return self._units[output].text if output in self._units else ""
@@ -179,8 +179,8 @@ class _Solver:
 
     def _answer(self, output: Output) -> Answer:
         if is_of_a_run(output):
-            raise DerivationError("it is of a whole run", mend="`eomgen simulate` gives it")
-        if asks_of(output.value, SMALL_MOTIONS):
+            raise DerivationError("it is of a whole run", fix="`eomgen simulate` gives it")
+        if requests_of(output.value, SMALL_MOTIONS):
             return self._of_small_motions(output)
         if output.at is not None:
             return self._at(output)
@@ -193,10 +193,10 @@ class _Solver:
     # -- at the one instant that [given] speaks of -----------------------------------------------
 
     def is_of_the_instant(self, output: Output) -> bool:
-        """Whether a formula asks velocities where no time runs: with [given], or of bodies and ties alone."""
+        """Whether a formula asks velocities where no time runs: with [given], or of bodies and constraints alone."""
         given, formula = self.model.given, output.value
         if given is None:
-            return not self.model.coordinates and asks_motion(formula)
+            return not self.model.coordinates and requests_motion(formula)
         texts = [
             side
             for equations in (given.velocity, given.acceleration)
@@ -204,16 +204,16 @@ class _Solver:
             for side in (equation.left, equation.right)
         ]
         unknown = self.model.unknowns.keys() & {name for text in texts for name in text.names}
-        return asks_motion(formula) or not {*unknown, *self.model.speeds}.isdisjoint(formula.names)
+        return requests_motion(formula) or not {*unknown, *self.model.speeds}.isdisjoint(formula.names)
 
     @cached_property
-    def snapshot(self) -> Snapshot:
-        return snapshot_of(self.model, by_coordinates=True)
+    def instant_kinematics(self) -> InstantKinematics:
+        return instant_kinematics_of(self.model, by_coordinates=True)
 
     def _of_the_instant(self, output: Output) -> Answer:
-        scalar = self.snapshot.value(output.value)
-        found = self._started(self.snapshot.simple(scalar), "velocities under the ties", output)
-        return found if self.snapshot.exact else replace(found, exact=None)
+        scalar = self.instant_kinematics.value(output.value)
+        found = self._started(self.instant_kinematics.simple(scalar), "velocities under the constraints", output)
+        return found if self.instant_kinematics.exact else replace(found, exact=None)
 
     # -- of the linearized system ------------------------------------------------------------------
 
@@ -224,7 +224,7 @@ class _Solver:
     def _of_small_motions(self, output: Output) -> Answer:
         """A formula of the matrices and frequencies of the linearized system; exact where all of them are."""
         if output.from_ or output.side or (output.at is not None and not isinstance(output.at, AtRest)):
-            raise DerivationError("small motions have the state of [linearize]", mend="leave out `at`, `from`, `side`")
+            raise DerivationError("small motions have the state of [linearize]", fix="leave out `at`, `from`, `side`")
         scope = self.phase.system.scope
         exact = True
 
@@ -233,7 +233,7 @@ class _Solver:
             if FUNCTIONS[call.name].source != SMALL_MOTIONS:
                 raise DerivationError(
                     f"'{call}' is a function of the state, and stands beside the linearized system",
-                    mend="ask it in an output of its own",
+                    fix="ask it in an output of its own",
                 )
             found, is_exact = self.linearization.value(call)
             exact = exact and is_exact
@@ -253,7 +253,7 @@ class _Solver:
         if self._not_at_rest:
             raise DerivationError(
                 f"the bodies are not at rest: {self._not_at_rest}",
-                mend="let the constraints hold them, or ask at an instant",
+                fix="let the constraints hold them, or ask at an instant",
             )
         answer = self._started(phase.simple(scalar), method, output)
         if jump := _jump(phase, output, self.motions[False].numbers):
@@ -274,13 +274,13 @@ class _Solver:
         """The contacts on surfaces that begin to slide from rest, by their names."""
         phase = self.phase
         values = {**known_parameters(phase.system.scope), **self.motions[False].numbers}
-        rows = [row for row in phase.system.ties.rows if row.shares and row.friction is not None]
-        return ", ".join(f"'{row.tie}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
+        rows = [row for row in phase.system.constraints.rows if row.shares and row.friction is not None]
+        return ", ".join(f"'{row.constraint}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
 
     def _regular(self, answer: Answer, output: Output) -> Answer:
         """The answer with the value that it has where its closed form divides by what vanishes at the start."""
         phase = self.phase
-        if not phase.system.ties.closing or not phase.needs_equations(output.value):
+        if not phase.system.constraints.closing or not phase.needs_equations(output.value):
             return answer
         symbols = phase.system.symbols
         try:
@@ -317,12 +317,12 @@ class _Solver:
             jump = _jump(phase, output, motion.numbers)
             return replace(answer, value=None, message=jump) if jump else answer
         if not motion.start:
-            raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
+            raise DerivationError("a coordinate at the start has no closed form", fix="ask it at an instant: `at`")
         found = rates_and_extent(phase.equations, motion.start, accelerations=phase.accelerations)
         if found is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
-                mend="ask it at an instant: `at`",
+                fix="ask it at an instant: `at`",
             )
         rates, held = found
         self._refuse_leaving(motion, held)
@@ -345,12 +345,12 @@ class _Solver:
         if not motion.numbers:
             raise DerivationError(
                 f"{what}, and without values of all parameters nobody knows whether the motion stays there",
-                mend="give the parameters values",
+                fix="give the parameters values",
             )
         left = leaves_at(motion, held)
         if left is not None:
             raise DerivationError(
-                f"{what}, and the motion leaves that at t = {left:.4g} s", mend="ask it at an instant: `at`"
+                f"{what}, and the motion leaves that at t = {left:.4g} s", fix="ask it at an instant: `at`"
             )
 
     def _started(self, scalar: Scalar, method: str, output: Output) -> Answer:
@@ -415,7 +415,7 @@ class _Solver:
         assert output.at is not None
         if isinstance(output.at, AtRest):
             if output.from_ or output.side:
-                raise DerivationError("a place of rest has no way that leads there", mend="leave out `from` and `side`")
+                raise DerivationError("an equilibrium has no way that leads there", fix="leave out `from` and `side`")
             moment = self.at_rest
         else:
             moment = self.motions[output.from_ == "rest"].until(output.at, output.side)
@@ -456,10 +456,10 @@ class _Solver:
         phase = motion.phase
         if moment.phase is not phase or not motion.start:
             return None
-        asked = phase.eliminated(phase.raw(output.value))
-        if not stay_constant(phase.equations, (asked,))[0]:
+        requested = phase.eliminated(phase.raw(output.value))
+        if not stay_constant(phase.equations, (requested,))[0]:
             return None
-        return substituted((asked,), motion.start)[0]
+        return substituted((requested,), motion.start)[0]
 
     @cached_property
     def at_rest(self) -> StateAtInstant:
@@ -475,7 +475,7 @@ class _Solver:
         if not moment.numbers:
             raise RunFailed(
                 "the instant has no closed form, and without values of all parameters no number",
-                mend="give every parameter a value in [parameters]",
+                fix="give every parameter a value in [parameters]",
             )
         phase = moment.phase
         value = phase.number(output.value, {**known_exactly(phase.system.scope), **moment.numbers})
@@ -489,7 +489,7 @@ def _jump(phase: PhaseEquations, output: Output, numbers: Mapping[Node, float]) 
     try:
         refuse_jump(phase.system, exact_numbers(numbers))
     except DerivationError as error:
-        return f"no number: {error.what}; {error.mend}"
+        return f"no number: {error.what}; {error.fix}"
     return ""
 
 

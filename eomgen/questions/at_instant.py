@@ -7,12 +7,12 @@ from dataclasses import replace
 from random import Random
 
 from eomgen.errors import DerivationError, EomgenError, RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.integrals.laws import ClosedInstant
 from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.model.values import exact_parameters, numeric_parameters
 from eomgen.questions.in_phase import PhaseEquations
-from eomgen.records import dataclass
 from eomgen.simulation.motion import FirstTime, values_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, State
@@ -59,14 +59,14 @@ def _with_rates(moment: StateAtInstant, known: dict[str, Scalar]) -> dict[str, S
 
 
 def placed(phase: PhaseEquations, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
-    """What is known of a state, and the coordinates that the ties then fix, where they have a closed form.
+    """What is known of a state, and the coordinates that the constraints then fix, where they have a closed form.
 
     Args:
         numbers: the same state in numbers, by which one of several places is chosen; {}: nothing is added.
     """
     system = phase.system
     unknown = [q for q in system.symbols.q if q not in known]
-    gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
+    gaps = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if not unknown or not gaps or not numbers or len(gaps) < len(unknown) == len(system.symbols.q):
         return dict(known)  # nothing to begin with
     located = Located({**parameters_of(phase), **numbers}, phase.system.scope.positive)
@@ -192,7 +192,7 @@ class _Search:
         """
         symbols, rng = self.phase.system.symbols, Random(1)
         if not {*symbols.q, *symbols.u} <= self.start.keys():
-            raise RunFailed("the start has no closed form, and no numbers", mend="give the parameters values")
+            raise RunFailed("the start has no closed form, and no numbers", fix="give the parameters values")
         reason: EomgenError = RunFailed("no trial was made")
         parameters = symbols.parameters.values()
         for spread in TRIALS:
@@ -204,7 +204,7 @@ class _Search:
             except (RunFailed, DerivationError) as error:
                 reason = error
         tried = "at the values tried for parameters without one"
-        raise RunFailed(f"{reason.what} ({tried})", mend="give the parameters values")
+        raise RunFailed(f"{reason.what} ({tried})", fix="give the parameters values")
 
     def closed(self, numbers: State, values: State) -> tuple[State, str]:
         """(t, q and u in closed form, by which way); the way is "" where the numbers' own is the better word."""

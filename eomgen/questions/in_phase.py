@@ -14,7 +14,8 @@ from typing import Any
 
 from eomgen.codegen.programs import accelerations_and_multipliers
 from eomgen.errors import MissingValues
-from eomgen.mechanics.constraints.rank import freedoms
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.rank import degrees_of_freedom
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
 from eomgen.mechanics.dynamics.pieces import refuse_jump, signs_of_rates
@@ -23,12 +24,11 @@ from eomgen.mechanics.dynamics.wellposed import refuse_massless
 from eomgen.mechanics.free_bodies.balance import still
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.free_bodies.solution import values_at_a_state
-from eomgen.mechanics.instant.quantities import Quantities, asks_of
+from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import Call, Expression
@@ -50,7 +50,7 @@ class PhaseEquations:
     """The equations of motion of one phase.
 
     Args:
-        system: motion, loads and ties.
+        system: motion, loads and constraints.
     """
 
     system: System
@@ -123,12 +123,13 @@ class PhaseEquations:
 
     @cached_property
     def _stands_still(self) -> bool:
-        """Whether the ties hold every coordinate where it is: J u = 0 with as many independent rows as speeds."""
-        ties = self.system.ties
-        if not ties.closing or not all(holds_identically(x) for x in ties.sigma):
+        """Whether the constraints hold every coordinate where it is: J u = 0 with as many independent rows as
+        speeds."""
+        constraints = self.system.constraints
+        if not constraints.closing or not all(holds_identically(x) for x in constraints.sigma):
             return False
         try:
-            return freedoms(ties) == 0
+            return degrees_of_freedom(constraints) == 0
         except MissingValues:
             return False
 
@@ -178,7 +179,7 @@ class PhaseEquations:
         self, found: Sequence[float], closed: Sequence[Scalar], numbers: Mapping[Node, Scalar | float]
     ) -> list[bool]:
         """Whether forms that divide by what may vanish there have the same values in floats: no pivot vanishes."""
-        if not self.system.ties.closing:
+        if not self.system.constraints.closing:
             return [True] * len(found)
         exact = exact_numbers(numbers)
         floats = dict(zip(exact, numbers_of(exact.values()), strict=True))
@@ -246,15 +247,15 @@ class PhaseEquations:
     def method_for(self, formula: Expression) -> str:
         """What eliminates reactions and accelerations from the formula, or what it asks; "" for positions and rates."""
         unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
-        if unknown or asks_of(formula, BALANCE):
+        if unknown or requests_of(formula, BALANCE):
             return BALANCE
         if self.needs_equations(formula):
             return "equations of motion"
-        return MASSES if asks_of(formula, MASSES) else ""
+        return MASSES if requests_of(formula, MASSES) else ""
 
     def needs_equations(self, formula: Expression) -> bool:
         """Whether accelerations, multipliers or reactions stand in the formula."""
-        if asks_of(formula, BALANCE):
+        if requests_of(formula, BALANCE):
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 

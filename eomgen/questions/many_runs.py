@@ -1,7 +1,8 @@
 """Simulator, values of many runs -> Runs: in lanes of vectors or in marches where the model allows it, else one by one.
 
-Lanes take what has no ties, no contacts that change and no quaternion's tie: a motion x' = f(t, x, p) whose start
-follows from numbers. Marches take what has ties that hold throughout. A run that is stiff, comes near a singular
+Lanes take what has no constraints, no contacts that change and no quaternion's constraint: a motion x' = f(t, x, p)
+whose start
+follows from numbers. Marches take what has constraints that hold throughout. A run that is stiff, comes near a singular
 position, or has equations or a start of its own is run alone.
 """
 
@@ -16,19 +17,19 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
+from eomgen.codegen.batching import STATUS, Batch, FoundRuns, Requested
 from eomgen.codegen.rhs import in_c, parameter_vector
 from eomgen.codegen.taylor import order_for, without_series
 from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
+from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.start.state import start_of_motion
+from eomgen.model.diagnostics import nearest
 from eomgen.model.fields import Table
-from eomgen.model.findings import nearest
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Parameter
 from eomgen.model.replaced import TypedNumbers, are_several, typed_values, with_inputs, with_values
 from eomgen.proof.motion import Promise
 from eomgen.questions.simulator import SAMPLES, KnownEquations, Runs, Simulator
-from eomgen.records import dataclass, with_fields
 from eomgen.simulation.compiled_runs import marched
 from eomgen.simulation.contacts import Configuration, has_phases
 from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
@@ -93,7 +94,7 @@ def many_runs(
     time = seconds(time)
     refuse_bad_run(0.0, time, how)
     if threads < 1:
-        raise UsageError(f"{threads} threads make no sense", mend="give 1 or more")
+        raise UsageError(f"{threads} threads make no sense", fix="give 1 or more")
     plan = _planned(simulator, time, parameters or {}, start or {}, inputs or {}, samples)
     found = _in_lanes(plan, threads) or _in_marches(plan, threads) or _one_by_one(plan, range(plan.runs), threads)
     names, status, message, x, steps = found
@@ -117,8 +118,8 @@ def _planned(
         for kind, given in (("parameters", parameters), ("start", start), ("inputs", inputs))}  # fmt: skip
     sizes = {name: len(values) for each in arrays.values() for name, values in each.items()}
     if len(set(sizes.values())) > 1:
-        told = ", ".join(f"'{name}' {size}" for name, size in sizes.items())
-        raise UsageError(f"arrays of several lengths: {told}", mend="give one value a run to each")
+        reported = ", ".join(f"'{name}' {size}" for name, size in sizes.items())
+        raise UsageError(f"arrays of several lengths: {reported}", fix="give one value a run to each")
     shared = [{n: v for n, v in given.items() if n not in arrays[kind]} for kind, given in (
         ("parameters", parameters), ("start", start))]  # fmt: skip
     model = with_inputs(simulator.model, {n: v for n, v in inputs.items() if n not in arrays["inputs"]})
@@ -140,10 +141,10 @@ def _array(model: Model, name: str, value: Any) -> np.ndarray:
         plain = isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
         found = np.asarray(value, dtype=float) if plain else np.array([typed.number(x) for x in typed_values(value)])
     except (ValueError, TypeError, ExpressionError) as error:
-        what, mend = (error.what, error.mend) if isinstance(error, ExpressionError) else ("they are no numbers", "")
-        raise UsageError(f"the values of '{name}': {what}", mend=mend) from error
+        what, fix = (error.what, error.fix) if isinstance(error, ExpressionError) else ("they are no numbers", "")
+        raise UsageError(f"the values of '{name}': {what}", fix=fix) from error
     if not len(found) or not np.all(np.isfinite(found)):
-        raise UsageError(f"the values of '{name}' must be finite numbers, one a run", mend="leave out what is not")
+        raise UsageError(f"the values of '{name}' must be finite numbers, one a run", fix="leave out what is not")
     return found
 
 
@@ -152,7 +153,7 @@ def _inputs_as_parameters(model: Model, inputs: Mapping[str, np.ndarray]) -> tup
     found, added = {}, {}
     for name, values in inputs.items():
         if name not in model.inputs:
-            raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
+            raise UsageError(f"there is no input '{name}'", fix=nearest(name, model.inputs))
         own = f"{name}_given"
         while own in model.parameters:
             own += "_"
@@ -166,7 +167,7 @@ def _inputs_as_parameters(model: Model, inputs: Mapping[str, np.ndarray]) -> tup
 # -- in lanes ------------------------------------------------------------------------------------------
 
 
-Told = tuple[tuple[str, ...], np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+Reported = tuple[tuple[str, ...], np.ndarray, np.ndarray, np.ndarray, np.ndarray]
 """names, status, message, x, steps."""
 
 
@@ -177,11 +178,11 @@ def _known(simulator: Simulator) -> tuple[Any, PhaseModel]:
     return equations, one_phase(equations.graph.system, equations.graph, p, simulator.target)
 
 
-def _in_lanes(plan: _Plan, threads: int) -> Told | None:
+def _in_lanes(plan: _Plan, threads: int) -> Reported | None:
     """All runs in lanes; None where the model, the method or the machine does not allow it."""
     simulator, how = plan.simulator, plan.simulator.how
     steps = how.method in (AUTO, "DOP853", TAYLOR) and how.stabilization in ("projection", "none")
-    if simulator.is_tied or simulator.keeps_start or not steps or simulator.target == "numpy":
+    if simulator.is_constrained or simulator.keeps_start or not steps or simulator.target == "numpy":
         return None
     equations, phase = _known(simulator)
     step, program = how.of_one_step(), phase.functions.rhs.program
@@ -193,16 +194,16 @@ def _in_lanes(plan: _Plan, threads: int) -> Told | None:
             raise
         return None
     p = _parameters(plan)
-    asked = Asked(
+    requested = Requested(
         (0.0, plan.time), plan.instants, step.rtol, step.atol, step.most_steps,
-        breakpoints_of(plan.model), tuple(phase.functions.rhs.spheres),
+        breakpoints_of(plan.model), tuple(phase.functions.rhs.unit_quaternions),
     )  # fmt: skip
-    found = batch.runs(_starts(plan, phase, equations), p, asked, threads=threads, check=check_patience)
+    found = batch.runs(_starts(plan, phase, equations), p, requested, threads=threads, check=check_patience)
     status, message = np.array(STATUS, dtype=object)[found.status], _messages(found)
     again = np.flatnonzero(status == "stiff")
     if len(again):
-        told = _one_by_one(plan, again.tolist(), threads)
-        _, status[again], message[again], found.x[again], found.steps[again] = told
+        reported = _one_by_one(plan, again.tolist(), threads)
+        _, status[again], message[again], found.x[again], found.steps[again] = reported
     names = phase.coordinates + phase.shown
     return names, status.astype(str), message, found.x, found.steps.astype(int)
 
@@ -210,7 +211,7 @@ def _in_lanes(plan: _Plan, threads: int) -> Told | None:
 # -- in marches ----------------------------------------------------------------------------------------
 
 
-def _in_marches(plan: _Plan, threads: int) -> Told | None:
+def _in_marches(plan: _Plan, threads: int) -> Reported | None:
     """All runs in marches, those that need a look one by one; None where the model or the method does not allow it."""
     simulator, how = plan.simulator, plan.simulator.how
     allowed = how.method in (AUTO, "DOP853") and how.stabilization in ("projection", "none") and how.every is None
@@ -237,8 +238,8 @@ def _in_marches(plan: _Plan, threads: int) -> Told | None:
     status, message = np.full(plan.runs, "finished", object), np.full(plan.runs, reached_words(plan.time), object)
     again = np.setdiff1d(np.arange(plan.runs), which[found.is_done])
     if len(again):
-        told = _one_by_one(plan, again.tolist(), threads)
-        _, status[again], message[again], x[again], steps[again] = told
+        reported = _one_by_one(plan, again.tolist(), threads)
+        _, status[again], message[again], x[again], steps[again] = reported
     return names, status.astype(str), message, x, steps
 
 
@@ -305,9 +306,10 @@ def _names(expression: Expression | None) -> frozenset[str]:
 
 
 def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """What of its energy (where that is constant), ties and norms contradicts each run, in words; "": nothing.
+    """What of its energy (where that is constant), constraints and norms contradicts each run, in words; "": nothing.
 
-    The limits are those of one run: 10 (rtol size + atol) a step; on ties, onto which each step is put back, of one.
+    The limits are those of one run: 10 (rtol size + atol) a step; on constraints, onto which each step is put back, of
+    one.
     """
     how, (runs, instants) = plan.simulator.how, x.shape[:2]
     t, p = np.tile(plan.instants, runs), np.repeat(_parameters(plan), instants, axis=0)
@@ -328,8 +330,8 @@ def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.nda
             judge("the energy, which is constant, changes", drift, map(Promise.limit, promises, moving))
         if phase.projection is not None:
             gaps = phase.projection.gaps.many(t, rows[:, : phase.projection.size], p).reshape(runs, -1)
-            judge("ties are open", np.max(np.abs(gaps), axis=1, initial=0.0), map(Promise.open, promises, size))
-        for four in phase.functions.rhs.spheres:
+            judge("constraints are open", np.max(np.abs(gaps), axis=1, initial=0.0), map(Promise.open, promises, size))
+        for four in phase.functions.rhs.unit_quaternions:
             norms = np.sum(x[:, :, list(four)] ** 2, axis=2)
             judge("a quaternion's norm changes", np.max(np.abs(norms - 1), axis=1), (q.limit(1.0) for q in promises))
     return found
@@ -348,7 +350,7 @@ def _drifts(plan: _Plan, phase: PhaseModel) -> Callable[[np.ndarray, np.ndarray]
 # -- one by one ----------------------------------------------------------------------------------------
 
 
-def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Told:
+def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Reported:
     """Some of the runs, each by the simulator of one."""
     context = contextvars.copy_context()
 
@@ -364,16 +366,16 @@ def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Told:
         return names, found.status, found.message, found.x if whole else None, found.steps
 
     if threads == 1 or len(which) < 2:
-        told = list(map(run, which))
+        reported = list(map(run, which))
     else:
         run(which[0])  # derives and compiles, once
         with ThreadPoolExecutor(threads) as pool:
-            told = list(pool.map(lambda i: context.copy().run(run, i), which))
+            reported = list(pool.map(lambda i: context.copy().run(run, i), which))
     phase = _known(plan.simulator)[1]
-    names = next((each[0] for each in told if each[3] is not None), phase.coordinates + phase.shown)
-    x = np.full((len(told), len(plan.instants), len(names)), np.nan)
-    for row, each in zip(x, told, strict=True):
+    names = next((each[0] for each in reported if each[3] is not None), phase.coordinates + phase.shown)
+    x = np.full((len(reported), len(plan.instants), len(names)), np.nan)
+    for row, each in zip(x, reported, strict=True):
         if each[3] is not None and each[0] == names:
             row[:] = each[3]
-    status, message = (np.array([each[k] for each in told], dtype=object) for k in (1, 2))
-    return names, status.astype(str), message, x, np.array([each[4] for each in told], dtype=int)
+    status, message = (np.array([each[k] for each in reported], dtype=object) for k in (1, 2))
+    return names, status.astype(str), message, x, np.array([each[4] for each in reported], dtype=int)

@@ -19,6 +19,7 @@ import numpy as np
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.dynamics.pieces import Extent
@@ -31,7 +32,6 @@ from eomgen.model.parts import Model, Output
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.run import RunProof
-from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import nearness_of, projection_of
 from eomgen.simulation.contacts import by_the_law, has_phases
 from eomgen.simulation.integrate import integrate
@@ -118,7 +118,7 @@ class MotionFromStart:
 
     @cached_property
     def begun(self) -> ExactStart:
-        """The start at which the ties hold."""
+        """The start at which the constraints hold."""
         return ExactStart(self.phase.system, self.at_rest)
 
     @cached_property
@@ -136,13 +136,13 @@ class MotionFromStart:
         Raises:
             RunFailed: it is never met.
         """
-        asked = (condition.text, side or "")
-        if asked not in self._moments:
+        requested = (condition.text, side or "")
+        if requested not in self._moments:
             try:
-                self._moments[asked] = self._until(condition, side)
+                self._moments[requested] = self._until(condition, side)
             except (RunFailed, DerivationError) as error:
-                self._moments[asked] = error
-        found = self._moments[asked]
+                self._moments[requested] = error
+        found = self._moments[requested]
         if isinstance(found, EomgenError):
             raise found
         return found
@@ -177,7 +177,7 @@ class MotionFromStart:
         if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
             raise RunFailed(
                 f"'{condition.text}' names no instant: nothing in it moves",
-                mend="write an equation in coordinates, rates or t",
+                fix="write an equation in coordinates, rates or t",
             )
         return holds_identically(substituted((scalar,), {symbols.t: 0})[0])
 
@@ -229,7 +229,7 @@ class MotionFromStart:
             if math.isfinite(there) and there < -CARRIED * max(1.0, size):
                 raise RunFailed(
                     f"'{bound.owner}' ends before the instant, on the way from an unstable rest",
-                    mend="start from a place of rest that is stable, or ask earlier",
+                    fix="start from an equilibrium that is stable, or ask earlier",
                 )
 
     # -- through several phases -------------------------------------------------------------------
@@ -263,10 +263,10 @@ class MotionFromStart:
             if runs[-1].run.status != "finished":
                 raise RunFailed(
                     f"'{condition.text}' is not met before the run ended: {runs[-1].run.message}",
-                    mend="ask for what the motion reaches",
+                    fix="ask for what the motion reaches",
                 )
         raise RunFailed(
-            f"'{condition.text}' is not met within {HORIZONS[-1]:g} s", mend="ask for what the motion reaches"
+            f"'{condition.text}' is not met within {HORIZONS[-1]:g} s", fix="ask for what the motion reaches"
         )
 
     def _through(self, runs: Sequence[PhaseRun], condition: WrittenEquation, side: str | None) -> StateAtInstant:
@@ -374,7 +374,7 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         most_steps=steps,
     )
     if not run.ok:
-        raise RunFailed(f"the run does not get there: {run.message}", mend="ask for an earlier instant")
+        raise RunFailed(f"the run does not get there: {run.message}", fix="ask for an earlier instant")
     return run
 
 
@@ -411,7 +411,8 @@ def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
 # -------- proof of phases -------------------------------------------------------------------------------------
 # An instant behind several phases -> whether the motion leads to it: the run that was followed, looked at as a run.
 #
-# In each phase steps are taken again by another method, energy, ties and contacts are what the phase takes them for,
+# In each phase steps are taken again by another method, energy, constraints and contacts are what the phase takes them
+# for,
 # and between phases only impulses that push give momentum. The state is that at the end, and the condition holds not
 # before.
 
@@ -431,7 +432,7 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     if found.ok is None:
         raise DerivationError(
             "the motion has phases of which nothing could be checked",
-            mend="give every parameter a value in [parameters]",
+            fix="give every parameter a value in [parameters]",
         )
     failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]
     return next(iter(failing), "") or _elsewhere(runs, output, moment) or _met_before(runs, output)

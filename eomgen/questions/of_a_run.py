@@ -16,14 +16,14 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError, RunFailed, UsageError
-from eomgen.mechanics.instant.quantities import asks_of
+from eomgen.frozen import dataclass
+from eomgen.mechanics.instant.quantities import requests_of
 from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, formula_at
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import Taken, equation_typed
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Check, Tally, differing
-from eomgen.records import dataclass
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.motion import DenseMotion, Plan, dense_motion
 from eomgen.simulation.phase_run import PhaseRun
@@ -67,30 +67,30 @@ class WholeRun:
     parameters: Mapping[str, float]
     ends: Sequence[float] | None = None
 
-    def value(self, asked: str | Output) -> RunValue:
+    def value(self, requested: str | Output) -> RunValue:
         """What an output, or a text, asks: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
 
         Raises:
             UsageError: it cannot be read, or names what the model does not have.
         """
-        return self.of(asked_of(self.model, asked) if isinstance(asked, str) else asked)
+        return self.of(requested_of(self.model, requested) if isinstance(requested, str) else requested)
 
     def of(self, output: Output) -> RunValue:
         """One output; what goes wrong is its message."""
         try:
             if output.at is not None:
                 return self._at_events(output)
-            if asks_of(output.value, OF_A_RUN):
+            if requests_of(output.value, OF_A_RUN):
                 return self._of_whole(output.value)
             start = float(self.runs[0].here.t)
             return _valued(self._number(output.value, self.runs[0], start), (start,))
         except (DerivationError, ExpressionError, RunFailed) as error:
-            return RunValue(None, (), f"{error.what}; {error.mend}" if error.mend else error.what)
+            return RunValue(None, (), f"{error.what}; {error.fix}" if error.fix else error.what)
 
     def outputs(self) -> dict[str, RunValue]:
         """Of the model's outputs those that are of a run, or of its events."""
-        asked = {name: output for name, output in self.model.outputs.items() if is_of_a_run(output)}
-        return {name: self.of(output) for name, output in asked.items()}
+        requested = {name: output for name, output in self.model.outputs.items() if is_of_a_run(output)}
+        return {name: self.of(output) for name, output in requested.items()}
 
     def checks(self) -> Iterator[Check]:
         """Extremes, means and mean squares of the model's outputs against the samples of the run alone."""
@@ -103,18 +103,18 @@ class WholeRun:
                     tally.add(str(call), partial(self._against_samples, call))
         return tally.checks()
 
-    def answered_otherwise(self, output: Output, told: float | None) -> str:
+    def answered_otherwise(self, output: Output, reported: float | None) -> str:
         """How what is told of an output differs from what the samples of the run alone say of it; "".
 
         At its event both sides are equal among the samples, there are as many before it as changes of their sign or
         more, and what is told is the value there; nothing is told where it is not met, or has no value.
         """
-        if output.event == EVERY or output.from_ is not None or asks_of(output.value, SMALL_MOTIONS):
+        if output.event == EVERY or output.from_ is not None or requests_of(output.value, SMALL_MOTIONS):
             return ""
         if not isinstance(output.at, WrittenEquation):
-            return self._by_samples(output, told) if output.at is None else ""
+            return self._by_samples(output, reported) if output.at is None else ""
         n, met = int(output.event or 1), self._met_by_samples(output.at)
-        if told is None:
+        if reported is None:
             if len(met) < n:
                 return ""
             when = sum(met[n - 1]) / 2
@@ -122,31 +122,31 @@ class WholeRun:
             return f"no value, and it is met near t = {when:.6g} s" if math.isfinite(value) else ""
         found = self.of(output)
         if not found.t:
-            return f"{told:.10g} for no event"
+            return f"{reported:.10g} for no event"
         before = sum(end < found.t[0] * (1 - SAME_PLACE) for _, end in met)
         if before >= n:
-            return f"{told:.10g} at t = {found.t[0]:.6g} s, and it is met {before} times before"
-        return self._events_against_samples(output, told)
+            return f"{reported:.10g} at t = {found.t[0]:.6g} s, and it is met {before} times before"
+        return self._events_against_samples(output, reported)
 
-    def _by_samples(self, output: Output, told: float | None) -> str:
+    def _by_samples(self, output: Output, reported: float | None) -> str:
         """Of the whole run each function; of a formula its value at the start."""
-        if asks_of(output.value, OF_A_RUN):
+        if requests_of(output.value, OF_A_RUN):
             calls = [call for call in output.value.calls if call.name in _FUNCTIONS]
             wrong = (self._against_samples(call) for call in calls)
-            return next(filter(None, wrong), "") or self._otherwise_told(output, calls, told)
+            return next(filter(None, wrong), "") or self._otherwise_reported(output, calls, reported)
         start = float(self._sampled(output.value)[0][1][0])
-        if told is None:
+        if reported is None:
             return f"no value for {start:.10g}" if math.isfinite(start) else ""
-        return differing(told, start, CARRIED)
+        return differing(reported, start, CARRIED)
 
-    def _otherwise_told(self, output: Output, calls: Sequence[Call], told: float | None) -> str:
+    def _otherwise_reported(self, output: Output, calls: Sequence[Call], reported: float | None) -> str:
         """How what is told differs from what the functions of the run, which its samples bear out, come to; ""."""
         found = self.of(output).value
-        if not isinstance(found, float) or told is None:
-            return "" if found is told or isinstance(found, tuple) else f"{told} for {found}"
+        if not isinstance(found, float) or reported is None:
+            return "" if found is reported or isinstance(found, tuple) else f"{reported} for {found}"
         values = (y for call in calls for _, y in self._sampled(formula_at(call, 0)))
         size = max(abs(found), self._duration, *(float(np.max(np.abs(y), initial=0.0)) for y in values))
-        return "" if abs(told - found) <= CARRIED * size else f"{told:.10g} for {found:.10g}"
+        return "" if abs(reported - found) <= CARRIED * size else f"{reported:.10g} for {found:.10g}"
 
     def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
         """The instants of the samples before and behind each change of the order of the sides."""
@@ -170,56 +170,60 @@ class WholeRun:
         The last value is that of the last sample, and a period the time between upward passages of the samples.
         """
         formula = formula_at(call, 0)
-        told, when = self._called(call)
+        reported, when = self._called(call)
         curves = self._sampled(formula)
         values = np.concatenate([y for _, y in curves])
         size = float(np.max(np.abs(values)))
         if call.name == "period":
-            return self._period_against_samples(told, curves)
+            return self._period_against_samples(reported, curves)
         if call.name in ("mean", "rms"):
-            return self._mean_against_samples(told, curves, 2 if call.name == "rms" else 1)
+            return self._mean_against_samples(reported, curves, 2 if call.name == "rms" else 1)
         if call.name == "last":
-            return _not_at(curves, when[0], told, size)
+            return _not_at(curves, when[0], reported, size)
         sign = 1 if call.name.endswith("max") else -1
         extreme = float(np.max(sign * values))
         if call.name.startswith("time"):
-            return _not_at(curves, told, sign * extreme, size)
-        beyond = extreme - sign * told
+            return _not_at(curves, reported, sign * extreme, size)
+        beyond = extreme - sign * reported
         rise = max(float(np.max(np.abs(np.diff(y)), initial=0.0)) for _, y in curves)
         if beyond > CARRIED * size or -beyond > rise + CARRIED * size:
-            return f"{told:.10g} for the sample {sign * extreme:.10g}"
-        return _not_at(curves, when[0], told, size)
+            return f"{reported:.10g} for the sample {sign * extreme:.10g}"
+        return _not_at(curves, when[0], reported, size)
 
     def _sampled(self, formula: Expression) -> list[_Curve]:
         """(t, the formula) at the states of each phase: those asked for, between them much happens, and the steps."""
         states = [(run, *run.measured) for run in self.runs]
         return [(t, self._columns(formula, run).along(t, x)["asked"]) for run, t, x in states]
 
-    def _mean_against_samples(self, told: float, curves: Sequence[_Curve], power: int) -> str:
+    def _mean_against_samples(self, reported: float, curves: Sequence[_Curve], power: int) -> str:
         pairs = [(t, y**power) for t, y in curves]
         size, count = max(float(np.max(np.abs(y))) for _, y in pairs), sum(len(y) for _, y in pairs)
         fine, coarse = (sum(float(np.trapezoid(y[::k], t[::k])) for t, y in pairs) / self._duration for k in (1, 2))
         unsure = 4 * abs(fine - coarse) + CARRIED * size + size * len(pairs) / count
-        return f"{told:.10g}, squared {told**2:.10g}, for {fine:.10g}" if abs(told**power - fine) > unsure else ""
+        return (
+            f"{reported:.10g}, squared {reported**2:.10g}, for {fine:.10g}"
+            if abs(reported**power - fine) > unsure
+            else ""
+        )
 
-    def _period_against_samples(self, told: float, curves: Sequence[_Curve]) -> str:
+    def _period_against_samples(self, reported: float, curves: Sequence[_Curve]) -> str:
         """Between passages of the mean there are as many periods; an instant is known to a step."""
         level = sum(float(np.trapezoid(y, t)) for t, y in curves) / self._duration
         steps = [(t[k], t[k + 1]) for t, y in curves for k in np.flatnonzero((y[:-1] < level) & (y[1:] >= level))]
         if len(steps) < 2:
             return ""
         (first, after), (last, end) = steps[0], steps[-1]
-        low, high = ((x - y) / told for x, y in ((last, after), (end, first)))
-        return "" if low - 1 < len(steps) < high + 2 else f"{told:.10g} for {len(steps)} passages of the samples"
+        low, high = ((x - y) / reported for x, y in ((last, after), (end, first)))
+        return "" if low - 1 < len(steps) < high + 2 else f"{reported:.10g} for {len(steps)} passages of the samples"
 
-    def _events_against_samples(self, output: Output, told: float | None = None) -> str:
+    def _events_against_samples(self, output: Output, reported: float | None = None) -> str:
         """At its events both sides are equal among the samples, and the value, or what is told, is theirs."""
         assert isinstance(output.at, WrittenEquation)
         found = self.of(output)
         sides = self._sampled(output.at.left - output.at.right)
         curves = self._sampled(output.value)
         largest = [max(float(np.max(np.abs(y))) for _, y in each) for each in (sides, curves)]
-        values = found.value if isinstance(found.value, tuple) else (found.value if told is None else told,)
+        values = found.value if isinstance(found.value, tuple) else (found.value if reported is None else reported,)
         for value, t in zip(values, found.t, strict=False):
             wrong = _not_at(sides, t, 0.0, largest[0])
             if value is not None and not wrong:
@@ -243,7 +247,7 @@ class WholeRun:
         strangers = sorted(name for name in formula.names - names.keys() if not self._stands_inside(formula, name))
         if strangers:
             what = f"'{strangers[0]}' is of a state, and stands beside what is of a run"
-            raise DerivationError(what, mend=f"ask it of the run too: last({strangers[0]})")
+            raise DerivationError(what, fix=f"ask it of the run too: last({strangers[0]})")
         found = formula.evaluate({name: float(x) for name, x in names.items()}, value)
         return _valued(float(found), tuple(when) if len(when) == 1 else ())
 
@@ -252,12 +256,12 @@ class WholeRun:
 
     def _called(self, call: Call) -> tuple[float, tuple[float, ...]]:
         """(a function of the run, the instant that it is at)."""
-        if not asks_of(Expression(str(call), (("call", call),), (0,)), OF_A_RUN):
-            raise DerivationError(f"'{call}' is of a state, and stands beside what is of a run", mend=f"last({call})")
+        if not requests_of(Expression(str(call), (("call", call),), (0,)), OF_A_RUN):
+            raise DerivationError(f"'{call}' is of a state, and stands beside what is of a run", fix=f"last({call})")
         formula = formula_at(call, 0)
-        if asks_of(formula, OF_A_RUN):
+        if requests_of(formula, OF_A_RUN):
             raise DerivationError(
-                f"'{call}': what is of a run has no value along it", mend="ask for one after the other"
+                f"'{call}': what is of a run has no value along it", fix="ask for one after the other"
             )
         return _FUNCTIONS[call.name](self, formula)
 
@@ -297,13 +301,13 @@ class WholeRun:
         t = [when for pieces in lifted for when, way in pieces.zeros() if way > 0]
         if len(t) < 2:
             raise DerivationError(
-                f"'{formula.text}' passes its mean upward {len(t)} times: no period", mend="a longer run"
+                f"'{formula.text}' passes its mean upward {len(t)} times: no period", fix="a longer run"
             )
         apart = np.diff(t)
         if np.max(apart) - np.min(apart) > SAME_PERIOD * np.mean(apart):
             low, high = np.min(apart), np.max(apart)
             what = f"'{formula.text}' has no period: from {low:.6g} to {high:.6g} s between upward passages of its mean"
-            raise DerivationError(what, mend="ask for what repeats, or a run after it has settled")
+            raise DerivationError(what, fix="ask for what repeats, or a run after it has settled")
         return float(np.mean(apart)), ()
 
     # -- at events -----------------------------------------------------------------------------------
@@ -311,9 +315,9 @@ class WholeRun:
     def _at_events(self, output: Output) -> RunValue:
         """The value at the n-th event, or at every one."""
         if not isinstance(output.at, WrittenEquation) or output.from_ is not None:
-            raise DerivationError("it is of no run from the start", mend="`eomgen solve` answers it")
-        if asks_of(output.value, OF_A_RUN) or asks_of(output.value, SMALL_MOTIONS):
-            raise DerivationError(f"'{output.value.text}' is of no instant", mend="leave out `at`")
+            raise DerivationError("it is of no run from the start", fix="`eomgen solve` answers it")
+        if requests_of(output.value, OF_A_RUN) or requests_of(output.value, SMALL_MOTIONS):
+            raise DerivationError(f"'{output.value.text}' is of no instant", fix="leave out `at`")
         events = self.events(output.at)
         if output.event == EVERY:
             found = [self._at(output, *event) for event in events]
@@ -365,11 +369,11 @@ class WholeRun:
         """
         found = [(k, resolved_curve(self._function(formula, k), dense.edges)) for k, dense in self._dense.items()]
         if not found:
-            raise DerivationError("the run is one instant", mend="a longer run")
+            raise DerivationError("the run is one instant", fix="a longer run")
         if not all(np.isfinite(pieces.c).all() for _, pieces in found):
             raise DerivationError(
                 f"'{formula.text}' has no value at some instants of the run",
-                mend="ask for what has a value all along it",
+                fix="ask for what has a value all along it",
             )
         return found
 
@@ -396,7 +400,7 @@ class WholeRun:
         if key not in self._made:
             columns = OutputColumns(run.phase, {"asked": formula})
             if columns.refused:
-                raise DerivationError(columns.refused["asked"], mend="ask for what has a value all along the run")
+                raise DerivationError(columns.refused["asked"], fix="ask for what has a value all along the run")
             self._made[key] = columns
         return self._made[key]
 
@@ -448,7 +452,7 @@ def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) ->
 
 def is_of_a_run(output: Output) -> bool:
     """Whether an output asks what no state tells: extremes, means, or the n-th event."""
-    return output.event is not None or asks_of(output.value, OF_A_RUN)
+    return output.event is not None or requests_of(output.value, OF_A_RUN)
 
 
 def _valued(value: float, t: tuple[float, ...]) -> RunValue:
@@ -470,7 +474,7 @@ def _less(pieces: ChebyshevPieces, level: float) -> Callable[[np.ndarray], np.nd
 # -- as it is typed ------------------------------------------------------------------------------------------
 
 
-def asked_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
+def requested_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
     """(what is asked, with units beside plain numbers of its instant: the file's; what was taken).
 
     Raises:
@@ -484,13 +488,13 @@ def asked_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
         sides = parse_typed_equation(condition)
         _, taken = equation_typed(model, condition, declared=True)
     except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
+        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
     units = {each.typed: each.unit for each in taken}
     written = (f"{side.text} {units.get(side.text, '') if unit is None else unit.text}".strip() for side, unit in sides)
     return f"{formula} at {' = '.join(written)}{comma}{event}", taken
 
 
-def asked_of(model: Model, text: str) -> Output:
+def requested_of(model: Model, text: str) -> Output:
     """The output that a text asks: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
 
     In a formula the name of an output without an instant stands for its formula.
@@ -511,11 +515,11 @@ def asked_of(model: Model, text: str) -> Output:
             output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
         replace(model, outputs=Table({"asked": output}))
     except ValueError as error:
-        raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", mend=f"2, or {EVERY}") from error
+        raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", fix=f"2, or {EVERY}") from error
     except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
+        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
     except ModelError as error:
-        raise UsageError(f"'{text}': {error.problems[0].what}", mend=error.problems[0].mend) from error
+        raise UsageError(f"'{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
     return output
 
 

@@ -23,10 +23,11 @@ from eomgen.codegen.rhs import compiled
 from eomgen.documents.linearize.result import Linearization
 from eomgen.documents.statements import Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.mechanics.instant.kinematic_state import KinematicState
-from eomgen.mechanics.instant.quantities import Quantities, asks_of
+from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.linearization.modes import MATRICES
 from eomgen.mechanics.start.exact import known_exactly
 from eomgen.mechanics.start.state import start_state
@@ -45,7 +46,6 @@ from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart, parameters_in_numbers, run_from_start, wrong_way
 from eomgen.questions.velocities import state_of
-from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.formula import Call
@@ -95,7 +95,7 @@ class _Proof:
     answers: Mapping[str, Quantity]
 
     @cached_property
-    def asked(self) -> dict[str, Asked]:
+    def requested(self) -> dict[str, Requested]:
         """The outputs that were answered."""
         outputs = self.solver.model.outputs
         return {name: (outputs[name], found) for name, found in self.answers.items() if found.answered}
@@ -104,7 +104,7 @@ class _Proof:
     def equations(self) -> tuple[Check, ...]:
         """Of the first phase, motions that are given whole among them; of what stands still of what acts on it."""
         phase = self.solver.motions[False].phase
-        if self.asked:
+        if self.requested:
             proven = certify if phase.system.symbols.q else certify_standing
             with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
                 return proven(phase.equations).checks
@@ -113,7 +113,7 @@ class _Proof:
     def begins(self) -> Iterator[Check]:
         """Where the motion is over all rates, it begins where the model does over those that are its own."""
         own = self.solver.motions[False].phase.system
-        if not self.asked or own.free is not None or not dependent_coordinates(own.scope):
+        if not self.requested or own.free is not None or not dependent_coordinates(own.scope):
             return
         tally = Tally("answers begin where the motion of the model does", "the start over its own speeds")
         here = start_state(own)
@@ -126,7 +126,7 @@ class _Proof:
     def texts(self) -> Iterator[Check]:
         """The exact text, read back by our grammar, has the number beside it."""
         tally = Tally("exact texts, read back, give the numbers", "our grammar, the text alone, sure digits")
-        for name, (output, found) in self.asked.items():
+        for name, (output, found) in self.requested.items():
             if found.exact is not None and found.value is not None:
                 tally.add(name, partial(self._read_back, output, found))
         return tally.checks()
@@ -154,7 +154,7 @@ class _Proof:
     def numbers(self) -> Iterator[Check]:
         """The number of an answer is what its formula is worth at the state in numbers."""
         tally = Tally("numbers are those of the formulas at the state", "50 digits, reactions in doubles")
-        for name, (output, found) in self.asked.items():
+        for name, (output, found) in self.requested.items():
             at_start = found.value is not None and output.from_ is None
             if (at_start or output.at is not None) and not self._is_apart(name):
                 tally.add(name, partial(self._against_state, output, found))
@@ -163,7 +163,7 @@ class _Proof:
     def _differences(self) -> Iterator[Check]:
         """What a function of the motion is worth is what its second definition says."""
         tally = Tally("functions of the motion hold by their second definitions", "differences of poses, particles")
-        for name, (output, found) in self.asked.items():
+        for name, (output, found) in self.requested.items():
             if self._is_apart(name):
                 continue
             calls = [call for call in output.value.calls if FUNCTIONS[call.name].second is not None]
@@ -180,7 +180,7 @@ class _Proof:
         tally = Tally(
             "formulas, read back, hold at other states", "50 digits, second definitions, reactions in doubles"
         )
-        for name, (output, found) in self.asked.items():
+        for name, (output, found) in self.requested.items():
             own = output.at is None and output.from_ is None and not self._is_apart(name)
             if own and found.exact is not None and self._others:
                 tally.add(name, partial(self._elsewhere, output, found.exact))
@@ -190,10 +190,10 @@ class _Proof:
         judged, scalar = False, read_back(self.solver.motions[False].phase.system, text)
         for state in self._others:
             try:
-                told, right = (in_unit(x, output) for x in (state.number(scalar), state.worth(output.value)))
-                if differing(told, right) and abs(told - right) > in_unit(state.rounding(output.value), output):
+                reported, right = (in_unit(x, output) for x in (state.number(scalar), state.worth(output.value)))
+                if differing(reported, right) and abs(reported - right) > in_unit(state.rounding(output.value), output):
                     near = [in_unit(beside.worth(output.value), output) for beside in state.beside()]
-                    if wrong := off_by(told, right, near):
+                    if wrong := off_by(reported, right, near):
                         return f"{wrong} at t = {state.t:.6g} s, {place_of(state)}"
                 for call in output.value.calls:
                     if FUNCTIONS[call.name].second is not None and (wrong := second_definition(state, call)):
@@ -218,10 +218,10 @@ class _Proof:
 
     def _against_state(self, output: Output, found: Quantity) -> str:
         if found.value is None:
-            raise DerivationError("it has no number", mend="give every parameter a value in [parameters]")
+            raise DerivationError("it has no number", fix="give every parameter a value in [parameters]")
         state = self._state_of(output)
         right = in_unit(state.worth(output.value), output)
-        if self._asks_forces(output) and state.jumps:
+        if self._requests_forces(output) and state.jumps:
             return "a force jumps there, and it has no one value"
         if not differing(found.value, right) or abs(found.value - right) <= in_unit(
             state.rounding(output.value), output
@@ -229,7 +229,7 @@ class _Proof:
             return ""
         return off_by(found.value, right, [in_unit(near.worth(output.value), output) for near in state.beside()])
 
-    def _asks_forces(self, output: Output) -> bool:
+    def _requests_forces(self, output: Output) -> bool:
         """Whether an output holds accelerations or reactions."""
         return self.solver.motions[False].phase.needs_equations(output.value)
 
@@ -248,7 +248,7 @@ class _Proof:
         if math.isnan(numbers.get(t, 0.0)) and not phase.moves_by_time:
             numbers[t] = 0.0
         if any(math.isnan(x) for x in numbers.values()) or (phase.system.symbols.u and not numbers):
-            raise RunFailed("the state is not known in numbers", mend="give every parameter a value in [parameters]")
+            raise RunFailed("the state is not known in numbers", fix="give every parameter a value in [parameters]")
         return self._state(phase, numbers)
 
     def _moment(self, output: Output) -> StateAtInstant | None:
@@ -273,10 +273,10 @@ class _Proof:
     # -- of no state of the motion -------------------------------------------------------------------
 
     @cached_property
-    def _apart(self) -> tuple[dict[str, Asked], dict[str, Asked]]:
+    def _apart(self) -> tuple[dict[str, Requested], dict[str, Requested]]:
         """What asks mass, damping, stiffness or frequency; what is of one instant that no motion leads to."""
-        linear = {name: pair for name, pair in self.asked.items() if asks_of(pair[0].value, SMALL_MOTIONS)}
-        left = {name: pair for name, pair in self.asked.items() if name not in linear and pair[0].at is None}
+        linear = {name: pair for name, pair in self.requested.items() if requests_of(pair[0].value, SMALL_MOTIONS)}
+        left = {name: pair for name, pair in self.requested.items() if name not in linear and pair[0].at is None}
         return linear, {name: pair for name, pair in left.items() if self.solver.is_of_the_instant(pair[0])}
 
     def _is_apart(self, name: str) -> bool:
@@ -297,16 +297,16 @@ class _Proof:
         """A run in time from the start leads to the state at the instant, and the condition does not hold before."""
         tally = Tally("a run in time leads to the instants asked for", "integrated from the start, order 8")
         rest = Tally("at rest all forces balance", "equations of motion with u = 0, a = 0, 50 digits")
-        asked = {
+        requested = {
             (output.at.text, output.from_): output
-            for output, _ in self.asked.values()
+            for output, _ in self.requested.values()
             if output.at is not None and not isinstance(output.at, AtRest)
         }
-        for (text, _), output in asked.items():
+        for (text, _), output in requested.items():
             tally.add(text, partial(self._on_the_way, output))
-        resting = [name for name, (output, _) in self.asked.items() if isinstance(output.at, AtRest)]
+        resting = [name for name, (output, _) in self.requested.items() if isinstance(output.at, AtRest)]
         if resting:
-            rest.add("the place of rest", self._balanced)
+            rest.add("the equilibrium", self._balanced)
         return iter((*tally.checks(), *rest.checks()))
 
     def _on_the_way(self, output: Output) -> str:
@@ -317,7 +317,7 @@ class _Proof:
             return wrong_way(motion, output, moment)
         t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
         if not (math.isfinite(t) and motion.numbers):
-            raise RunFailed("the instant is not known in numbers", mend="give every parameter a value in [parameters]")
+            raise RunFailed("the instant is not known in numbers", fix="give every parameter a value in [parameters]")
         if t == 0:
             return ""
         if wrong := _by_coincidence(moment, output.at):
@@ -350,7 +350,7 @@ class _Proof:
     def _balanced(self) -> str:
         moment = self.solver.at_rest
         if not moment.numbers:
-            raise RunFailed("the place is not known in numbers", mend="give every parameter a value in [parameters]")
+            raise RunFailed("the place is not known in numbers", fix="give every parameter a value in [parameters]")
         state = self._state(moment.phase, moment.numbers)
         return _left_at_rest(state) or _by_coincidence(moment, None)
 
@@ -359,7 +359,7 @@ class _Proof:
     def ways(self) -> Iterator[Check]:
         """A function of the configuration has along the motion the number of the formula at the same instants."""
         tally = Tally("functions of the configuration hold along the motion", "integrated from the start, order 8")
-        for name, (output, found) in self.asked.items():
+        for name, (output, found) in self.requested.items():
             if output.from_ is not None and output.at is None and found.exact is not None:
                 tally.add(name, partial(self._along, output, found))
         return tally.checks()
@@ -385,9 +385,9 @@ class _Proof:
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
             right = in_unit(state.worth(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
-            told = in_unit(number_of(scalar, here), output)
-            wrong = differing(told, right, CARRIED) and off_by(
-                told, right, [in_unit(near.worth(output.value), output) for near in state.beside()]
+            reported = in_unit(number_of(scalar, here), output)
+            wrong = differing(reported, right, CARRIED) and off_by(
+                reported, right, [in_unit(near.worth(output.value), output) for near in state.beside()]
             )
             if wrong:
                 return f"{wrong} at t = {t:.6g} s"
@@ -404,7 +404,7 @@ def _left_at_rest(state: NumericState) -> str:
 def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest | None) -> str:
     """What does not hold of a state in closed form beside the parameters' own values; "" where it holds there too.
 
-    Ties stay closed, what is at rest stays in balance, and the condition of an instant is met.
+    Constraints stay closed, what is at rest stays in balance, and the condition of an instant is met.
 
     Args:
         condition: by which the instant is asked; None: all rest.
@@ -426,9 +426,9 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
     if any(math.isnan(x) for x in numbers.values()):
         return ""  # beside the parameters' own values it has none
     state = NumericState(moment.phase.equations, p, numbers)
-    gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
+    gaps = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if any(abs(state.number(gap)) > COMPUTED * (1 + max(map(abs, numbers.values()))) for gap in gaps):
-        return "its closed form is one by coincidence: beside these parameters the ties are open"
+        return "its closed form is one by coincidence: beside these parameters the constraints are open"
     if condition is None:
         left = _left_at_rest(state)
         return f"its closed form is one by coincidence: beside these parameters {left}" if left else ""
@@ -460,7 +460,7 @@ def _before_a_turn(run: Trajectory, coordinates: int) -> int:
 # by the matrices in floats and the eigenvalues of A, and by the formula at the proven instant with 50 digits.
 
 
-Asked = tuple[Output, Quantity]
+Requested = tuple[Output, Quantity]
 
 
 def in_unit(value: float, output: Output) -> float:
@@ -472,7 +472,7 @@ def in_unit(value: float, output: Output) -> float:
 
 
 def of_small_motions(
-    found: Linearization, system: System, asked: Mapping[str, Asked], proven: Sequence[Check]
+    found: Linearization, system: System, requested: Mapping[str, Requested], proven: Sequence[Check]
 ) -> Iterator[Check]:
     """Matrices and modes as `linearize` proves them, and what is asked of them.
 
@@ -482,7 +482,7 @@ def of_small_motions(
     same = proven and found.small.first.system.modes == system.modes
     yield from small_motion_checks(found.modes) if same else found.certify().checks
     tally = Tally("answers of small motions are those of the matrices in numbers", "eigenvalues of A in doubles")
-    for name, (output, answer) in asked.items():
+    for name, (output, answer) in requested.items():
         if answer.value is not None:
             tally.add(name, partial(_by_matrices, found, system, output, answer.value))
     yield from tally.checks()
@@ -514,12 +514,12 @@ def _rates(found: Linearization) -> list[float]:
 # -- of one instant ----------------------------------------------------------------------------------------
 
 
-def of_one_instant(model: Model, asked: Mapping[str, Asked]) -> Iterator[Check]:
+def of_one_instant(model: Model, requested: Mapping[str, Requested]) -> Iterator[Check]:
     """The state as `kinematics` proves it, and what is asked of it, as numbers and, read back, as texts."""
     state = state_of(model)
     yield from instant_checks(state)
     tally = Tally("answers of the instant are those of its proven state", "50 digits")
-    for name, (output, answer) in asked.items():
+    for name, (output, answer) in requested.items():
         tally.add(name, partial(_by_state, state, output, answer))
     yield from tally.checks()
 
@@ -528,8 +528,8 @@ def _by_state(state: KinematicState, output: Output, answer: Quantity) -> str:
     system, values = state.system, values_of(state)
     formula = output.value.evaluate(system.scope.names, Quantities(system).value)
     right = in_unit(float(evaluate((formula,), values, fifty_digits())[0]), output)
-    told = [] if answer.value is None else [answer.value]
+    reported = [] if answer.value is None else [answer.value]
     if answer.exact is not None:
         text = evaluate((read_back(system, answer.exact),), values, fifty_digits())[0]
-        told.append(in_unit(float(text), output))
-    return next(filter(None, (differing(x, right) for x in told)), "")
+        reported.append(in_unit(float(text), output))
+    return next(filter(None, (differing(x, right) for x in reported)), "")

@@ -1,4 +1,5 @@
-"""Equations, Stepping -> Trajectory: the motion, kept on its ties, ended where these do not say how it goes on."""
+"""Equations, Stepping -> Trajectory: the motion, kept on its constraints, ended where these do not say how it goes
+on."""
 
 from __future__ import annotations
 
@@ -13,6 +14,7 @@ from eomgen.certificate import certify
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.dynamics.accelerations import stabilized
 from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
 from eomgen.mechanics.free_bodies.friction import with_friction
@@ -20,10 +22,9 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Output
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check, unchecked
-from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
-from eomgen.proof.run_told import output_columns_hold, reaction_columns_hold, rows_left_out
+from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_told
+from eomgen.proof.run_reported import output_columns_hold, reaction_columns_hold, rows_left_out
 from eomgen.questions.of_a_run import WholeRun
-from eomgen.records import dataclass, with_fields
 from eomgen.simulation.columns import formulas_of
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
@@ -79,7 +80,7 @@ class RunProof:
         return certificate + columns + self._contacts(found)
 
     def watch(self, found: Trajectory) -> tuple[Check, ...]:
-        """Of a run its energy against the power, its ties and norms: what it watches anyway."""
+        """Of a run its energy against the power, its constraints and norms: what it watches anyway."""
         if any(phase.model.fed is not None for phase in found.phases):
             return ()
         return motion.watched_checks(*self._moving(found))
@@ -96,7 +97,7 @@ class RunProof:
         seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
         yield from contacts_do_as_told(seen)
         if len(seen) > 1:
-            yield from bodies_stand_as_told(seen, self.models.without_contacts.system)
+            yield from bodies_stand_as_reported(seen, self.models.without_contacts.system)
             yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)
 
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
@@ -110,7 +111,7 @@ class RunProof:
         yield motion.Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
 
 
-def answered_otherwise(found: Trajectory, output: Output, told: float | None) -> str:
+def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:
     """How what is told of an output of a run differs from its samples, as of `WholeRun`; "".
 
     Raises:
@@ -118,7 +119,7 @@ def answered_otherwise(found: Trajectory, output: Output, told: float | None) ->
     """
     if not isinstance(found.proof, RunProof) or found.proof.whole is None:
         raise NoValue("nobody knows the states of the run")
-    return found.proof.whole.answered_otherwise(output, told)
+    return found.proof.whole.answered_otherwise(output, reported)
 
 
 def _until(phase: Phase, t: np.ndarray) -> Phase:
@@ -235,7 +236,8 @@ def page_stepping() -> Stepping:
 def page_time(found: Trajectory) -> tuple[float, str]:
     """(how long a motion is shown where nobody said it [s], why that is shorter than PAGE_TIME, "" where it is not).
 
-    A round time that is over before so many steps are taken, or before ties or contacts do not say how it goes on.
+    A round time that is over before so many steps are taken, or before constraints or contacts do not say how it goes
+    on.
     """
     end = found.phases[-1].end if found.phases else 0.0
     if found.ended not in ("too many steps", "singular", "contact") or not end > 0:
@@ -272,7 +274,7 @@ def finished_run(
         instants: as of `thinned`; the others as of `run`.
     """
     model, runs = equations.model, whole.runs
-    found = _told(joined(models, runs), until)
+    found = _reported(joined(models, runs), until)
     found = with_reactions(found, runs) if reactions else found
     found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
     begun = runs[0].here.begun
@@ -324,7 +326,7 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
     """Refuses a start at rest where branches meet, unless it stays at rest.
 
     Raises:
-        DerivationError: forces pull it away, and the ties do not say on which branch.
+        DerivationError: forces pull it away, and the constraints do not say on which branch.
     """
     fork = None if here.begun is None else here.begun.fork
     if fork is None:
@@ -334,7 +336,7 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
     if np.max(rates, initial=0.0) <= COMPUTED and np.max(accelerations, initial=0.0) > COMPUTED:
         what = f"it starts at rest in {fork.words}: forces pull it away, on which branch nothing says"
         raise DerivationError(
-            what, f"constraints.{fork.ties[0]}", "give it start speeds, or start beside that position"
+            what, f"constraints.{fork.constraints[0]}", "give it start speeds, or start beside that position"
         )
 
 
@@ -350,7 +352,7 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
     return replace(equations, graph=with_friction(pulled))
 
 
-def _told(found: Trajectory, until: str | None) -> Trajectory:
+def _reported(found: Trajectory, until: str | None) -> Trajectory:
     """The run, its message in the words of the condition."""
     if until is None or found.ended not in ("event", "finished"):
         return found

@@ -18,19 +18,19 @@ import numpy as np
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, NotYet, RunFailed, UsageError
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import nearest
 from eomgen.model.driven import law_of
 from eomgen.model.fields import Table, WrittenEquation
-from eomgen.model.findings import nearest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
 from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Model, Parameter
 from eomgen.model.replaced import Valued, Values, with_values
 from eomgen.proof.check import Certificate, checked
-from eomgen.proof.freedoms import rows_that_stay
-from eomgen.questions.of_a_run import WholeRun, asked_of
+from eomgen.proof.degrees_of_freedom import rows_that_stay
+from eomgen.questions.of_a_run import WholeRun, requested_of
 from eomgen.questions.run import finished_run, phase_models, run
-from eomgen.records import dataclass
 from eomgen.simulation.columns import formulas_of
 from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.integrate import instants_of, refuse_bad_run
@@ -48,7 +48,7 @@ from eomgen.symbolic.numeric.tolerances import SOLVED
 
 SAMPLES = 101
 MOST_BASES = 4  # derivations that are looked at whether they hold at other values
-MOST_KEPT = 16  # models whose ties or contacts were derived at other values of the parameters
+MOST_KEPT = 16  # models whose constraints or contacts were derived at other values of the parameters
 REACTIONS, OUTPUTS = "reactions", "outputs"
 
 
@@ -56,7 +56,8 @@ REACTIONS, OUTPUTS = "reactions", "outputs"
 class Simulator:
     """simulator(time=10) -> Trajectory, again and again.
 
-    A model is derived once for all values of its parameters at which the same comes of it (see `DerivedAt`): which ties
+    A model is derived once for all values of its parameters at which the same comes of it (see `DerivedAt`): which
+    constraints
     depend on one another may depend on the values, and then it is derived anew.
 
     Args:
@@ -101,9 +102,9 @@ class Simulator:
         valued = with_values(self.model, parameters, start)
         equations, models = self._at(valued)
         own = {} if equations.model is valued.model else given_parameters(valued.model)
-        asked = (columns,) if isinstance(columns, str) else tuple(columns)
-        formulas = _formulas(valued.model, asked)
-        reactions = any(name not in formulas for name in asked if name != OUTPUTS)
+        requested = (columns,) if isinstance(columns, str) else tuple(columns)
+        formulas = _formulas(valued.model, requested)
+        reactions = any(name not in formulas for name in requested if name != OUTPUTS)
         found = run(
             equations,
             time=seconds(time),
@@ -114,9 +115,9 @@ class Simulator:
             until=until,
             models=models,
             reactions=reactions,
-            outputs=None if OUTPUTS in asked and formulas == formulas_of(valued.model) else formulas,
+            outputs=None if OUTPUTS in requested and formulas == formulas_of(valued.model) else formulas,
         )
-        return found if not reactions or REACTIONS in asked else _with_columns(found, asked, formulas)
+        return found if not reactions or REACTIONS in requested else _with_columns(found, requested, formulas)
 
     def prepared(self, parameters: Values, start: Values) -> None:
         """Derives and compiles what a run from these values takes."""
@@ -155,7 +156,7 @@ class Simulator:
 
     def _derived(self, model: Model) -> tuple[Equations, PhaseModels]:
         """The equations of a model, derived at its values."""
-        anew = self.is_tied or self.keeps_start
+        anew = self.is_constrained or self.keeps_start
         equations = self.derive(model) if anew else self.equations
         models = phase_models(equations, parameter_vector(model), self.how, self.target)
         if len(self.bases) < MOST_BASES:
@@ -176,13 +177,14 @@ class Simulator:
         return self.derive(self.model)
 
     @cached_property
-    def is_tied(self) -> bool:
+    def is_constrained(self) -> bool:
         """Whether what is derived depends on values."""
-        return has_phases(self.model) or bool(self.equations.graph.system.ties.rows)
+        return has_phases(self.model) or bool(self.equations.graph.system.constraints.rows)
 
     @cached_property
     def keeps_start(self) -> bool:
-        """Whether what is derived depends on where the motion starts: contacts, ties and springs that keep a length."""
+        """Whether what is derived depends on where the motion starts: contacts, constraints and springs that keep a
+        length."""
         return has_phases(self.model) or self._follows_start
 
 
@@ -212,7 +214,7 @@ class KnownEquations:
             places[0, k] = valued.start.get(q.name, places[0, k])
         if not derived.holds(p, places)[0]:
             return False
-        if not derived.asks(p)[0]:
+        if not derived.requests(p)[0]:
             return True
         try:
             here = at_start(models, 0.0, given_parameters(model), valued.start)
@@ -230,18 +232,18 @@ def given_parameters(model: Model) -> dict[str, Expression]:
     return {name: part.value for name, part in model.parameters.items() if part.value is not None}
 
 
-def _formulas(model: Model, asked: tuple[str, ...]) -> dict[str, Expression]:
+def _formulas(model: Model, requested: tuple[str, ...]) -> dict[str, Expression]:
     """The outputs among what is asked, and formulas that are no lone reaction."""
-    found = formulas_of(model) if OUTPUTS in asked else {}
-    for name in asked:
+    found = formulas_of(model) if OUTPUTS in requested else {}
+    for name in requested:
         if name in model.outputs:
             found[name] = model.outputs[name].value
         elif name not in (OUTPUTS, REACTIONS) and not _is_reaction(name):
             try:
-                found[name] = asked_of(model, name).value
+                found[name] = requested_of(model, name).value
             except UsageError as error:
                 raise UsageError(
-                    f"no column {error.what}", mend=f"a reaction, an output, a formula, '{REACTIONS}'"
+                    f"no column {error.what}", fix=f"a reaction, an output, a formula, '{REACTIONS}'"
                 ) from error
     return found
 
@@ -255,12 +257,12 @@ def _is_reaction(text: str) -> bool:
     return call is not None and call.name in FUNCTIONS and FUNCTIONS[call.name].source == BALANCE
 
 
-def _with_columns(found: Trajectory, asked: tuple[str, ...], formulas: Mapping[str, Expression]) -> Trajectory:
+def _with_columns(found: Trajectory, requested: tuple[str, ...], formulas: Mapping[str, Expression]) -> Trajectory:
     """The run with these reactions alone."""
-    names = [name for name in asked if name not in formulas and name != OUTPUTS]
+    names = [name for name in requested if name not in formulas and name != OUTPUTS]
     for name in names:
         if name not in found.reactions:
-            raise UsageError(f"no column '{name}'", mend=nearest(name, found.reactions) or f"ask for '{REACTIONS}'")
+            raise UsageError(f"no column '{name}'", fix=nearest(name, found.reactions) or f"ask for '{REACTIONS}'")
     return replace(found, reactions={name: found.reactions[name] for name in names})
 
 
@@ -300,7 +302,7 @@ class Controller:
         found = law.evaluate({**state, "t": t, "pi": math.pi}) if isinstance(law, Expression) else law(t, x)
         value = float(np.asarray(found, dtype=float).reshape(()))
         if not math.isfinite(value):
-            raise RunFailed(f"a controller gives {value} at t = {t:.6g} s", mend="return a finite number")
+            raise RunFailed(f"a controller gives {value} at t = {t:.6g} s", fix="return a finite number")
         return value
 
 
@@ -317,16 +319,16 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
         if not held and not callable(value):
             continue
         if name not in model.inputs:
-            raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
+            raise UsageError(f"there is no input '{name}'", fix=nearest(name, model.inputs))
         if not held:
             _refuse_other_arguments(name, value)
             found[name] = Controller(value, None)
             continue
         if set(value) != {"value", "every"}:
-            raise UsageError(f"input '{name}' is no controller", mend='write {"value": "-k*x", "every": 0.01}')
+            raise UsageError(f"input '{name}' is no controller", fix='write {"value": "-k*x", "every": 0.01}')
         every, law = seconds(value["every"]), value["value"]
         if not every > 0:
-            raise UsageError(f"input '{name}': every {every:g} s makes no sense", mend="give a time above 0")
+            raise UsageError(f"input '{name}': every {every:g} s makes no sense", fix="give a time above 0")
         if callable(law):
             _refuse_other_arguments(name, law)
         found[name] = Controller(law if callable(law) else law_of(model, law) or as_expression(law), every)
@@ -343,7 +345,7 @@ def _refuse_other_arguments(name: str, law: Callable[..., Any]) -> None:
         takes.bind(0.0, np.zeros(0))
     except TypeError:
         what = f"input '{name}' is given by a Python function of {takes}, and is called with (t, x)"
-        raise UsageError(what, mend="a function of the time and the state x = (q, u)") from None
+        raise UsageError(what, fix="a function of the time and the state x = (q, u)") from None
 
 
 def with_controlled(model: Model, names: Sequence[str]) -> Model:
@@ -413,7 +415,7 @@ def controlled_run(
     functions = [name for name, each in controllers.items() if each.every is None]
     if functions and has_phases(model):
         raise NotYet(
-            f"'{functions[0]}' is set by a Python function, and contacts change", mend="an expression, or `every`"
+            f"'{functions[0]}' is set by a Python function, and contacts change", fix="an expression, or `every`"
         )
     models = phase_models(equations, parameter_vector(model), how, target)
     here = at_start(models, 0.0, None, None)
@@ -423,8 +425,8 @@ def controlled_run(
     values = dict(zip(model.parameters, models.p.tolist(), strict=True))
     whole = WholeRun(model, [run for run, _, _ in phases], plan, values, [end for _, end, _ in phases])
     found = finished_run(equations, phases[-1][2], whole, how, instants)
-    told = f"{', '.join(functions)} set by Python functions: stepped by scipy, one call of Python an evaluation."
-    return replace(found, told=" ".join(filter(None, [told if functions else "", found.told])))
+    reported = f"{', '.join(functions)} set by Python functions: stepped by scipy, one call of Python an evaluation."
+    return replace(found, reported=" ".join(filter(None, [reported if functions else "", found.reported])))
 
 
 def _control(models: PhaseModels, here: PhaseStart, controllers: Mapping[str, Controller]) -> _Control:
@@ -456,7 +458,7 @@ def _stretches(controllers: Mapping[str, Controller], time: float) -> Iterator[t
     """(start, end, those that are sampled at the start) of the times between two samples of any controller."""
     periods = {name: each.every for name, each in controllers.items() if each.every is not None}
     if sum(time / every for every in periods.values()) > MOST_SAMPLES:
-        raise UsageError(f"more than {MOST_SAMPLES} samples of controllers", mend="a shorter run, or a longer `every`")
+        raise UsageError(f"more than {MOST_SAMPLES} samples of controllers", fix="a shorter run, or a longer `every`")
     instants = {0.0} | {k * every for every in periods.values() for k in range(1, math.ceil(time / every - SOLVED))}
     marks: list[float] = []
     for t in sorted(instants):
@@ -526,7 +528,7 @@ class Runs:
             UsageError: they come out of a pickle.
         """
         if self.proof is None:
-            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate_many(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate_many(model), in the process that asks")
         finished = self.status == "finished"
         whole = np.isfinite(self.x).all(axis=(1, 2))
         lost = [str(k) for k in np.flatnonzero(finished != whole)]
@@ -547,8 +549,8 @@ class Runs:
 
         columns = {name: (("run", "time"), self[name]) for name in self.names}
         of_runs = {"status": self.status, "message": self.message, "steps": self.steps, **self.given}
-        told = {name: ("run", np.asarray(values)) for name, values in of_runs.items()}
-        return xarray.Dataset({**columns, **told}, coords={"run": np.arange(len(self)), "time": self.t})
+        reported = {name: ("run", np.asarray(values)) for name, values in of_runs.items()}
+        return xarray.Dataset({**columns, **reported}, coords={"run": np.arange(len(self)), "time": self.t})
 
     def __repr__(self) -> str:
         failed = int(np.sum(self.status != "finished"))

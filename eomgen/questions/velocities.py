@@ -1,6 +1,7 @@
 """Model -> Kinematics: places, velocities and accelerations at one instant, however the model gives them.
 
-A model with [given], or of bodies and ties alone, has one configuration, and velocities that ties and given equations
+A model with [given], or of bodies and constraints alone, has one configuration, and velocities that constraints and
+given equations
 say. A model with coordinates is taken at its start, or where a condition is first met.
 """
 
@@ -14,10 +15,10 @@ from math import isfinite
 from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints.elimination import refuse_undetermined
-from eomgen.mechanics.constraints.rank import counted, freedoms
+from eomgen.mechanics.constraints.rank import counted, degrees_of_freedom
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.motion_kind import Kinds
-from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
+from eomgen.mechanics.instant.velocity_analysis import InstantKinematics, instant_kinematics_of
 from eomgen.mechanics.start.state import refuse_lost
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.part import altered, part_of_values
@@ -52,61 +53,61 @@ def state_of(model: Model, at: WrittenEquation | None = None) -> KinematicState:
     if at is not None:
         raise UsageError(
             "[given] speaks of one configuration: there is no other instant",
-            mend="leave --at out, or move the model by coordinates",
+            fix="leave --at out, or move the model by coordinates",
         )
-    return _of_snapshot(model)
+    return _of_instant_kinematics(model)
 
 
 # -- one configuration, given velocities -------------------------------------------------------------
 
 
-def _of_snapshot(model: Model) -> KinematicState:
-    snapshot = snapshot_of(model)
-    known = snapshot.velocities
-    snapshot.refuse_several()
-    rate, symbol = snapshot.open_rate, None
+def _of_instant_kinematics(model: Model) -> KinematicState:
+    instant_kinematics = instant_kinematics_of(model)
+    known = instant_kinematics.velocities
+    instant_kinematics.refuse_several()
+    rate, symbol = instant_kinematics.open_rate, None
     if rate:
-        symbol = _symbol(snapshot, rate)
-        snapshot = snapshot.assuming(rate, symbol)
+        symbol = _symbol(instant_kinematics, rate)
+        instant_kinematics = instant_kinematics.assuming(rate, symbol)
     own = model.given
     given = () if own is None else (*(own.velocity or ()), *(own.acceleration or ()))
     found = KinematicState(
-        snapshot.system,
-        snapshot.moving,
-        {} if rate else _accelerated(snapshot),
-        known.freedoms,
-        counted(snapshot.system.ties),
+        instant_kinematics.system,
+        instant_kinematics.moving,
+        {} if rate else _accelerated(instant_kinematics),
+        known.degrees_of_freedom,
+        counted(instant_kinematics.system.constraints),
         "in this configuration",
         tuple(equation.text for equation in given),
         rate,
         symbol,
-        snapshot.exact,
+        instant_kinematics.exact,
     )
-    if known.freedoms == 0 and _rests(found):
+    if known.degrees_of_freedom == 0 and _rests(found):
         raise DerivationError(
-            f"nothing can move: {_held(model)} as a structure, with 0 freedoms",
-            mend="for reactions: eomgen statics MODEL; for a mechanism take a tie away",
+            f"nothing can move: {_held(model)} as a structure, with 0 degrees of freedom",
+            fix="for reactions: eomgen statics MODEL; for a mechanism take a constraint away",
         )
     return found
 
 
 def _held(model: Model) -> str:
-    ties = ", ".join(f"'{name}'" for name in (*model.constraints, *model.trusses))
-    return f"{ties} hold the bodies" if ties else "the joints hold the bodies"
+    constraints = ", ".join(f"'{name}'" for name in (*model.constraints, *model.trusses))
+    return f"{constraints} hold the bodies" if constraints else "the joints hold the bodies"
 
 
-def _accelerated(snapshot: Snapshot) -> State:
-    """With the accelerations where ties and given equations determine them all."""
-    return {} if snapshot.accelerations.free else snapshot.state
+def _accelerated(instant_kinematics: InstantKinematics) -> State:
+    """With the accelerations where constraints and given equations determine them all."""
+    return {} if instant_kinematics.accelerations.free else instant_kinematics.state
 
 
-def _symbol(snapshot: Snapshot, rate: str) -> Node:
+def _symbol(instant_kinematics: InstantKinematics, rate: str) -> Node:
     """omega_I for omega(I), v for the velocity of a point."""
     function, _, rest = rate.removesuffix(")").partition("(")
     name = f"{function}_{rest}" if function.startswith("omega") else f"{function}_{rest.partition('.')[0]}"
-    while name in snapshot.system.scope.names:
+    while name in instant_kinematics.system.scope.names:
         name += "_"
-    return snapshot.system.scope.graph.symbol(name)
+    return instant_kinematics.system.scope.graph.symbol(name)
 
 
 def _rests(state: KinematicState) -> bool:
@@ -137,8 +138,8 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
         )
     moving = {**{symbols.t: 0}, **moving}
     refuse_undetermined(phase.system.elimination, phase.system.scope, moving, when)
-    free = freedoms(phase.system.ties)
-    count = counted((phase.system.free or phase.system).ties)
+    free = degrees_of_freedom(phase.system.constraints)
+    count = counted((phase.system.free or phase.system).constraints)
     found = KinematicState(phase.system, moving, {}, free, count, when, exact=whole)
     if at is None and free == 1 == len(symbols.u) and _rests(found):
         (u,) = symbols.u

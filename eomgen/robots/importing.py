@@ -8,9 +8,9 @@ from pathlib import Path
 
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
+from eomgen.frozen import dataclass
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
-from eomgen.records import dataclass
 from eomgen.robots.mjcf import mjcf
 from eomgen.robots.sdf import sdf
 from eomgen.robots.sdf_models import LARGEST
@@ -81,7 +81,7 @@ def _tables(path: Path, data: bytes, floating: bool, model: str | None) -> Impor
     """By what the root of the file says."""
     root = first_element(data)
     if model is not None and root != "sdf":
-        raise UsageError("only SDF files have several models to choose from", mend="leave --model out")
+        raise UsageError("only SDF files have several models to choose from", fix="leave --model out")
     if root == "mujoco":
         return mjcf(path, data)
     if root == "sdf":

@@ -46,10 +46,10 @@ from eomgen.robots.tables import (
     decimals,
     hung,
     inertia_in,
+    reported_left,
     signed_sum,
     six,
     tensor_of,
-    told_left,
     without_empty,
 )
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
@@ -105,7 +105,7 @@ def _tables(r: CompiledRobot) -> Imported:
     motors_in_space(r)
     tendons(r)
     equalities(r)
-    for k, own in r.points.items():  # those of ties too, which come after the bodies
+    for k, own in r.points.items():  # those of constraints too, which come after the bodies
         if name := r.body[k]:
             r.found["bodies"][name]["points"] = {**r.found["bodies"][name].get("points", {}), **own}
     _rest(r)
@@ -120,7 +120,7 @@ def _tables(r: CompiledRobot) -> Imported:
         weight = {"kind": "gravity", "acceleration": acceleration}
         r.found["forces"] = {"weight": weight, **r.found["forces"]}
     head = {"eomgen": 1, "name": r.title, "space": "space"}
-    left_out = tuple(told_left(what, where, why) for (what, why), where in r.left.items())
+    left_out = tuple(reported_left(what, where, why) for (what, why), where in r.left.items())
     return Imported({**head, **without_empty({"parameters": parameters, **r.found})}, left_out)
 
 
@@ -399,7 +399,7 @@ def spec_of(path: Path, data: bytes) -> Any:
     try:
         mujoco: Any = importlib.import_module("mujoco")
     except ImportError as error:
-        raise ToolMissing("MJCF is read by MuJoCo, which is not installed", mend="pip install mujoco") from error
+        raise ToolMissing("MJCF is read by MuJoCo, which is not installed", fix="pip install mujoco") from error
     _refuse_endless(path, data, path, 1, 0)
     try:
         try:
@@ -410,8 +410,8 @@ def spec_of(path: Path, data: bytes) -> Any:
         return _read(mujoco, path, data, meshes=False)
     except (ValueError, RuntimeError) as error:
         why = " ".join(str(error).split())
-        mend = "put the file there" if NOT_THERE in why else "mend the file"
-        raise ModelError(f"MuJoCo cannot read it: {why}", str(path), mend) from error
+        fix = "put the file there" if NOT_THERE in why else "fix the file"
+        raise ModelError(f"MuJoCo cannot read it: {why}", str(path), fix) from error
 
 
 def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int) -> int:

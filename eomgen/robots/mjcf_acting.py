@@ -1,6 +1,6 @@
 """Tendons, equalities and motors of MuJoCo -> forces and inputs.
 
-Tendons and equalities of a compiled model of MuJoCo -> forces and ties of a model file.
+Tendons and equalities of a compiled model of MuJoCo -> forces and constraints of a model file.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.robots.tables import (
     NO_COUNTERPART,
     ZERO,
@@ -124,7 +124,7 @@ def _stretched(
 
 
 def equalities(r: CompiledRobot) -> None:
-    """Ties: of points, of bodies, of coordinates; in MuJoCo they give way, here they hold."""
+    """Constraints: of points, of bodies, of coordinates; in MuJoCo they give way, here they hold."""
     m = r.m
     for e in range(m.neq):
         raw = m.equality(e).name or f"tie{e}"
@@ -172,9 +172,9 @@ def _equality(r: CompiledRobot, e: int, raw: str) -> Entries | None:
     (one, at, unit), (other, other_at, other_unit) = sides
     away = other if not other_at else f"({other} - {decimal_text(other_at)})".replace("- -", "+ ")
     powers = [(-decimal_of_double(c), away if n == 1 else f"{away}^{n}") for n, c in enumerate(data[:5]) if n]
-    told = [(c, power) for c, power in powers if c and other]
-    same = unit == other_unit and len(unit) == 1 and all(power == away for _, power in told)
-    return {"kind": "equation", "gap": gap(one, told, -at - decimal_of_double(data[0]), weighed=not same)}
+    reported = [(c, power) for c, power in powers if c and other]
+    same = unit == other_unit and len(unit) == 1 and all(power == away for _, power in reported)
+    return {"kind": "equation", "gap": gap(one, reported, -at - decimal_of_double(data[0]), weighed=not same)}
 
 
 def _weld(r: CompiledRobot, first: int, second: int, raw: str, data: Any) -> Entries | None:
@@ -231,7 +231,7 @@ def start_of(r: CompiledRobot) -> Any:
         if abs(gaps).max(initial=0) < ROUNDING / 10:
             if step:
                 moved = [r.joint[j] for j in range(m.njnt) if state.qpos[m.jnt_qposadr[j]] != m.qpos0[m.jnt_qposadr[j]]]
-                r.leave("start where ties gape", moved, "the start is moved to where they close")
+                r.leave("start where constraints gape", moved, "the start is moved to where they close")
             return state.qpos.copy() if step else m.qpos0
         J = state.efc_J.reshape(-1, m.nv)[rows]
         mujoco.mj_integratePos(own, state.qpos, -np.linalg.lstsq(J, gaps, rcond=RANK_NEARBY)[0], 1)
@@ -392,8 +392,8 @@ def _motor(r: CompiledRobot, k: int, raw: str, length: Length | None, ends: list
         if getattr(m, f"actuator_{kind}limited")[k]
     ]
     if said:
-        told = said[0][1] if len(said) == 1 else ", ".join(f"{kind} {span}" for kind, span in said)
-        r.leave("limits of motors", [f"{raw} ({told})"], "an input has none")
+        reported = said[0][1] if len(said) == 1 else ", ".join(f"{kind} {span}" for kind, span in said)
+        r.leave("limits of motors", [f"{raw} ({reported})"], "an input has none")
     w = r.names.new(f"motor_{raw}" if raw in r.names.given else raw, "w")
     if at_site:
         driven = _thrust(r, k, w)

@@ -13,8 +13,8 @@ from decimal import Decimal
 from typing import Any
 
 from eomgen.errors import ModelError
-from eomgen.model.findings import nearest
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import nearest
 from eomgen.robots.sdf_models import YES, FlatModel, SdfChoice, choice_named, choices, link_masses, own_pose
 from eomgen.robots.tables import (
     ORIGIN,
@@ -30,7 +30,7 @@ from eomgen.robots.tables import (
     hung,
     in_file,
     quaternion_of,
-    told_left,
+    reported_left,
     turn_of,
     without_empty,
 )
@@ -71,8 +71,8 @@ def sdf(data: bytes, name: str, wanted: str | None = None) -> Imported:
     for each in others:
         each.element.seen = True
         each.element.children, each.element.read = [], {*each.element.attributes}
-    told = [told_left("model", names, "another of the file's models")] if others else []
-    return Imported(found, (*told, *left_out(root, WHY)))
+    reported = [reported_left("model", names, "another of the file's models")] if others else []
+    return Imported(found, (*reported, *left_out(root, WHY)))
 
 
 def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Entries]:
@@ -143,8 +143,8 @@ class _Reading:
             made.above[child] = name
             for link in (parent, child):
                 if link not in made.links and link != "world":
-                    mend = nearest(link, made.links) or f"one of {', '.join(made.links)}"
-                    raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, mend)
+                    fix = nearest(link, made.links) or f"one of {', '.join(made.links)}"
+                    raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, fix)
         made.body = {link: made.bodies.new(link, "link") for link in made.links}
         made.coordinate = {name: made.names.new(name, "q") for name in made.joints}
         made.second = {
@@ -192,7 +192,7 @@ class _Reading:
     def _link_of(self, name: str, below: tuple[str, ...] = ()) -> str:
         """The link with which a frame moves: a link's own, a joint's child, what a frame is attached to."""
         if name in below:
-            raise ModelError(f"frame '{name}' is attached to itself", self.model.where, "mend attached_to")
+            raise ModelError(f"frame '{name}' is attached to itself", self.model.where, "fix attached_to")
         if name == "__model__" and self.links:
             return self.model.get("canonical_link") or next(iter(self.links))
         if name in self.flat.canonical and name not in self.links:
@@ -232,7 +232,7 @@ class _Reading:
         element = self.links.get(name) or self.joints.get(name) or self.frames.get(name)
         if element is None or name in below:
             what = "is relative to itself" if name in below else "there is not"
-            raise ModelError(f"a pose names a frame that {what}: '{name}'", self.model.where, "mend relative_to")
+            raise ModelError(f"a pose names a frame that {what}: '{name}'", self.model.where, "fix relative_to")
         pose = element.one("pose")
         base = self.flat.scope_of(element).frame
         if element.tag == "joint":
@@ -292,8 +292,8 @@ class _Reading:
     def _joints(self, raw: str, joint: XmlElement, child: str) -> list[Moved]:
         kind = joint.need("type")
         if kind not in KINDS:
-            mend = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
-            raise ModelError(f"a joint of a type that is not imported: '{kind}'", joint.where, mend)
+            fix = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
+            raise ModelError(f"a joint of a type that is not imported: '{kind}'", joint.where, fix)
         at = self._pose(child).inverse().then(self._pose(raw))
         q = self.coordinate[raw]
         if kind == "fixed":

@@ -18,8 +18,8 @@ import numpy as np
 
 from eomgen.errors import ModelError
 from eomgen.files import read
-from eomgen.model.findings import nearest
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import nearest
 from eomgen.robots.tables import (
     DIGITS,
     ORIGIN,
@@ -245,8 +245,8 @@ def _within(model: XmlElement, scope: ModelScope) -> Iterator[tuple[XmlElement, 
 
 def _rename(element: XmlElement, scope: ModelScope) -> None:
     """Whatever an element and those in it name of their model, by its name in the whole."""
-    told: Mapping[str, str] = element.attributes
-    element.attributes = {key: scope.named(x) if key in REFERRING else x for key, x in told.items()}
+    reported: Mapping[str, str] = element.attributes
+    element.attributes = {key: scope.named(x) if key in REFERRING else x for key, x in reported.items()}
     if element.tag in ("parent", "child"):
         element.text = scope.named(element.text)
     for child in element.children:
@@ -366,9 +366,11 @@ def _part(shape: XmlElement, usual: XmlElement | None, at: Pose, files: tuple[st
     geometry = given.get("geometry")
     what = None if geometry is None else next(iter(geometry.children), None)
     if what is None or what.tag not in (*SIZES, "mesh"):
-        told = "no shape" if what is None else f"<{what.tag}>"
+        reported = "no shape" if what is None else f"<{what.tag}>"
         raise ModelError(
-            f"{told} gives no mass by its density", shape.where, f"one of {', '.join((*SIZES, 'mesh'))}, or give mass"
+            f"{reported} gives no mass by its density",
+            shape.where,
+            f"one of {', '.join((*SIZES, 'mesh'))}, or give mass",
         )
     own = _mesh(what, density, files) if what.tag == "mesh" else _simple(what, density)
     return MassPart(own.mass, plus(at.p, apply(at.R, own.center)), inertia_in(at.R, own.tensor))
@@ -447,8 +449,8 @@ def _mesh(mesh: XmlElement, density: Decimal, files: tuple[str, ...]) -> MassPar
     where = "" if uri is None else uri.text
     path = file_of(where, files)
     if path is None:
-        mend = "put it into this folder, or one above it; or give mass and inertia"
-        raise ModelError(f"no file is there for '{where}', by which the mass is told", mesh.where, mend)
+        fix = "put it into this folder, or one above it; or give mass and inertia"
+        raise ModelError(f"no file is there for '{where}', by which the mass is told", mesh.where, fix)
     if any(child.tag == "submesh" for child in mesh.children):
         raise ModelError("the mass of a part of a surface is not told", mesh.where, "give mass and inertia")
     found = enclosed(path, [1.0] * 3 if scale is None else [float(x) for x in scale.value(3)])

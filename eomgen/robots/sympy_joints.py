@@ -36,7 +36,7 @@ from sympy.physics.mechanics import (
 from sympy.physics.vector import dynamicsymbols
 
 from eomgen.errors import DerivationError, ExpressionError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.robots.tables import Entries, LegalNames, without_empty
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -112,8 +112,8 @@ class _Joints:
                 self.found[key]["points"] = {**self.found[key].get("points", {}), **own}
         words = self.words
         gaps, rows = list(system.holonomic_constraints), list(system.nonholonomic_constraints)
-        ties = [{"kind": "equation", "gap": x} for x in words.texts(gaps)]
-        ties += [{"kind": "equation", "rate": x} for x in words.texts(rows)]
+        constraints = [{"kind": "equation", "gap": x} for x in words.texts(gaps)]
+        constraints += [{"kind": "equation", "rate": x} for x in words.texts(rows)]
         coordinates = {words.of(q): {"start": 0} for q in system.q}
         return without_empty(
             {
@@ -122,7 +122,7 @@ class _Joints:
                 "inputs": {name: {"value": 0} for name in words.inputs.values()},
                 "points": self.points.get(None, {}),
                 "bodies": self.found,
-                "constraints": {f"tie{k}": tie for k, tie in enumerate(ties, 1)},
+                "constraints": {f"tie{k}": constraint for k, constraint in enumerate(constraints, 1)},
                 "forces": forces,
             }
         )
@@ -160,7 +160,7 @@ class _Joints:
         assert own.name is not None
         found: dict[str, Entries] = {}
         *before, last = self._moves(joint)
-        for move in before:  # frames without mass between its freedoms
+        for move in before:  # frames without mass between its degrees of freedom
             frame = self.bodies.new(f"{own.name}_{next(reversed(move.values()))}")
             found[frame] = {
                 "about": f"between the joints of {own.name}",
@@ -445,7 +445,7 @@ class Words:
         standing = expression.xreplace(moving)
         for rate in sorted(standing.atoms(sympy.Derivative), key=str):
             what = f"the rate {rate} of a given function of time stands in the equations"
-            raise DerivationError(what, mend="make it a coordinate, and give that its `motion` in the model")
+            raise DerivationError(what, fix="make it a coordinate, and give that its `motion` in the model")
         functions = expression.atoms(sympy.core.function.AppliedUndef) - moving.keys()
         known = moving | {x: sympy.Symbol(self._input(x)) for x in _sorted(functions)}
         parameters = expression.free_symbols - {t}  # before anything else is called as they are
@@ -455,7 +455,7 @@ class Words:
     def _input(self, function: Any) -> str:
         """Raises: DerivationError: it is no function of time alone."""
         if function.args != (dynamicsymbols._t,):
-            raise DerivationError(f"{function} is a function that sympy does not know", mend="put its formula in")
+            raise DerivationError(f"{function} is a function that sympy does not know", fix="put its formula in")
         if function not in self.inputs:
             self.inputs[function] = self._new(_plain(function), "input")
         return self.inputs[function]
@@ -516,7 +516,7 @@ def _refuse_misread(scalars: Sequence[Scalar], found: Sequence[Any]) -> None:
             read = float(parse(text, longest=LONGEST_WITH_PARTS).evaluate(names))
             if abs(read - due) > COMPUTED * (1 + abs(due)):
                 what = f"a formula of sympy is written as another one, {read:.9g} for {due:.9g}: {text[:60]}"
-                raise DerivationError(what, mend="this is a mistake of eomgen: please report it")
+                raise DerivationError(what, fix="this is a mistake of eomgen: please report it")
 
 
 def _written(x: Scalar, taken: Container[str]) -> str:
@@ -526,8 +526,8 @@ def _written(x: Scalar, taken: Container[str]) -> str:
     found = "; ".join([*(f"{name} = {part}" for name, part in definitions), text])
     if len(found) > LONGEST_WITH_PARTS:
         what = f"an energy or a force takes {len(found)} characters to write"
-        mend = "give sympy's System its joints, or sympy shorter frames and velocities"
-        raise DerivationError(f"{what}, of which a model file may have {LONGEST_WITH_PARTS}", mend=mend)
+        fix = "give sympy's System its joints, or sympy shorter frames and velocities"
+        raise DerivationError(f"{what}, of which a model file may have {LONGEST_WITH_PARTS}", fix=fix)
     return found
 
 

@@ -8,7 +8,8 @@ kinetic energy of all bodies, the generalized forces are
           + d/dt dT/dw_i - dT/dq_i - sum d(m v)/dt . dv/dw_i + dH/dt . domega/dw_i
 
 in which the accelerations cancel. The second line vanishes where velocities are the rates of places; those that were
-given and are not (a wheel that rolls) so leave in Q what ties them. Everything is written into one graph, in which what
+given and are not (a wheel that rolls) so leave in Q what constraints them. Everything is written into one graph, in
+which what
 is met again is one node: sympy multiplies nothing out.
 """
 
@@ -29,9 +30,9 @@ from sympy.physics.vector import dynamicsymbols
 
 from eomgen import files
 from eomgen.errors import DerivationError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
-from eomgen.records import dataclass
 from eomgen.robots.sympy_joints import Words, file_texts, lagrangian_method, speeds_as_rates, tables_of_joints
 from eomgen.robots.tables import Entries, Nine, Triple, toml_text, without_empty
 from eomgen.symbolic.expression.derivative import (
@@ -114,7 +115,7 @@ def from_sympy(system: Any, *, name: str = "model", path: str | Path | None = No
     """
     if not isinstance(system, (SympySystem, KanesMethod, LagrangesMethod)):
         what = "a System, KanesMethod or LagrangesMethod of sympy.physics.mechanics is needed"
-        raise UsageError(f"{what}, not {type(system).__name__}", mend="name one of them")
+        raise UsageError(f"{what}, not {type(system).__name__}", fix="name one of them")
     tables = tables_of_joints(system) if isinstance(system, SympySystem) else None
     if tables is None:
         method = lagrangian_method(system) if isinstance(system, SympySystem) else system
@@ -133,9 +134,9 @@ def _of_lagrange(method: Any) -> Formed:
     q = tuple(method.q)
     at_rest = L.xreplace({x.diff(t): sympy.S.Zero for x in q})
     gaps = tuple(method._hol_coneqs)
-    ties = tuple(method.coneqs)[len(gaps) :]
+    constraints = tuple(method.coneqs)[len(gaps) :]
     pushes = _pushes(method.forcelist or (), method.inertial)
-    return Formed(method.inertial, q, (), (), gaps, ties, (), pushes, T=L - at_rest, V=-at_rest)
+    return Formed(method.inertial, q, (), (), gaps, constraints, (), pushes, T=L - at_rest, V=-at_rest)
 
 
 def _pushes(loads: Any, ground: Any) -> tuple[tuple[Any, Any], ...]:
@@ -148,7 +149,7 @@ def _pushes(loads: Any, ground: Any) -> tuple[tuple[Any, Any], ...]:
 
 
 def _of_kane(system: Any) -> Formed:
-    """The masses, loads and ties of Kane's method, auxiliary speeds 0.
+    """The masses, loads and constraints of Kane's method, auxiliary speeds 0.
 
     Raises:
         DerivationError: no bodies; kinematic equations that are missing; masses that change.
@@ -165,12 +166,10 @@ def _of_kane(system: Any) -> Formed:
         gaps, auxiliary = tuple(system._f_h), system._uaux
         velocities = tuple(system._f_nh + system._k_nh * system.u) if system._k_nh else ()
     if not bodies:
-        raise DerivationError("the method has no bodies", mend="give them to it: KanesMethod(..., bodies=bodies)")
+        raise DerivationError("the method has no bodies", fix="give them to it: KanesMethod(..., bodies=bodies)")
     q, u = tuple(system.q), tuple(system.u)
     if len(kinematic) != len(q):
-        raise DerivationError(
-            f"{len(kinematic)} kinematic equations for {len(q)} coordinates", mend="give one for each"
-        )
+        raise DerivationError(f"{len(kinematic)} kinematic equations for {len(q)} coordinates", fix="give one for each")
     masses = tuple(_moving(body, ground) for body in bodies)
     pushes = _pushes(forces, ground)
     return Formed(ground, q, u, kinematic, gaps, velocities, masses, pushes, still=tuple(auxiliary))
@@ -181,7 +180,7 @@ def _moving(body: Any, ground: Any) -> MovingMass:
     velocity = body.masscenter.vel(ground)
     if find_dynamicsymbols(sympy.sympify(body.mass, strict=True)):
         what = f"the mass of '{body.name}' changes"
-        raise DerivationError(what, mend="make it a symbol: a model's masses are parameters")
+        raise DerivationError(what, fix="make it a symbol: a model's masses are parameters")
     if isinstance(body, Particle):
         return MovingMass(body.mass, velocity)
     dyads = body.central_inertia.args
@@ -213,7 +212,7 @@ class _Energies:
             u: q for u, q in rates.items() if sum(x.has(q.diff(t)) or x.has(u) for x in kinematic) == 1
         }
         self.words = Words(self.q, formed.u, rates)
-        self.ties: list[Scalar] = []
+        self.constraints: list[Scalar] = []
         self.turned: dict[Any, Nine] = {formed.ground: IDENTITY}
         own = [u for u in formed.u if u not in rates]
         self.own = dict(
@@ -237,9 +236,9 @@ class _Energies:
         numbers = np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), len(u))
         ranks = [0, *(int(np.linalg.matrix_rank(numbers[: k + 1], tol=RANK_NEARBY)) for k in range(len(rows)))]
         chosen = [k for k in range(len(rows)) if ranks[k + 1] > ranks[k]]
-        mend = "give one for each coordinate"
+        fix = "give one for each coordinate"
         if len(chosen) != len(u):
-            raise DerivationError("the kinematic equations do not give every speed", mend=mend)
+            raise DerivationError("the kinematic equations do not give every speed", fix=fix)
         right = substituted(rows, dict.fromkeys(nodes, 0))
         system = LinearSystem(
             [{j: x for j, x in enumerate(A[k]) if not is_zero(x)} for k in chosen],
@@ -248,8 +247,10 @@ class _Energies:
             lambda found: evaluate(found, state, FLOAT),
         )
         found = unique_solution(system, vanishes=vanishes)
-        others = [row for k, row in enumerate(rows) if k not in chosen]  # of fewer speeds than rates: these tie rates
-        self.ties = [x for x in substituted(others, dict(zip(nodes, found, strict=True))) if not vanishes(x)]
+        others = [
+            row for k, row in enumerate(rows) if k not in chosen
+        ]  # of fewer speeds than rates: these constraint rates
+        self.constraints = [x for x in substituted(others, dict(zip(nodes, found, strict=True))) if not vanishes(x)]
         return found
 
     def _scalar(self, expression: Any) -> Scalar:
@@ -292,24 +293,25 @@ class _Energies:
         V = self._scalar(formed.V)
         pushes = [(self._vector(force), self._vector(rate)) for force, rate in formed.pushes]
         velocities, gaps = ([self._scalar(x) for x in rows] for rows in (formed.velocities, formed.gaps))
-        velocities += self.ties
+        velocities += self.constraints
         own = self.own
         accelerated = {words.nodes[f"{u.name}'"]: self._rate((x,), q, w)[0] for u, x in own.items()}
         self.known = own | accelerated | {words.nodes[f"{x.name}'"]: 0 for x in w}
         applied = self._work(pushes, w)
         inertial = self._inertial(energies, moved, q, w)
         Q = [x + y for x, y in zip(applied, inertial, strict=True)]
-        ties = {f"tie{k}": {"kind": "equation", "gap": x} for k, x in enumerate(self._texts(gaps), 1)}
+        constraints = {f"tie{k}": {"kind": "equation", "gap": x} for k, x in enumerate(self._texts(gaps), 1)}
         kept = _beyond(q, w, self._rate(gaps, q, w), substituted(velocities, own))
         shown = self._texts([velocities[k] for k in kept])
-        ties |= {f"tie{len(gaps) + k}": {"kind": "equation", "rate": x} for k, x in enumerate(shown, 1)}
+        constraints |= {f"constraint{len(gaps) + k}": {"kind": "equation", "rate": x} for k, x in enumerate(shown, 1)}
         forces: Entries = {}
         whole = sum(energies, start=0)
         energies = [whole] if text_size(whole) <= LONGEST else energies
         for kind, stem, found in (("kinetic", "T", energies), ("potential", "V", [V])):
-            told = [x for x in self._texts(found) if x != 0]
+            reported = [x for x in self._texts(found) if x != 0]
             forces |= {
-                f"{stem}{k if len(told) > 1 else ''}": {"kind": kind, "energy": x} for k, x in enumerate(told, 1)
+                f"{stem}{k if len(reported) > 1 else ''}": {"kind": kind, "energy": x}
+                for k, x in enumerate(reported, 1)
             }
         along = zip(q, self._texts(Q), strict=True)
         forces |= {
@@ -318,14 +320,14 @@ class _Energies:
             if value != 0
         }
         speeds = self._texts(list(own.values()))
-        used = _names_in([*forces.values(), *ties.values(), speeds])
+        used = _names_in([*forces.values(), *constraints.values(), speeds])
         return without_empty(
             {
                 "parameters": {name: {} for name in words.parameters.values() if name in used},
                 "coordinates": {x.name: {"start": 0} for x in q if x.name in used},
                 "speeds": {x.name: {"rate": rate} for x, rate in zip(own, speeds, strict=True)},
                 "inputs": {name: {"value": 0} for name in words.inputs.values() if name in used},
-                "constraints": ties,
+                "constraints": constraints,
                 "forces": forces,
             }
         )

@@ -14,8 +14,8 @@ from typing import Any
 import mpmath
 
 from eomgen.errors import HIDDEN, visible
+from eomgen.frozen import dataclass
 from eomgen.model.joints.ball import rotation_of
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import IDENTITY, apply, plus, product, rotation, transposed
 from eomgen.symbolic.numeric.tolerances import ROUNDED_AWAY, SAME_TURN
@@ -216,8 +216,8 @@ NEAREST = {  # what of a model comes nearest to a thing that changes the motion 
     "dampers that are not linear of free and ball joints": IN_SPACE,
     "limits of motors": LAW,
     "limits of tendons": "a `potential` of max(0, length - limit)^2",
-    "limits of joints": "a `potential` of max(0, q - limit)^2, or a one-sided tie",
-    "limit": "a `potential` of max(0, q - limit)^2, or a one-sided tie",
+    "limits of joints": "a `potential` of max(0, q - limit)^2, or a one-sided constraint",
+    "limit": "a `potential` of max(0, q - limit)^2, or a one-sided constraint",
     "filters of motors": "an activation that the caller computes; a coordinate with its own rate",
     "delays of motors": "an input that comes later",
     "inputs of motors": "none is needed",
@@ -225,9 +225,9 @@ NEAREST = {  # what of a model comes nearest to a thing that changes the motion 
     "motors by plugins": "the law as a force in [forces], with an input of [inputs]",
     "tendons through places": "`spring`, `link`, `string` between points",
     "fluid": "a `force` by the velocities of points, a `kinetic` energy of added mass",
-    "softness of equalities": "a `spring` and a `damper` in place of the tie",
+    "softness of equalities": "a `spring` and a `damper` in place of the constraint",
     "welds that cannot close": "a `clamp` from a start at which the bodies stand as they are welded",
-    "start where ties gape": "--start; a `spring` and a `damper` in place of the tie",
+    "start where constraints gape": "--start; a `spring` and a `damper` in place of the constraint",
     "motors that are switched off": "none is needed",
     "motors on other things than joints, tendons between two places, and sites": "a `force` or `couple` in [forces]",
     "motors on the ground": "none is needed",
@@ -268,14 +268,14 @@ class LeftOut:
 
     def __str__(self) -> str:
         listed = ", ".join(dict.fromkeys(self.where))
-        told = f"{self.what} ({self.why}): {listed}" if listed else f"{self.what} ({self.why})"
-        return f"{told}; nearest: {self.nearest}" if self.nearest else told
+        reported = f"{self.what} ({self.why}): {listed}" if listed else f"{self.what} ({self.why})"
+        return f"{reported}; nearest: {self.nearest}" if self.nearest else reported
 
     def as_dict(self) -> dict[str, Any]:
         return {"what": self.what, "where": list(self.where), "why": self.why, "nearest": self.nearest}
 
 
-def told_left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
+def reported_left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
     """A thing of a robot's file that is left out, with what comes nearest to it."""
     return LeftOut(what, tuple(where), why, NEAREST.get(what))
 
@@ -394,7 +394,8 @@ def signed_sum(terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO, *
 
 
 def gap(one: str, terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO, *, weighed: bool = False) -> str:
-    """one + terms + constant, which a tie holds at 0; `weighed` where not all have one unit: q - 1*s for 1 rad/m."""
+    """one + terms + constant, which a constraint holds at 0; `weighed` where not all have one unit: q - 1*s for 1
+    rad/m."""
     rest = signed_sum(terms, constant, weighed=weighed)
     return one if rest == "0" else f"{one} - {rest[1:]}" if rest[0] == "-" else f"{one} + {rest}"
 

@@ -12,9 +12,9 @@ from decimal import Decimal
 from typing import Any
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.checks.bodies import possible
-from eomgen.model.findings import nearest
-from eomgen.records import dataclass
+from eomgen.model.diagnostics import nearest
 from eomgen.robots.tables import (
     NO_COUNTERPART,
     ORIGIN,
@@ -34,10 +34,10 @@ from eomgen.robots.tables import (
     hung,
     in_file,
     inertia_in,
+    reported_left,
     roll_pitch_yaw,
     six,
     tensor_of,
-    told_left,
     without_empty,
 )
 from eomgen.robots.xml_tree import XmlElement, xml_tree
@@ -153,15 +153,15 @@ class _Reading:
     def of(cls, robot: XmlElement) -> _Reading:
         links, joints = by_name(robot, "link"), by_name(robot, "joint")
         if not links:
-            mend = "expand it by xacro first" if robot.children else "name a URDF file"
-            raise ModelError("the robot has no <link>", robot.where, mend)
+            fix = "expand it by xacro first" if robot.children else "name a URDF file"
+            raise ModelError("the robot has no <link>", robot.where, fix)
         above: dict[str, str] = {}
         for name, joint in joints.items():
             for end in ("parent", "child"):
                 link = _need(joint, end).need("link")
                 if link not in links and not (end == "parent" and link == WORLD):
-                    mend = nearest(link, links) or f"one of {', '.join(links)}"
-                    raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, mend)
+                    fix = nearest(link, links) or f"one of {', '.join(links)}"
+                    raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, fix)
             child = _need(joint, "child").need("link")
             if child in above:
                 what = f"link '{child}' hangs on two joints, '{above[child]}' and '{name}'"
@@ -363,7 +363,7 @@ def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
             walk(child, named(element) if element.attributes.get("name") and element is not root else above)
 
     walk(root, "")
-    return tuple(told_left(what, where, why.get(what, NO_COUNTERPART)) for what, where in groups.items())
+    return tuple(reported_left(what, where, why.get(what, NO_COUNTERPART)) for what, where in groups.items())
 
 
 def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:
@@ -401,6 +401,6 @@ def _need(element: XmlElement, tag: str) -> XmlElement:
 def _need_kind(joint: XmlElement) -> str:
     kind = joint.need("type")
     if kind not in KINDS:
-        mend = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
-        raise ModelError(f"unknown type of a joint: '{kind}'", joint.where, mend)
+        fix = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
+        raise ModelError(f"unknown type of a joint: '{kind}'", joint.where, fix)
     return kind

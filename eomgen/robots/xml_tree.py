@@ -9,7 +9,7 @@ from decimal import Decimal, InvalidOperation
 from xml.parsers import expat
 
 from eomgen.errors import ModelError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.robots.tables import Triple
 from eomgen.symbolic.expression.text import LARGEST_EXPONENT, MOST_DIGITS
 
@@ -154,7 +154,7 @@ def xml_tree(data: bytes, name: str) -> XmlElement:
         parser.Parse(begun, True)
     except expat.ExpatError as error:
         where = f"{name}:{before + error.lineno}:{error.offset + 1}"
-        raise ModelError(f"no well-formed XML: {expat.ErrorString(error.code)}", where, "mend the file") from error
+        raise ModelError(f"no well-formed XML: {expat.ErrorString(error.code)}", where, "fix the file") from error
     root = top.children[0]
     root.seen = True
     return root

@@ -1,6 +1,6 @@
 """Joints, constraints, force elements and loads -> marks.
 
-Joints, ties and force elements -> marks: hinges and supports, strings, members, springs and dampers.
+Joints, constraints and force elements -> marks: hinges and supports, strings, members, springs and dampers.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS, Axes, Component, components_of
 from eomgen.mechanics.kinematics.loads import in_ground_axes
@@ -26,11 +27,10 @@ from eomgen.model.constraints.base import (
     TouchingRound,
 )
 from eomgen.model.constraints.strand import Stop, Strand
-from eomgen.model.driven import driven_coordinates, driving_ties
+from eomgen.model.driven import driven_coordinates, driving_constraints
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
-from eomgen.records import dataclass
 from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, shaft_of, wedge_of
 from eomgen.scene.forms import (
     ArrowForm,
@@ -202,18 +202,18 @@ def _sides(system: System) -> dict[str, int]:
     }
 
 
-# -- ties --------------------------------------------------------------------------------------------
+# -- constraints --------------------------------------------------------------------------------------------
 
 
-def tie_marks(system: System) -> list[Mark]:
+def constraint_marks(system: System) -> list[Mark]:
     """Strings, members of trusses, links, tracks, hinges and supports."""
     found = [*_members(system)]
-    for name, tie in system.scope.model.constraints.items():
+    for name, constraint in system.scope.model.constraints.items():
         scene = SystemScene(system.motion, f"constraints.{name}")
-        rows = [row for row in system.ties.rows if row.tie == name]
-        if strands := tie.strands_at(scene):
+        rows = [row for row in system.constraints.rows if row.constraint == name]
+        if strands := constraint.strands_at(scene):
             found += string_marks(strands, name)
-        elif (meeting := tie.meeting()) is not None:
+        elif (meeting := constraint.meeting()) is not None:
             found += _met(system, meeting, rows, name)
         elif not any(row.part for row in rows):
             found += _held(system, rows, name)
@@ -391,13 +391,13 @@ def drive_marks(system: System) -> list[Mark]:
     """An arrow at the first joint that turns or slides as a driven coordinate says, and the coordinate's name."""
     if system.scope.model.space == "space":
         return []
-    driven, ties = driven_coordinates(system.scope.model), driving_ties(system.scope.model)
+    driven, constraints = driven_coordinates(system.scope.model), driving_constraints(system.scope.model)
     waiting = [q for q in system.symbols.q if q.name in driven]
     found = []
     for k, link in enumerate(system.motion.links, start=1):
         for q in [q for q in waiting if q in symbols_of(link.s)]:
             waiting.remove(q)
-            of = ties.get(q.name, (link.name,))[0]
+            of = constraints.get(q.name, (link.name,))[0]
             found += [
                 Mark(_arrow(link, q), k, "support", of),
                 Mark(LabelForm(q.name, link.point), k, "dimension", of),
@@ -412,7 +412,7 @@ def _arrow(link: BodyLink, q: Node) -> SymbolForm:
 
 
 # -------- applied ---------------------------------------------------------------------------------------------
-# Loads, reactions -> marks: arrows of what is applied, the field of gravity, forces of joints and ties.
+# Loads, reactions -> marks: arrows of what is applied, the field of gravity, forces of joints and constraints.
 
 
 def field_marks(system: System) -> list[Mark]:
@@ -539,9 +539,9 @@ def reaction_marks(forces: Iterable[tuple[Resultant, Vector]]) -> Iterator[Mark]
 
 
 def _seat(system: System, owner: str) -> tuple[str | None, Vector] | None:
-    """Where a joint or tie acts."""
+    """Where a joint or constraint acts."""
     motion = system.motion
     if owner in motion.index:
         return owner, motion.link(owner).point
-    pushes = [push for row in system.ties.rows if row.tie == owner for push in row.pushes]
+    pushes = [push for row in system.constraints.rows if row.constraint == owner for push in row.pushes]
     return next((push.place for push in pushes if isinstance(push, PointForce)), None)

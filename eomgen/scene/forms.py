@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.shapes.forms import (
     ArcForm,
     BoxForm,
@@ -18,7 +19,6 @@ from eomgen.model.shapes.forms import (
     PrismForm,
     RevolutionForm,
 )
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import Vector
 
 

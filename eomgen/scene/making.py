@@ -1,6 +1,6 @@
 """System -> Scene: bodies, their shapes, names and dimensions, put together.
 
-System -> Scene: bodies, joints, ties, springs and names of a model, put together.
+System -> Scene: bodies, joints, constraints, springs and names of a model, put together.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from eomgen.model.trusses import is_node
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
 from eomgen.scene.connections import (
     applied_marks,
+    constraint_marks,
     drive_marks,
     field_marks,
     force_elements,
     joint_marks,
     ordered,
-    tie_marks,
 )
 from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
@@ -47,7 +47,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
         pieces, drawn = piece_marks(system, link.name, k, len(frames))
         frames += pieces
         marks += drawn + joint_marks(system, link, k)
-    marks += tie_marks(system) + force_elements(system)
+    marks += constraint_marks(system) + force_elements(system)
     marks = without_veils(marks, alone=len(motion.links) == 1)
     marks += [
         *size_marks(system, marks),

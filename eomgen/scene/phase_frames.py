@@ -19,7 +19,7 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.dynamics.system import System
 from eomgen.model.shapes.forms import Form
-from eomgen.proof.pictures_told import ToldArrow, ToldPicture
+from eomgen.proof.pictures_reported import ReportedArrow, ReportedPicture
 from eomgen.scene.connections import Resultant, reaction_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
@@ -88,7 +88,7 @@ def _resultants(
     found = list(resultants(system, run.reactions))
     d = 2 if system.scope.model.space == "plane" else 3
     units = [x for resultant in found for unit in resultant.units.values() for x in unit[:d]]
-    along = iter(_worth(system, units, times, _states(system, columns, times), phase.model.p))
+    along = iter(_value(system, units, times, _states(system, columns, times), phase.model.p))
     for resultant in found:
         force = np.zeros((d, len(times)))
         for name in resultant.units:
@@ -103,7 +103,7 @@ def _states(system: System, columns: Mapping[str, np.ndarray], times: np.ndarray
     return np.array([columns.get(node.name, rest) for node in nodes]).reshape(len(nodes), len(times)).T
 
 
-def _worth(system: System, scalars: Sequence[Scalar], t: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:
+def _value(system: System, scalars: Sequence[Scalar], t: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:
     """Values of scalars along a motion, scalars x instants."""
     program = program_of(scalars, system.symbols, inputs=system.inputs)
     with np.errstate(all="ignore"):
@@ -129,7 +129,7 @@ def _frames(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, given: Ma
     if not given:
         return frames_along(scene, t, x, p)
     known = tuple(value for value in scene.values if value not in given)
-    found: dict[Scalar, np.ndarray] = dict(zip(known, _worth(scene.system, known, t, x, p), strict=True))
+    found: dict[Scalar, np.ndarray] = dict(zip(known, _value(scene.system, known, t, x, p), strict=True))
     columns = found | dict(given)
     return np.column_stack([columns[value] for value in scene.values])
 
@@ -269,7 +269,7 @@ LENGTHS = frozenset(("line", "polygon", "arc", "rod", "point", "box", "ellipsoid
 """Kinds of marks that are as large as what they show."""
 
 
-def picture_told(drawing: Drawing, scene: Scene, frame: int) -> ToldPicture:
+def picture_reported(drawing: Drawing, scene: Scene, frame: int) -> ReportedPicture:
     """What the strokes of a drawing show at a frame."""
     d = 2 if scene.plane else 3
     symbols = {mark.of for mark in scene.marks if mark.role == "body" and mark.form.kind not in LENGTHS}
@@ -294,7 +294,9 @@ def picture_told(drawing: Drawing, scene: Scene, frame: int) -> ToldPicture:
     ]
     lengths, angles = _sizes(drawing, scene, frame) if drawing.sizes.dimensions else ([], [])
     masses = {s.of: s.path[frame].reshape(-1, d) for s in drawing.strokes if s.role == "inertia"}
-    return ToldPicture(bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, (), signs, lengths, angles, masses)
+    return ReportedPicture(
+        bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, (), signs, lengths, angles, masses
+    )
 
 
 def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
@@ -315,7 +317,7 @@ def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, 
     return lengths, angles
 
 
-def _arrows(drawing: Drawing, scene: Scene, frame: int) -> list[ToldArrow]:
+def _arrows(drawing: Drawing, scene: Scene, frame: int) -> list[ReportedArrow]:
     """Of single forces and resultants: a shaft, then its head."""
     single = {mark.of for mark in scene.marks if mark.form.kind == "arrow"}
     single -= {mark.of for mark in scene.marks if mark.form.kind in ("couple", "load")}
@@ -323,7 +325,7 @@ def _arrows(drawing: Drawing, scene: Scene, frame: int) -> list[ToldArrow]:
     for shaft, head in zip(strokes[::2], strokes[1::2], strict=True):
         begin, tip = shaft.path[frame].reshape(-1, shaft.path.shape[-1])[0], _tip(head, frame)
         if np.isfinite(begin).all() and np.isfinite(tip).all():
-            found.append(ToldArrow(shaft.role, shaft.of, begin, tip))
+            found.append(ReportedArrow(shaft.role, shaft.of, begin, tip))
     return found
 
 

@@ -18,11 +18,11 @@ import numpy as np
 from eomgen.codegen.program import Program, program_in_motion, program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.start.state import start_state
 from eomgen.model.shapes.forms import Form
 from eomgen.model.values import exact_parameters, start_values
-from eomgen.records import dataclass
 from eomgen.scene.symbols import symbols_used
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar
@@ -53,7 +53,7 @@ class Mark:
     Args:
         frame: the place of its axes among the scene's frames, 0 the ground.
         role: what it is, one of `ROLES`: drawers choose its colours by it.
-        of: the body, tie, joint or force that it belongs to, by name; or "".
+        of: the body, constraint, joint or force that it belongs to, by name; or "".
     """
 
     form: Form
@@ -260,7 +260,8 @@ class DrawnState:
 
 
 def drawn_start(system: System) -> DrawnState:
-    """Where the model starts; a parameter without a value is 1, and where the ties do not close so they stay open."""
+    """Where the model starts; a parameter without a value is 1, and where the constraints do not close so they stay
+    open."""
     model, symbols = system.scope.model, system.symbols
     known = exact_parameters(model)
     assumed = {name: 1 for name in model.parameters if name not in known}

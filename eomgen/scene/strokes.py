@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.model.shapes.forms import Form
-from eomgen.records import dataclass
 from eomgen.scene.scene import Mark, Scene, is_moving, plain_number
 from eomgen.symbolic.expression.spatial import Vector
 

@@ -4,7 +4,7 @@ Every body is displaced by its part of the velocity plan, to the first order as 
 
     p -> p + s v,   R -> R + s w x R
 
-so that joints and ties stay closed exactly; s swings once to each side.
+so that joints and constraints stay closed exactly; s swings once to each side.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
 from eomgen.mechanics.kinematics.motion import BodyLink
@@ -26,7 +27,6 @@ from eomgen.mechanics.rigidity.structure import Structure
 from eomgen.mechanics.rigidity.velocity_plan import blocks_of, numeral
 from eomgen.mechanics.statics.virtual_work import StaticReaction, WorkEquation
 from eomgen.model.forces.load import UniformField
-from eomgen.records import dataclass
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm, LabelForm, PointForm, SymbolForm
 from eomgen.scene.making import scene_of_system
@@ -86,9 +86,9 @@ class VirtualDisplacement:
         """Bodies displaced by the share s, loads that work, the reaction in its positive sense."""
         system = self._displaced
         scene = scene_of_system(system)
-        ties = system.scope.model.constraints
+        constraints = system.scope.model.constraints
         named = self.reaction.named
-        owner = named.owner if named is not None and named.owner in ties else None
+        owner = named.owner if named is not None and named.owner in constraints else None
         kept = [m for m in scene.marks if not (m.of == owner and isinstance(m.form, SymbolForm))]
         return replace(scene, marks=(*kept, *self._weights(system), *self._released(system), *self._centers()))
 

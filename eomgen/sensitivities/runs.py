@@ -12,6 +12,7 @@ import numpy as np
 from eomgen.codegen.program import kinematic_rates, program_of
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.linearization.first_order import FirstOrder
 from eomgen.mechanics.linearization.linearization import CORNERS
@@ -24,8 +25,7 @@ from eomgen.pipeline import simulator
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.answers import solve
 from eomgen.questions.in_phase import PhaseEquations
-from eomgen.questions.of_a_run import asked_of
-from eomgen.records import dataclass
+from eomgen.questions.of_a_run import requested_of
 from eomgen.simulation.contacts import changing, has_phases
 from eomgen.simulation.solvers import breakpoints_of, solver_of, step
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
@@ -49,7 +49,7 @@ from eomgen.symbolic.numeric.work import check_patience
 #
 #     x' = f(t, x, p),   s' = f_x s + f_p,   s(0) = dx(0)/dp
 #
-# One program gives both; where ties close, f is what the elimination of the multipliers leaves.
+# One program gives both; where constraints close, f is what the elimination of the multipliers leaves.
 
 
 JUMPS = ("sign", "less", "less_equal", "select")
@@ -102,8 +102,8 @@ def changing_run(
     states = _integrated(f.at(p), x0, instants, breakpoints_of(system.scope.model))
     inputs = _own_inputs(system)
     closed = substituted([phase.of_state(formula) for formula in formulas.values()], inputs)
-    asked = [*closed, *(d for seeds in along.values() for d in tangent(closed, seeds))]
-    columns = compiled(program_of(asked, extended), "numpy").many(instants, states, p).T + 0.0
+    requested = [*closed, *(d for seeds in along.values() for d in tangent(closed, seeds))]
+    columns = compiled(program_of(requested, extended), "numpy").many(instants, states, p).T + 0.0
     keys = [(of, name) for name in changes for of in formulas]
     slopes = dict(zip(keys, columns[len(formulas) :], strict=True))
     return ChangingRun(instants, dict(zip(formulas, columns, strict=False)), slopes)
@@ -125,12 +125,12 @@ def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
     if has_phases(system.scope.model):
         names = ", ".join(f"'{x}'" for x in changing(system.scope.model))
         what = f"{names} may change along the way (open, stick, slide): a motion in phases has no derivative here"
-        raise NotYet(what, mend="differences of two runs, or a stretch of one phase as a model of its own")
+        raise NotYet(what, fix="differences of two runs, or a stretch of one phase as a model of its own")
     moving = (*system.symbols.q, *system.symbols.u, *system.symbols.parameters.values())
     if any(node.op in JUMPS and depends_on(node, moving) for node in order(rates)):
         raise NotYet(
             "a force jumps along the way: the variational equations do not hold across it",
-            mend="take differences of two runs: a sweep over the parameter",
+            fix="take differences of two runs: a sweep over the parameter",
         )
 
 
@@ -147,7 +147,7 @@ def _integrated(f, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[f
         check_patience()
         step(solver, breakpoints, end)
         if solver.status == "failed":
-            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s", mend="a shorter run")
+            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s", fix="a shorter run")
         dense = solver.dense_output()
         while len(found) < len(instants) and instants[len(found)] <= solver.t:
             found.append(dense(instants[len(found)]))
@@ -252,7 +252,7 @@ def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seed
         beside = evaluate(scalars, {**numbers, **{x: numbers[x] + step * rate for x, rate in rates.items()}}, digits)
         for here, there, slope in zip(found, beside, found[len(scalars) :], strict=False):
             if abs((there - here) / step - slope) > CARRIED * (1 + abs(slope)):
-                raise DerivationError("it, or a force, has a corner or a jump there", mend="ask beside it")
+                raise DerivationError("it, or a force, has a corner or a jump there", fix="ask beside it")
 
 
 # -------- differences -----------------------------------------------------------------------------------------
@@ -299,11 +299,11 @@ def checks_of(model: Model, found: Derivatives) -> Certificate:
     return Certificate(tuple(check for to, of in by_name.items() for check in _by_one(model, of, to, found)))
 
 
-def _by_one(model: Model, of: Sequence[str], to: str, told: Derivatives) -> list[Check]:
+def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> list[Check]:
     """Those by one name."""
     value = _value(model, to)
     h = PARAMETER_STEP * (abs(value) or 1.0)
-    computed = _computed(model, of, to) if told.run is None else _run(model, of, to, told.run)
+    computed = _computed(model, of, to) if reported.run is None else _run(model, of, to, reported.run)
     names = [f"d({text})/d({to})" for text in of]
     try:
         f = [computed(value + k * h) for k in (-2, -1, 1, 2)]
@@ -313,14 +313,14 @@ def _by_one(model: Model, of: Sequence[str], to: str, told: Derivatives) -> list
     for k, (text, name) in enumerate(zip(of, names, strict=True)):
         low2, low, high, high2 = (each[k] for each in f)
         coarse, fine = (high2 - low2) / (4 * h), (8 * (high - low) - (high2 - low2)) / (12 * h)
-        share = COMPUTED if told.run is None else CARRIED
-        own, noise = told.slope(text, to), share * np.max(np.abs(high), initial=0.0)
+        share = COMPUTED if reported.run is None else CARRIED
+        own, noise = reported.slope(text, to), share * np.max(np.abs(high), initial=0.0)
         trust = np.abs(fine - coarse) + noise / h + COMPUTED * np.max(np.abs(own))
         if not np.all(np.isfinite(fine)):
             found.append(unchecked(name, "without a value beside", HOW))
             continue
         wrong = _worst(own, fine, trust)
-        here = told.value(text)
+        here = reported.value(text)
         if here is not None and not wrong:
             middle = (4 * (high + low) - (high2 + low2)) / 6
             wrong = _worst(here, middle, noise + np.abs(middle - (high + low) / 2))
@@ -345,10 +345,10 @@ def _value(model: Model, name: str) -> float:
 
 def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], list[np.ndarray]]:
     """value -> each formula, as `solve` answers it."""
-    asked = {f"asked{k}": replace(asked_of(model, text), unit=None) for k, text in enumerate(of)}
+    requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
 
     def found(value: float) -> list[np.ndarray]:
-        answers = solve(_with(replace(model, outputs=Table[Output](asked)), to, value))
+        answers = solve(_with(replace(model, outputs=Table[Output](requested)), to, value))
         return [np.array([np.nan if x.value is None else x.value]) for x in answers.values()]
 
     return found
@@ -356,14 +356,14 @@ def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], lis
 
 def _run(model: Model, of: Sequence[str], to: str, run: ChangingRun) -> Callable[[float], list[np.ndarray]]:
     """value -> each formula along the motion."""
-    asked = {f"asked{k}": replace(asked_of(model, text), unit=None) for k, text in enumerate(of)}
-    again = simulator(replace(model, outputs=Table[Output](asked)), rtol=FINE_RUN, atol=FINE_RUN)
+    requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
+    again = simulator(replace(model, outputs=Table[Output](requested)), rtol=FINE_RUN, atol=FINE_RUN)
 
     def found(value: float) -> list[np.ndarray]:
         parameters = {to: value} if to in model.parameters else None
         start = None if to in model.parameters else {to: value}
         made = again(float(run.t[-1]), parameters, start, run.t.tolist(), ("outputs",))
-        return [made.outputs[name] for name in asked]
+        return [made.outputs[name] for name in requested]
 
     return found
 

@@ -21,10 +21,11 @@ from eomgen.documents.linearize.result import Linearization, linearize
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Found, Listing, Quantity
 from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.instant.quantities import asks_of
+from eomgen.mechanics.instant.quantities import requests_of
 from eomgen.mechanics.linearization.modes import MATRICES
-from eomgen.mechanics.linearization.parameter_slopes import ParameterSlopes
+from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes
 from eomgen.mechanics.start.exact import Seeds, parameter_seeds, start_seeds
 from eomgen.mechanics.start.state import start_state
 from eomgen.mechanics.statics.contacts import contacts_at_start
@@ -37,8 +38,7 @@ from eomgen.model.units import units_of
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Certificate, Check, Tally, checked, differing
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
-from eomgen.questions.of_a_run import asked_of
-from eomgen.records import dataclass
+from eomgen.questions.of_a_run import requested_of
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation.integrate import instants_of
 from eomgen.symbolic.exact.book_form import book_form
@@ -92,7 +92,7 @@ class Sensitivity(Result):
     def __getitem__(self, pair: tuple[str, str]) -> Quantity:
         """The derivative of a formula by a name."""
         if pair not in self.slopes:
-            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was asked", mend="ask for it in the call")
+            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was asked", fix="ask for it in the call")
         return self.slopes[pair]
 
     @property
@@ -136,17 +136,17 @@ class Sensitivity(Result):
         off = (
             f"{named(*pair)} is {found.value * parse_unit(found.unit or '1').size:.9g} in SI for {self.in_si[pair]:.9g}"
             for pair, found in self.slopes.items()
-            if found.value is not None and pair in self.in_si and not self._as_told(pair, found)
+            if found.value is not None and pair in self.in_si and not self._as_reported(pair, found)
         )
-        told = [checked("derivatives as they are told are those in SI", next(off, ""), "floating point")]
-        told.append(checked("derivatives are of what was asked", self._of_others(), "names that the file declares"))
+        reported = [checked("derivatives as they are told are those in SI", next(off, ""), "floating point")]
+        reported.append(checked("derivatives are of what was asked", self._of_others(), "names that the file declares"))
         texts = Tally("closed forms of derivatives, read back, give the numbers", "our grammar, floating point")
         for pair, slope in self.slopes.items():
             if slope.exact is not None and pair in self.in_si:
                 texts.add(named(*pair), partial(self._misread, slope.exact, self.in_si[pair]))
         values = {of: x.value * parse_unit(x.unit or "1").size for of, x in self.values.items() if x.value is not None}
         slopes = checks_of(self.model, Derivatives(values, self.in_si, self.run))
-        return Certificate((*slopes.checks, *told, *texts.checks()))
+        return Certificate((*slopes.checks, *reported, *texts.checks()))
 
     def _misread(self, text: str, due: float) -> str:
         """The text at the parameters, and where the motion starts."""
@@ -179,10 +179,10 @@ class Sensitivity(Result):
         dot = "'" if text == RHS else ""
         speeds = dict.fromkeys(f"{name}{dot}" for name in (*self.model.speeds, *(f"{q}'" for q in parts)))
         free = [f"{q}'{dot}" for q, part in parts.items() if not (part.driven or part.dependent or self.model.speeds)]
-        told = tuple(takewhile(speeds.__contains__, left[len(parts) :]))
-        return (*(f"{q}{dot}" for q in parts), *(told if set(free) <= set(told) else free))
+        reported = tuple(takewhile(speeds.__contains__, left[len(parts) :]))
+        return (*(f"{q}{dot}" for q in parts), *(reported if set(free) <= set(reported) else free))
 
-    def _as_told(self, pair: tuple[str, str], found: Quantity) -> bool:
+    def _as_reported(self, pair: tuple[str, str], found: Quantity) -> bool:
         due = self.in_si[pair]
         return found.value is not None and math.isclose(
             found.value * parse_unit(found.unit or "1").size, due, rel_tol=COMPUTED, abs_tol=COMPUTED**2
@@ -194,7 +194,7 @@ def named(of: str, to: str) -> str:
     return f"d({of})/d({to})"
 
 
-def slope_asked(text: str) -> tuple[str, str] | None:
+def slope_requested(text: str) -> tuple[str, str] | None:
     """("frequency(1)", "k") of "d(frequency(1))/d(k)"; None of any other text."""
     found = SLOPE.fullmatch(text.strip())
     return None if found is None else (found["of"].strip(), found["to"].strip())
@@ -211,7 +211,7 @@ def unit_of_slope(model: Model, of: str, to: str) -> Unit:
 
 def _unit_of(model: Model, text: str) -> Unit | None:
     """The unit of a name or formula."""
-    output = asked_of(model, text)
+    output = requested_of(model, text)
     own = units_of(model, [text]).get(text) if text in (*model.coordinates, *model.parameters) else None
     if own is not None or text in model.parameters:
         return own
@@ -236,7 +236,8 @@ def sensitivity(
     Args:
         of: outputs by name and formulas as outputs have them: "theta''", "reaction_y(A)", "frequency(1)",
             "x(B) at equilibrium"; "rhs" for q' and u' at the start; "frequencies"; "equilibrium" for every
-            coordinate at rest. (): the model's outputs. The start moves along, as its expressions and the ties say.
+            coordinate at rest. (): the model's outputs. The start moves along, as its expressions and the constraints
+            say.
         to: parameters, those that depend on one following it; coordinates and speeds, for where they start; (): all
             parameters.
         time: how long a motion is followed, 5 s or "500 ms"; then `of` are functions of the state along it, "state" for
@@ -309,7 +310,7 @@ class _Asking:
         known = (*self.model.parameters, *(x.name for x in (*symbols.q, *symbols.u)))
         for name in names:
             if name not in known:
-                raise UsageError(f"no parameter, coordinate or speed '{name}'", mend=f"one of {', '.join(known)}")
+                raise UsageError(f"no parameter, coordinate or speed '{name}'", fix=f"one of {', '.join(known)}")
 
     def formulas(self, wanted: Sequence[str]) -> Iterator[str]:
         """What is asked, one by one."""
@@ -335,7 +336,7 @@ class _Asking:
         slopes: dict[tuple[str, str], Quantity] = {}
         in_si: dict[tuple[str, str], float] = {}
         for text in of:
-            output = asked_of(self.model, text)
+            output = requested_of(self.model, text)
             for name in to:
                 unit = unit_of_slope(self.model, text, name)
                 try:
@@ -360,15 +361,15 @@ class _Asking:
         Raises:
             DerivationError: it is of a whole run, or of an instant.
         """
-        if asks_of(output.value, OF_A_RUN) or output.from_ is not None or output.event is not None:
+        if requests_of(output.value, OF_A_RUN) or output.from_ is not None or output.event is not None:
             raise DerivationError(
                 "it is of a whole run, or of one instant of it: no derivative is sought of that",
-                mend="ask for last(...), or sweep over the parameter",
+                fix="ask for last(...), or sweep over the parameter",
             )
         rest = isinstance(output.at, AtRest)
         if output.at is not None and not rest:
-            raise DerivationError("it is asked at an instant", mend="give `time`: derivatives along the run")
-        if asks_of(output.value, SMALL_MOTIONS):
+            raise DerivationError("it is asked at an instant", fix="give `time`: derivatives along the run")
+        if requests_of(output.value, SMALL_MOTIONS):
             return self._of_small_motions(output.value, name)
         return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
 
@@ -411,14 +412,14 @@ class _Asking:
         return found | dict(zip(inputs, evaluate(tuple(inputs.values()), found, fifty_digits()), strict=True))
 
     def _at_rest(self, formula: Expression, name: str) -> Derived:
-        """At the place of rest, which moves."""
+        """At the equilibrium, which moves."""
         reference = self.small.small.reference
         phase = PhaseEquations(reference.system)
         changed = self._changed(name, phase)
         if not changed and not self._rests_alone:
             raise DerivationError(
                 "it may rest in many places beside one another, of which the start tells one",
-                mend="hold it by a spring or a constraint",
+                fix="hold it by a spring or a constraint",
             )
         seeds = ParameterSlopes(self.small.small, changed).seeds if changed else {}
         value, slope = ChangingState(phase, reference.numbers, seeds).formula(formula)
@@ -430,13 +431,15 @@ class _Asking:
 
     @cached_property
     def _rests_alone(self) -> bool:
-        """Whether the ties and the forces let it rest nowhere beside the place where it does."""
+        """Whether the constraints and the forces let it rest nowhere beside the place where it does."""
         K, reference = self.small.K, self.small.small.reference
-        ties = [row.velocity for row in reference.system.ties.closing]
+        constraints = [row.velocity for row in reference.system.constraints.closing]
         u = reference.system.symbols.u
-        flat = floats_of(evaluate([x for row in jacobian(ties, u) for x in row], reference.numbers, fifty_digits()))
-        J = np.array(flat).reshape(len(ties), len(u))
-        free = len(u) - (np.linalg.matrix_rank(J, RANK_NEARBY) if ties else 0)
+        flat = floats_of(
+            evaluate([x for row in jacobian(constraints, u) for x in row], reference.numbers, fifty_digits())
+        )
+        J = np.array(flat).reshape(len(constraints), len(u))
+        free = len(u) - (np.linalg.matrix_rank(J, RANK_NEARBY) if constraints else 0)
         return bool(K.shape == (free, free) and np.linalg.matrix_rank(K) == free)
 
     def _of_small_motions(self, formula: Expression, name: str) -> Derived:
@@ -469,7 +472,7 @@ class _Asking:
             value = frequency.mode.frequency or 0.0
             if value == 0:
                 raise DerivationError(
-                    "a motion that does not swing has no frequency that would change", mend="ask for an eigenvalue"
+                    "a motion that does not swing has no frequency that would change", fix="ask for an eigenvalue"
                 )
             slope = changing.eigenvalue(frequency.mode.eigenvalue).imag if changing.parameters else 0.0
             return value, slope, frequency.exact
@@ -490,9 +493,9 @@ class _Asking:
     ) -> Sensitivity:
         """Along a motion, and at its end."""
         if not time > 0:
-            raise UsageError(f"the time {time:g} s makes no sense", mend="give one above 0")
+            raise UsageError(f"the time {time:g} s makes no sense", fix="give one above 0")
         texts = tuple(self.formulas(of))
-        formulas = {text: asked_of(self.model, text).value for text in texts}
+        formulas = {text: requested_of(self.model, text).value for text in texts}
         instants = instants_of(samples, 0.0, time)
         symbols = self.phase.system.symbols
         x = (*symbols.q, *symbols.u)
@@ -510,7 +513,7 @@ class _Asking:
 
 
 def _refused(call: Call) -> Scalar:
-    raise DerivationError(f"'{call}' has no closed form", mend="give every parameter a value in [parameters]")
+    raise DerivationError(f"'{call}' has no closed form", fix="give every parameter a value in [parameters]")
 
 
 def _own_inputs(phase: PhaseEquations) -> dict[Node, Scalar]:

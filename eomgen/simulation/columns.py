@@ -17,15 +17,15 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.named_reactions import NamedReaction
 from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.instant.quantities import Quantities, asks_of
+from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
@@ -77,7 +77,7 @@ class OutputColumns:
         return found
 
     def _made(self) -> Iterator[_Columns]:
-        phase, apart = self.phase, self._along_freedoms
+        phase, apart = self.phase, self._along_degrees_of_freedom
         own = {name: x for name, x in self.formulas.items() if name not in apart}
         if own:
             yield _Columns(phase.system, phase.functions, own, lambda: phase.reactions)
@@ -87,12 +87,14 @@ class OutputColumns:
             yield _Columns(phase.declared, functions, formulas, lambda: reactions_of(phase.declared))
 
     @property
-    def _along_freedoms(self) -> tuple[str, ...]:
+    def _along_degrees_of_freedom(self) -> tuple[str, ...]:
         """The formulas that depend on which coordinates are free, where these are not those of the integration."""
         if self.phase.declared is self.phase.system:
             return ()
-        asked = ((name, call) for name, formula in self.formulas.items() for call in formula.calls)
-        return tuple(dict.fromkeys(name for name, call in asked if FUNCTIONS[call.name].is_along_freedoms))
+        requested = ((name, call) for name, formula in self.formulas.items() for call in formula.calls)
+        return tuple(
+            dict.fromkeys(name for name, call in requested if FUNCTIONS[call.name].is_along_degrees_of_freedom)
+        )
 
 
 @dataclass
@@ -174,7 +176,7 @@ class _Columns:
             found = self._balance.together(Quantities(self.system, balance=self._balance).over_components(formula))
             if found is None:
                 raise
-            return self._asked(found[0], 0, formula.text, made) + found[1]
+            return self._requested(found[0], 0, formula.text, made) + found[1]
 
     def _value(self, call: Call, made: _Formulas) -> Scalar:
         """One function; a reaction as a symbol, or as a function of its components where it is not linear in these.
@@ -191,12 +193,12 @@ class _Columns:
         if not standing:
             return scalar
         if any(depends_on(k, components) for k in factors.values()):
-            parts = {components[j]: self._asked({j: 1}, 0, f"{call}, component {j}", made) for j in standing}
+            parts = {components[j]: self._requested({j: 1}, 0, f"{call}, component {j}", made) for j in standing}
             return substituted((scalar,), parts)[0]
         (given,) = substituted((scalar,), {components[j]: 0 for j in standing})
-        return self._asked(factors, given, str(call), made)
+        return self._requested(factors, given, str(call), made)
 
-    def _asked(self, combination: dict[int, Scalar], given: Scalar, name: str, made: _Formulas) -> Node:
+    def _requested(self, combination: dict[int, Scalar], given: Scalar, name: str, made: _Formulas) -> Node:
         """The symbol of a reaction, which stands for one more column of the balance."""
         self._balance.combined(combination, name)
         symbol = self.system.scope.graph.symbol(name)
@@ -236,6 +238,6 @@ class _Columns:
 
 def formulas_of(model: Model) -> dict[str, Expression]:
     """The outputs that are functions of the state: asked at no instant, and of no linearized system."""
-    asked = ((name, part) for name, part in model.outputs.items() if part.at is None and part.from_ is None)
+    requested = ((name, part) for name, part in model.outputs.items() if part.at is None and part.from_ is None)
     others = (SMALL_MOTIONS, OF_A_RUN)
-    return {name: part.value for name, part in asked if not any(asks_of(part.value, other) for other in others)}
+    return {name: part.value for name, part in requested if not any(requests_of(part.value, other) for other in others)}

@@ -1,7 +1,8 @@
 """PhaseModel, starts and parameters of many runs -> their states, by marches in C: a run costs no Python at all.
 
 Each thread has one march, which takes the runs one after the other, each as `CompiledSteps` takes a run of its own. A
-run of which a step wants a look (near a singular position, a tie that does not close, stiff, no value) is left undone.
+run of which a step wants a look (near a singular position, a constraint that does not close, stiff, no value) is left
+undone.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from functools import partial
 import numpy as np
 
 from eomgen.codegen.batching import in_threads, pieces_of
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.integrator import Stepping
@@ -86,7 +87,7 @@ def _march(phase: PhaseModel, x: np.ndarray, how: Stepping, instants: np.ndarray
     """A march that looks at what one run looks at."""
     nearness = phase.nearness
     lookout = None if nearness is None else RankLookout(nearness, NEARNESS[0], 0.0, x)
-    hold = how.hold(phase.functions.rhs.spheres, phase.projection)
+    hold = how.hold(phase.functions.rhs.unit_quaternions, phase.projection)
     watched = (hold, None, lookout)
     return CompiledSteps(
         phase.rate, (0.0, end), x, how=how, instants=instants, watched=watched, slope=lambda: phase.slope

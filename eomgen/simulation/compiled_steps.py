@@ -2,7 +2,8 @@
 
 A right-hand side in C -> many steps of DOP853 or Radau a call: Python is asked where a step needs a look.
 
-`march.c` takes steps, keeps quaternions and ties, gives states at the instants asked for, as long as no event can lie
+`march.c` takes steps, keeps quaternions and constraints, gives states at the instants asked for, as long as no event
+can lie
 in a step and no singular position near it. Of the step at which it stops nothing but the motion has been changed.
 """
 
@@ -149,8 +150,8 @@ class CompiledSteps:
 
     def _watch(self, hold: DriftCorrection, search: EventSearch | None, lookout: Any) -> None:
         m, projection = self._m, hold.projection
-        m.spheres = self._put(np.array(hold.spheres, dtype=np.int32).reshape(-1, 4))
-        m.n_spheres = len(hold.spheres)
+        m.unit_quaternions = self._put(np.array(hold.unit_quaternions, dtype=np.int32).reshape(-1, 4))
+        m.n_unit_quaternions = len(hold.unit_quaternions)
         functions: list[tuple[str, RightHandSide, np.ndarray]] = []
         blind = hold.projection is not None and hold.every is not None
         if projection is not None:
@@ -226,8 +227,8 @@ class CompiledSteps:
             m.n_determinants = len(measure.function.program.outputs)
         if nearness.rows is not None:
             measure = nearness.rows.rows
-            functions.append(("ties", measure.function, measure.p))
-            m.n_rows, m.rank = len(nearness.rows.ties), nearness.rows.rank
+            functions.append(("constraints", measure.function, measure.p))
+            m.n_rows, m.rank = len(nearness.rows.constraints), nearness.rows.rank
             m.n_columns = len(measure.function.program.outputs) // m.n_rows
         self._lengths, self._sizes = np.zeros((m.n_rows, 1)), np.zeros(m.n_determinants + 1)
         m.lengths, m.sizes = self._put(self._lengths), self._put(self._sizes)
@@ -277,7 +278,7 @@ class CompiledSteps:
 
     def advance(self, most: int) -> tuple[int, bool]:
         """(steps taken, at most so many; whether nothing is left to be done about the last of them)."""
-        self._told()
+        self._reported()
         self._most.value = min(most, self._few)
         began = time.perf_counter()
         found = self._march(ctypes.byref(self._m), ctypes.byref(self._most))
@@ -294,7 +295,7 @@ class CompiledSteps:
             self.status = "finished"
         return taken, found in (_GOES_ON, _REACHED, _STIFF)
 
-    def _told(self) -> None:
+    def _reported(self) -> None:
         """What Python knows, for C."""
         if self._search is not None and self._m.n_events:
             self._signs[:], self._armed[:], self._largest[:] = (
@@ -368,7 +369,7 @@ class CompiledSteps:
         self._m.has_series = 0
 
     def dense_output(self) -> Any:
-        """t -> x in the last step, before it was put back onto the ties."""
+        """t -> x in the last step, before it was put back onto the constraints."""
         self._dense(ctypes.byref(self._m))
         if self._m.dense_of == BY_SERIES:
             begun, X = self.t_old, self._X[int(self._m.X_old != self._X.ctypes.data)].copy()
@@ -481,7 +482,7 @@ def smooth(program: Program | None) -> Program:
     """
     why = _hindrance(program)
     if why or program is None:
-        raise UsageError(f"no Taylor series of these equations: {why}", mend="leave --method out, or take another")
+        raise UsageError(f"no Taylor series of these equations: {why}", fix="leave --method out, or take another")
     return program
 
 
@@ -506,7 +507,7 @@ def _integrator(program: Program, p: Sequence[float], t: float, x: np.ndarray, t
         import heyoka
     except ImportError as error:
         raise ToolMissing(
-            f"heyoka cannot be imported: {error}", mend="pip install 'eomgen[heyoka]', or take another --method"
+            f"heyoka cannot be imported: {error}", fix="pip install 'eomgen[heyoka]', or take another --method"
         ) from None
     symbols = program.symbols
     names = heyoka.make_vars(*(f"x{k}" for k in range(len(x)))) if len(x) > 1 else [heyoka.make_vars("x0")]

@@ -1,13 +1,14 @@
 """Constraints along a motion: states projected back onto them, and positions in which they lose rank.
 
-System, parameters -> Projection: states put back onto the ties, by the least change that does it.
+System, parameters -> Projection: states put back onto the constraints, by the least change that does it.
 
     min ds^T M ds  with  J ds = -phi,             q <- q + N ds      until phi = 0
     min du^T M du  with  J du = -(J u + sigma),   u <- u + du
 
 Positions move in all coordinates, dependent ones as freely as others; speeds are those of the state. Measured by M the
 least change is the same in every set of coordinates. Driven coordinates and the time stay: their rows of N are zero.
-Redundant rows do no harm: what is open is closed in the sense of least squares, and directions in which the ties all
+Redundant rows do no harm: what is open is closed in the sense of least squares, and directions in which the
+constraints all
 but do not resist (near a singular position) are passed over.
 Source: Eich, Convergence results for a coordinate projection method applied to mechanical systems with algebraic
 constraints, SIAM J. Numer. Anal. 30 (1993).
@@ -24,16 +25,16 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import SpherePlaces, on_spheres, program_of, spheres_of
+from eomgen.codegen.program import QuaternionPlaces, at_unit_norms, program_of, unit_quaternions_of
 from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import gaps_of
 from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
-from eomgen.mechanics.constraints.rank import rank_of_ties
+from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.dynamics.formulations import mass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics.motion import locks_of
 from eomgen.mechanics.kinematics.tree import branches_of
-from eomgen.records import dataclass
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.dense import divisor, weighted, without_rounding
@@ -48,7 +49,7 @@ ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows J of some ties, and what measures a change there.
+    """The rows J of some constraints, and what measures a change there.
 
     Args:
         function: (t, x, p) -> M, J, N, one after the other.
@@ -77,7 +78,7 @@ class Rows:
 
 @dataclass(frozen=True)
 class Projection:
-    """What keeps states on the ties of a system.
+    """What keeps states on the constraints of a system.
 
     Args:
         p: the parameters' values.
@@ -85,7 +86,7 @@ class Projection:
         size: of (q, u); what a state has beyond is left alone.
         placed: how many of the gaps are phi.
         spheres: the places of quaternions, which keep norm 1.
-        gaps: (t, x, p) -> phi of all ties, J u + sigma of the closing ones.
+        gaps: (t, x, p) -> phi of all constraints, J u + sigma of the closing ones.
         positions, speeds: how either is put back; None where there is nothing to hold.
     """
 
@@ -93,7 +94,7 @@ class Projection:
     coordinates: int
     size: int
     placed: int
-    spheres: tuple[SpherePlaces, ...]
+    unit_quaternions: tuple[QuaternionPlaces, ...]
     gaps: RightHandSide
     positions: Rows | None
     speeds: Rows | None
@@ -105,17 +106,17 @@ class Projection:
         return np.column_stack([np.max(part, axis=1, initial=0.0) for part in parts])
 
     def is_open(self, t: float, x: np.ndarray, allowed: float) -> bool:
-        """Whether a tie is open by more than is allowed, and by more than rounding."""
+        """Whether a constraint is open by more than is allowed, and by more than rounding."""
         return not self._gap(t, x, slice(None)) <= max(allowed, rounding_of(x))
 
     def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
-        """(the nearest state in which the ties hold, by how much they are open there all the same).
+        """(the nearest state in which the constraints hold, by how much they are open there all the same).
 
         Args:
             allowed: how far they may be open; 0: as little as Newton's method can do, as it takes near a singular
                 position, where what is left is divided by what vanishes there.
         """
-        found = on_spheres(x, self.spheres)
+        found = at_unit_norms(x, self.unit_quaternions)
         enough = max(FAR * allowed, rounding_of(x)) if allowed > 0 else 0.0
         for rows in (self.positions, self.speeds):
             if rows is not None:
@@ -131,13 +132,13 @@ class Projection:
 
     @cached_property
     def gaps_at(self) -> Callable[[float, np.ndarray], np.ndarray]:
-        """(t, x) -> phi and J u + sigma of all ties."""
+        """(t, x) -> phi and J u + sigma of all constraints."""
         return self.gaps.at(self.p)
 
 
 @dataclass(frozen=True)
 class _Open:
-    """What is open of the ties at an instant, as Newton's method sees it: places alone, or speeds alone."""
+    """What is open of the constraints at an instant, as Newton's method sees it: places alone, or speeds alone."""
 
     projection: Projection
     rows: Rows
@@ -170,7 +171,7 @@ class _Open:
     def moved(self, x: np.ndarray, step: Sequence[float]) -> np.ndarray:
         found = x.copy()
         found[self._moved] += step
-        return np.asarray(on_spheres(found, self.projection.spheres))
+        return np.asarray(at_unit_norms(found, self.projection.unit_quaternions))
 
 
 def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
@@ -192,14 +193,14 @@ def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def projection_of(system: System, p: np.ndarray, target: str | None = None) -> Projection | None:
-    """What keeps states on the ties of a system; None where none closes.
+    """What keeps states on the constraints of a system; None where none closes.
 
     Args:
         p: the parameters' values.
         target: in which language long functions are run.
     """
     free = system if system.elimination is None else system.free or system
-    symbols, closing, gaps = system.symbols, system.ties.closing, gaps_of(free.ties)
+    symbols, closing, gaps = system.symbols, system.constraints.closing, gaps_of(free.constraints)
     if not gaps and not closing:
         return None
     speeds = tuple(row.velocity for row in closing)
@@ -209,16 +210,20 @@ def projection_of(system: System, p: np.ndarray, target: str | None = None) -> P
         len(symbols.q),
         len(symbols.q) + len(symbols.u),
         len(gaps),
-        spheres_of(function.program),
+        unit_quaternions_of(function.program),
         function,
         _positions(free, target) if gaps else None,
-        _rows(system, system.ties.J, _identity(len(symbols.u)), target) if closing and symbols.u else None,
+        _rows(system, system.constraints.J, _identity(len(symbols.u)), target) if closing and symbols.u else None,
     )
 
 
 def _positions(free: System, target: str | None) -> Rows:
-    """The rows of the ties that have a gap, and e . de = 0 of every quaternion."""
-    J = [row for row, tie in zip(free.ties.J, free.ties.closing, strict=True) if tie.gap is not None]
+    """The rows of the constraints that have a gap, and e . de = 0 of every quaternion."""
+    J = [
+        row
+        for row, constraint in zip(free.constraints.J, free.constraints.closing, strict=True)
+        if constraint.gap is not None
+    ]
     q, N = free.symbols.q, free.scope.N
     for four in free.scope.quaternions:
         rows = [(e, N[q.index(e)]) for e in four]
@@ -249,7 +254,7 @@ def _identity(n: int) -> tuple[tuple[int, ...], ...]:
 
 
 def rounding_of(x: np.ndarray) -> float:
-    """By how much ties are open at a state whose digits end: that of a satellite holds to 1e-7 m."""
+    """By how much constraints are open at a state whose digits end: that of a satellite holds to 1e-7 m."""
     return ROUNDING * max(1.0, float(np.abs(x).max(initial=0.0)))
 
 
@@ -287,24 +292,26 @@ class EnergyLevel:
         return found
 
 
-LOST = 100.0  # absolute tolerances of a step by which a tie may stay open without a word, and by rounding
+LOST = 100.0  # absolute tolerances of a step by which a constraint may stay open without a word, and by rounding
 
 
 @dataclass
 class DriftCorrection:
-    """Keeps the states of one run on the ties, the norms of quaternions at 1, and the energy where it is asked to.
+    """Keeps the states of one run on the constraints, the norms of quaternions at 1, and the energy where it is asked
+    to.
 
     Args:
         spheres: the places of quaternions.
-        projection: onto the ties; None where nothing is put back.
+        projection: onto the constraints; None where nothing is put back.
         atol: the absolute tolerance of a step.
-        every: put back at each so many steps, needed or not; None: where a tie is open by more than atol.
+        every: put back at each so many steps, needed or not; None: where a constraint is open by more than atol.
         steps: taken so far.
-        lost: the first instant at which a tie stayed open by more than LOST tolerances and rounding, and by how much.
+        lost: the first instant at which a constraint stayed open by more than LOST tolerances and rounding, and by how
+            much.
         level: the energy that is kept; None where it is only watched.
     """
 
-    spheres: Sequence[SpherePlaces]
+    unit_quaternions: Sequence[QuaternionPlaces]
     projection: Projection | None
     atol: float
     every: int | None = None
@@ -316,26 +323,26 @@ class DriftCorrection:
         """(the state from which the run goes on after a step, whether it was put back)."""
         self.steps += 1
         if self.every is not None and self.steps % self.every:
-            return (on_spheres(x, self.spheres), True) if self.spheres else (x, False)
+            return (at_unit_norms(x, self.unit_quaternions), True) if self.unit_quaternions else (x, False)
         found = self.at(t, x, forced=self.every is not None)
         return (x, False) if found is x else (found, True)
 
     def at(self, t: float, x: np.ndarray, *, forced: bool = False) -> np.ndarray:
-        """A state on the ties and on the level of the energy; itself where it is near enough."""
-        found = self._on_ties(t, x, forced)
+        """A state on the constraints and on the level of the energy; itself where it is near enough."""
+        found = self._on_constraints(t, x, forced)
         return found if self.level is None else self.level.at(t, found)
 
-    def _on_ties(self, t: float, x: np.ndarray, forced: bool) -> np.ndarray:
+    def _on_constraints(self, t: float, x: np.ndarray, forced: bool) -> np.ndarray:
         if self.projection is None or not (forced or self.projection.is_open(t, x, self.atol)):
-            return on_spheres(x, self.spheres) if self.spheres else x
+            return at_unit_norms(x, self.unit_quaternions) if self.unit_quaternions else x
         found, left = self.projection.closed(t, x, self.atol)
         if not left <= max(LOST * self.atol, rounding_of(found)) and self.lost is None:
             self.lost = t, left
         return found
 
     def rows(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """States between steps, one a row, on the ties too."""
-        found = on_spheres(x, self.spheres)
+        """States between steps, one a row, on the constraints too."""
+        found = at_unit_norms(x, self.unit_quaternions)
         if self.level is not None:
             return np.array([self.at(float(s), row) for s, row in zip(t, found, strict=True)])
         if self.projection is None or self.every is not None or not len(t):
@@ -350,14 +357,14 @@ class DriftCorrection:
         if self.lost is None:
             return ""
         t, left = self.lost
-        return f"From t = {t:.6g} s on the ties could not be closed: they stayed open by {left:.1e}."
+        return f"From t = {t:.6g} s on the constraints could not be closed: they stayed open by {left:.1e}."
 
 
 # -------- constraint rank -------------------------------------------------------------------------------------
-# System, states along a motion -> how near it comes to positions in which the ties do not determine it.
+# System, states along a motion -> how near it comes to positions in which the constraints do not determine it.
 
 
-SHARE = 0.1  # of a row's part in the combination that vanishes, above which its tie is named
+SHARE = 0.1  # of a row's part in the combination that vanishes, above which its constraint is named
 
 
 @dataclass(frozen=True)
@@ -366,13 +373,13 @@ class ConstraintRank:
 
     Args:
         rows: (t n, x n x states) -> J, n x (k nu).
-        ties: the tie of each row, k.
+        constraints: the constraint of each row, k.
         rank: how many rows are independent at almost every state.
-        dependent: ties, and what dependent coordinates they determine, in words.
+        dependent: constraints, and what dependent coordinates they determine, in words.
     """
 
     rows: Callable[[np.ndarray, np.ndarray], np.ndarray]
-    ties: tuple[str, ...]
+    constraints: tuple[str, ...]
     rank: int
     dependent: tuple[tuple[tuple[str, ...], str], ...] = ()
 
@@ -385,13 +392,15 @@ class ConstraintRank:
         return np.linalg.svd(self._scaled(t, x), compute_uv=False)[:, self.rank - 1 : self.rank]
 
     def words(self, t: np.ndarray, x: np.ndarray) -> str:
-        """Which ties depend on one another at the worst of the states."""
+        """Which constraints depend on one another at the worst of the states."""
         J = self._scaled(t, x)
         worst = int(np.argmin(np.linalg.svd(J, compute_uv=False)[:, self.rank - 1]))
         shares = np.abs(np.linalg.svd(J[worst])[0][:, self.rank - 1])
-        names = dict.fromkeys(tie for tie, share in zip(self.ties, shares, strict=True) if share > SHARE)
-        for ties, words in self.dependent:
-            if names.keys() <= set(ties):
+        names = dict.fromkeys(
+            constraint for constraint, share in zip(self.constraints, shares, strict=True) if share > SHARE
+        )
+        for constraints, words in self.dependent:
+            if names.keys() <= set(constraints):
                 return words
         listed = ", ".join(f"'{name}'" for name in names)
         return f"{listed} {'does' if len(names) == 1 else 'do'} not determine the motion"
@@ -410,7 +419,7 @@ class ConstraintRank:
         """J at n states, n x k x nu; 0 where it has no value."""
         values = self.rows(t, x)
         known = np.isfinite(values)
-        return (values if known.all() else np.where(known, values, 0.0)).reshape(len(t), len(self.ties), -1)
+        return (values if known.all() else np.where(known, values, 0.0)).reshape(len(t), len(self.constraints), -1)
 
     def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         J = self.J(t, x)
@@ -594,7 +603,7 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
 
 
 def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> Nearness | None:
-    """How near a motion is to positions in which the ties do not determine it; None without ties."""
+    """How near a motion is to positions in which the constraints do not determine it; None without constraints."""
     system = equations.system
     blocks = singular_blocks(system.elimination, system.scope)
     determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
@@ -606,10 +615,10 @@ def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -
 def independence_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> ConstraintRank | None:
     """How independent the rows are that close by multipliers; None without such."""
     system = equations.system
-    rank = rank_of_ties(system.ties)
+    rank = rank_of_constraints(system.constraints)
     if not rank:
         return None
     J = measure(system, tuple(x for row in equations.J for x in row), p)
     dependent = () if declared.elimination is None else declared.elimination.blocks
-    known = tuple((block.ties, str(block)) for block in dependent)
-    return ConstraintRank(J, tuple(row.tie for row in system.ties.closing), rank, known)
+    known = tuple((block.constraints, str(block)) for block in dependent)
+    return ConstraintRank(J, tuple(row.constraint for row in system.constraints.closing), rank, known)

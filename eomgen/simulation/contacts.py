@@ -11,8 +11,9 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import redundant_rows
-from eomgen.mechanics.constraints.rows import Row, rows_of_tie
+from eomgen.mechanics.constraints.rows import Row, rows_of_constraint
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.kinematics.scene import ContactMode
@@ -21,7 +22,6 @@ from eomgen.model.contacts import Contact, contacts_of, pieces_of
 from eomgen.model.fields import Table
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -93,7 +93,7 @@ class ContactEvents:
         configuration: of the contacts.
         contacts: of this phase.
         lengths: of the piece on which each body on a path is: what is before it, and its length, where more follows.
-        system: motion, loads and ties.
+        system: motion, loads and constraints.
     """
 
     configuration: Configuration
@@ -103,7 +103,7 @@ class ContactEvents:
 
     @cached_property
     def reactions(self) -> Reactions:
-        """Every reaction of joints and ties; open contacts have none."""
+        """Every reaction of joints and constraints; open contacts have none."""
         return reactions_of(self.system)
 
     @cached_property
@@ -178,7 +178,7 @@ class ContactEvents:
         return found
 
     def _of_open(self, contact: Contact) -> list[Signal]:
-        row, scope = rows_of_tie(self.system.motion, contact.name)[0], self.system.scope
+        row, scope = rows_of_constraint(self.system.motion, contact.name)[0], self.system.scope
         gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
         return [
             Signal(contact.name, "gap", gap),
@@ -200,7 +200,7 @@ class ContactEvents:
 
     def _holding(self, name: str) -> tuple[Scalar, str]:
         """What lets a contact stick, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
-        held = [r for r in self.system.ties.rows if r.tie == name and r.component in ("t", "s")]
+        held = [r for r in self.system.constraints.rows if r.constraint == name and r.component in ("t", "s")]
         forces = [self._reaction(row) for row in held]
         return forces[0] if len(forces) == 1 else _resultant(forces)
 
@@ -213,27 +213,27 @@ class ContactEvents:
             labels = ("n 1", "n 2") if contact.round else ("n",)
             found = [self._component(contact.name, "joint", label, 1) for label in labels]
         else:
-            mine = [r for r in self.system.ties.rows if r.tie == contact.name]
+            mine = [r for r in self.system.constraints.rows if r.constraint == contact.name]
             found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in ("n", "tension")]
         return [_resultant(found)] if contact.round else found
 
     def _reaction(self, row: Row) -> tuple[Scalar, str]:
         """lam of a row: its multiplier where it closes, else from the balance of the bodies."""
         if row.status == "closing" and not self._redundant:
-            return self.system.symbols.lam[self.system.ties.closing.index(row)], ""
-        return self._component(row.tie, "tie", row.component, row.number)
+            return self.system.symbols.lam[self.system.constraints.closing.index(row)], ""
+        return self._component(row.constraint, "constraint", row.component, row.number)
 
     def _component(self, owner: str, kind: str, label: str, number: int) -> tuple[Scalar, str]:
         for j, c in enumerate(self.reactions.components):
             if (c.owner, c.kind, c.label) == (owner, kind, label) and (kind == "joint" or c.number == number):
                 return self.reactions.value(j), c.name
         raise DerivationError(
-            f"'{owner}' has no reaction '{label}'", mend="name a contact, a joint or a constraint of the model"
+            f"'{owner}' has no reaction '{label}'", fix="name a contact, a joint or a constraint of the model"
         )
 
     @cached_property
     def _redundant(self) -> bool:
-        return bool(redundant_rows(self.system.ties))
+        return bool(redundant_rows(self.system.constraints))
 
 
 def stopped_below(contact: Contact) -> Fraction | int:
@@ -245,7 +245,7 @@ def sliding_velocity(system: System, contact: Contact) -> Scalar:
     """Of a closed contact with friction, along its tangent."""
     if contact.of_joint:
         return system.motion.link(contact.name).s_rate[0]
-    return next(r.sliding for r in system.ties.rows if r.tie == contact.name and r.tangent)
+    return next(r.sliding for r in system.constraints.rows if r.constraint == contact.name and r.tangent)
 
 
 def _resultant(forces: Sequence[tuple[Scalar, str]]) -> tuple[Scalar, str]:
@@ -428,7 +428,7 @@ class Configuration:
 
     @property
     def open(self) -> tuple[str, ...]:
-        """The ties that do not hold."""
+        """The constraints that do not hold."""
         return tuple(name for name, mode in self.modes.items() if not mode.closed)
 
 

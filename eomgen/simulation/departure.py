@@ -11,10 +11,10 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.integrals.laws import position_equations
 from eomgen.mechanics.integrals.speeds import Relations, rates_and_extent, relations_of
-from eomgen.records import dataclass
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_model import PhaseModel
@@ -42,7 +42,7 @@ from eomgen.symbolic.solve.solving import vanishes
 # Time does not lead away from an unstable rest, and at a dead centre it has no say which way.
 
 
-MEND = "give it a speed"
+FIX = "give it a speed"
 
 
 @dataclass(frozen=True)
@@ -112,15 +112,16 @@ class RestDeparture:
         return any(depends_on(x, moving) for x in (*self.accelerations, *self.equations.system.scope.nu))
 
     def _is_singular(self) -> bool:
-        """Whether the ties do not determine which way the start is left."""
-        if not any(not row.identical and row.gap is not None for row in self.equations.system.ties.rows):
+        """Whether the constraints do not determine which way the start is left."""
+        if not any(not row.identical and row.gap is not None for row in self.equations.system.constraints.rows):
             return False
         way = self._way
         return way is not None and not way.is_regular(self._x0[: len(self.equations.symbols.q)])
 
     @cached_property
     def _relations(self) -> Relations | None:
-        """Every speed by one of them, homogeneous; None where there are more freedoms, or momenta that are not 0."""
+        """Every speed by one of them, homogeneous; None where there are more degrees of freedom, or momenta that are
+        not 0."""
         try:
             found = relations_of(self.equations, self._exact_start)
         except DerivationError:  # a start without values
@@ -173,7 +174,7 @@ class RestDeparture:
             raise RunFailed(f"the motion starts where {lost.what}", lost.where, "start elsewhere")
         way, relations = self._way, self._relations
         if way is None or relations is None or relations.speed is None:
-            raise RunFailed("the motion rests at the start", mend=MEND)
+            raise RunFailed("the motion rests at the start", fix=FIX)
         symbols, speed = self.equations.symbols, relations.speed
         square = self._function(self._square(speed))
         condition = self._function(substituted((sought,), relations.speeds)[0])
@@ -208,7 +209,7 @@ class RestDeparture:
         """
         found = rates_and_extent(self.equations, self._exact_start, accelerations=self.accelerations)
         if found is None or not found[1].everywhere:
-            raise RunFailed("the motion rests at the start, and no integrals give its speeds elsewhere", mend=MEND)
+            raise RunFailed("the motion rests at the start, and no integrals give its speeds elsewhere", fix=FIX)
         return found[0][speed] * found[0][speed]
 
     def _senses(self, speed: Node) -> tuple[int, ...]:

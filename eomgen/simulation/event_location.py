@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.rhs import RateFunction, RightHandSide
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, SOLVED
 
 PARTS = 8  # of a step: how often the functions are looked at

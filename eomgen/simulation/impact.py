@@ -18,10 +18,10 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.rows import Row, rows_of_tie
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.rows import Row, rows_of_constraint
 from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
 from eomgen.mechanics.dynamics.system import System
-from eomgen.records import dataclass
 from eomgen.simulation.phase_model import Values, slack_name
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.node import Scalar
@@ -34,7 +34,7 @@ class WithoutContacts:
 
     Args:
         system: it; the coordinates are those of every phase.
-        contacts: the names of the ties taken away.
+        contacts: the names of the constraints taken away.
         p: the parameters' values.
         made: what was made of it, whatever these are.
     """
@@ -62,7 +62,7 @@ class WithoutContacts:
         x, nu = self._x(values), len(self.system.symbols.u)
         found = self._matrices.many(t, x[None, :], self.p)[0]
         M, rows = found[: nu * nu].reshape(nu, nu), found[nu * nu :].reshape(-1, nu + 1)
-        k = len(self.system.ties.closing)
+        k = len(self.system.constraints.closing)
         of_contact, first = {}, k
         for name, own in self._rows.items():
             of_contact[name], first = rows[first : first + len(own)], first + len(own)
@@ -84,7 +84,7 @@ class WithoutContacts:
     def _rows(self) -> dict[str, tuple[Row, ...]]:
         """The rows of every contact that can end, the one that can end first."""
         found: dict[str, tuple[Row, ...]] = self._once(
-            "rows", lambda: {name: rows_of_tie(self.system.motion, name) for name in self.contacts}
+            "rows", lambda: {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
         )
         return found
 
@@ -101,15 +101,15 @@ class WithoutContacts:
         return self._function("matrices", self._entries)
 
     def _open(self) -> tuple[Scalar, ...]:
-        asked: list[Scalar] = []
+        requested: list[Scalar] = []
         for first, *_ in self._rows.values():
-            asked += [first.velocity] if first.gap is None else [first.gap, first.velocity]
-        return tuple(asked)
+            requested += [first.velocity] if first.gap is None else [first.gap, first.velocity]
+        return tuple(requested)
 
     def _entries(self) -> tuple[Scalar, ...]:
-        """M, the rows (J, sigma) of the ties that stay, and those of the contacts."""
+        """M, the rows (J, sigma) of the constraints that stay, and those of the contacts."""
         M = tuple(x for row in assembled_by_recursion(self.system).M for x in row)
-        rows = (*self.system.ties.closing, *(row for own in self._rows.values() for row in own))
+        rows = (*self.system.constraints.closing, *(row for own in self._rows.values() for row in own))
         return (*M, *self._with_bias([row.velocity for row in rows]))
 
     def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:
@@ -130,7 +130,7 @@ def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u:
     """u+ for the first set of contacts, the largest before smaller ones, that satisfies the law of impact.
 
     Args:
-        held: rows (J, sigma) of the ties.
+        held: rows (J, sigma) of the constraints.
         contacts: those of each contact; the first of them can only push.
     """
     size = COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
@@ -144,7 +144,7 @@ def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u:
                 return after
     raise DerivationError(
         "no impulses of the contacts satisfy the law of impact",
-        mend="other restitutions, or let the contacts close one after the other",
+        fix="other restitutions, or let the contacts close one after the other",
     )
 
 

@@ -63,10 +63,10 @@ def integrate(
         samples: how many instants, evenly spaced; the instants themselves; or None: the integrator's own steps.
         energy: (t n, x n x states) -> (T, V), n each [J].
         conservative: whether T + V should stay; if not, no drift is reported.
-        gaps: (t n, x n x states) -> phi of the closing ties, n x k; not needed beside a projection.
+        gaps: (t n, x n x states) -> phi of the closing constraints, n x k; not needed beside a projection.
         events: functions that end the run where they fall to zero.
         most_steps, stabilization, every: as of Stepping.
-        projection: onto the ties; by it these are also measured.
+        projection: onto the constraints; by it these are also measured.
         slope: (t, x) -> df/dx for the implicit methods; None: by differences.
         breakpoints: instants across which no step goes, ascending.
         nearness: to singular positions, across which the motion is carried; None: nobody looks.
@@ -81,7 +81,7 @@ def integrate(
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
-    flow = Flow(f, how, rhs.spheres, projection, lambda: slope)
+    flow = Flow(f, how, rhs.unit_quaternions, projection, lambda: slope)
     run = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
     E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
     track = measured(run.t, run.x, run.tracks)
@@ -143,20 +143,18 @@ def instants_of(samples: int | Sequence[Typed], start: float, end: float) -> np.
     """
     if isinstance(samples, (int, np.integer)):
         if samples < 2:
-            raise UsageError(
-                f"{samples} samples: at least the start and the end are needed", mend="samples = 2 or more"
-            )
+            raise UsageError(f"{samples} samples: at least the start and the end are needed", fix="samples = 2 or more")
         if samples > MOST_SAMPLES:
-            raise UsageError(f"{samples} samples: at most {MOST_SAMPLES} are given", mend="ask for fewer")
+            raise UsageError(f"{samples} samples: at most {MOST_SAMPLES} are given", fix="ask for fewer")
         return _evenly(start, end, int(samples))
     if not are_several(samples):
-        raise UsageError(f"{samples!r} samples make no sense", mend="say how many, or give the instants in a list")
+        raise UsageError(f"{samples!r} samples make no sense", fix="say how many, or give the instants in a list")
     plain = isinstance(samples, np.ndarray) and samples.dtype.kind in "fiu"
     times = np.asarray(samples, dtype=float) if plain else np.array([*map(seconds, typed_values(samples))])
     if len(times) == 0 or np.any(np.diff(times) <= 0) or not (times[0] >= start and times[-1] <= end):
         raise UsageError(
             f"samples must be instants between {start:g} s and {end:g} s, in order",
-            mend="sort them, and leave out what is outside",
+            fix="sort them, and leave out what is outside",
         )
     return times
 
@@ -170,11 +168,11 @@ def _evenly(start: float, end: float, count: int) -> np.ndarray:
 
 def _vector(what: str, values: Any) -> np.ndarray:
     if values is None:
-        raise UsageError(f"no {what}: some of its values are missing", mend="give all of them")
+        raise UsageError(f"no {what}: some of its values are missing", fix="give all of them")
     vector = np.array(values, dtype=float)
     if vector.ndim != 1 or not np.all(np.isfinite(vector)):
         raise UsageError(
-            f"{what} must be finite numbers, not {values!r}", mend="leave out what is infinite or no number"
+            f"{what} must be finite numbers, not {values!r}", fix="leave out what is infinite or no number"
         )
     return vector
 
@@ -183,20 +181,21 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     """Refuses what makes no sense.
 
     Raises:
-        UsageError: the time, a tolerance, the method, or how ties are kept closed.
+        UsageError: the time, a tolerance, the method, or how constraints are kept closed.
     """
     if not (math.isfinite(start) and math.isfinite(end) and end >= start):
-        raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
+        raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", fix="give an end after the start")
     if not all(isinstance(x, Real) and 0 < x < math.inf for x in (how.rtol, how.atol)):
         raise UsageError(
             f"tolerances must be positive numbers, not rtol = {how.rtol}, atol = {how.atol}",
-            mend="take rtol and atol above 0",
+            fix="take rtol and atol above 0",
         )
     if how.method not in (*METHODS, HEYOKA):
-        raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join((*METHODS, HEYOKA))}")
+        raise UsageError(f"unknown method '{how.method}'", fix=f"methods are {', '.join((*METHODS, HEYOKA))}")
     if how.stabilization not in STABILIZATIONS:
         raise UsageError(
-            f"unknown way to keep ties closed: '{how.stabilization}'", mend=f"ways are {', '.join(STABILIZATIONS)}"
+            f"unknown way to keep constraints closed: '{how.stabilization}'",
+            fix=f"ways are {', '.join(STABILIZATIONS)}",
         )
     if how.every is not None and how.every < 1:
-        raise UsageError(f"projection at every {how.every} steps makes no sense", mend="give 1 or more")
+        raise UsageError(f"projection at every {how.every} steps makes no sense", fix="give 1 or more")

@@ -14,9 +14,9 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen.program import SpherePlaces
+from eomgen.codegen.program import QuaternionPlaces
 from eomgen.codegen.rhs import RateFunction, in_c
-from eomgen.records import dataclass, with_fields
+from eomgen.frozen import dataclass, with_fields
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, HeyokaSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
@@ -96,10 +96,11 @@ class Stepping:
         rtol, atol: tolerances of one step.
         most_steps: after so many it gives up.
         most_phases: after so many changes of contacts it gives up; None: where the end is out of reach.
-        stabilization: what keeps the ties closed, one of STABILIZATIONS: "projection" puts states back onto them,
+        stabilization: what keeps the constraints closed, one of STABILIZATIONS: "projection" puts states back onto
+            them,
             "energy" also onto the energy that they began with,
             "baumgarte" lets the equations pull towards them, "none" leaves them alone.
-        every: project at each so many steps; None: where a tie is open by more than atol.
+        every: project at each so many steps; None: where a constraint is open by more than atol.
         rates: alpha and beta of Baumgarte's rows [1/s].
         breakpoints: instants across which no step goes, ascending [s].
         keeps: whether a run keeps what it has when the user's patience is over; else nothing comes of it.
@@ -122,11 +123,14 @@ class Stepping:
         return step
 
     def hold(
-        self, spheres: Sequence[SpherePlaces], projection: Projection | None, level: EnergyLevel | None = None
+        self,
+        unit_quaternions: Sequence[QuaternionPlaces],
+        projection: Projection | None,
+        level: EnergyLevel | None = None,
     ) -> DriftCorrection:
         """What keeps the states of one run where they belong; the norms of quaternions always."""
         kept = projection if self.stabilization in ("projection", "energy") else None
-        return DriftCorrection(spheres, kept, self.atol, self.every, level=level)
+        return DriftCorrection(unit_quaternions, kept, self.atol, self.every, level=level)
 
 
 @dataclass(frozen=True)
@@ -237,7 +241,7 @@ def march(
     how: Stepping,
     instants: np.ndarray | None = None,
     events: Events | None = None,
-    spheres: Sequence[SpherePlaces] = (),
+    unit_quaternions: Sequence[QuaternionPlaces] = (),
     projection: Projection | None = None,
     slope: LateSlope | None = None,
     lookout: Lookout | None = None,
@@ -248,24 +252,24 @@ def march(
     Args:
         instants: where states are wanted, in order; None: at the integrator's own steps.
         spheres: the places of quaternions in x: each is put back to norm 1 after every step.
-        projection: onto the ties, which keep at the states between the steps too.
+        projection: onto the constraints, which keep at the states between the steps too.
         slope: df/dx, asked for where steps are implicit.
         level: the energy that is kept.
     """
     start, end = span
-    hold = how.hold(spheres, projection, level)
+    hold = how.hold(unit_quaternions, projection, level)
     x0 = hold.at(start, x0)
     if not all(map(math.isfinite, f(start, x0))):
         return Run(np.array([start]), x0[None, :], start, x0, "not finite", _no_value(start), 0, 1)
     if end == start or x0.size == 0:
         times = instants if instants is not None and end > start else np.unique([start, end])
         return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", reached_words(end), 0, 1)
-    asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
+    requested = 1 if instants is None or (instants.size and instants[0] == start) else 0
     rows = _Rows(
         instants,
         hold,
-        [np.array([start])[:asked]],
-        [x0[None, :][:asked]],
+        [np.array([start])[:requested]],
+        [x0[None, :][:requested]],
         StepStates([np.array([start])], [x0[None, :]], count=1),
         end,
     )

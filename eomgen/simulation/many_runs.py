@@ -12,16 +12,16 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.build import function_of, library, of_this_machine
-from eomgen.codegen.program import on_spheres, program_of, spheres_of
+from eomgen.codegen.program import at_unit_norms, program_of, unit_quaternions_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.targets.base import Address
 from eomgen.codegen.targets.c import c_together
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.closure import CLOSING, gaps_of, norms_of
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.scene import start_value
 from eomgen.mechanics.start.state import start_speeds
-from eomgen.records import dataclass
 from eomgen.simulation import constraint_drift, event_location
 from eomgen.simulation.constraint_drift import ARMED, REMEMBERED, STEEP
 from eomgen.simulation.phase_model import PhaseModel
@@ -107,7 +107,7 @@ class March(ctypes.Structure):
         *_fields(SIZE, "n_instants next"),
         *_fields(_AT, "rows track_t track_x"),
         ("tracked", SIZE),
-        ("spheres", _AT),
+        ("unit_quaternions", _AT),
         *_fields(SIZE, "n_spheres holds"),
         ("gaps", MarchFunction),
         *_fields(SIZE, "n_gaps placed coordinates speeds"),
@@ -119,7 +119,7 @@ class March(ctypes.Structure):
         *_fields(_AT, "floors either signs largest looks armed"),
         ("is_near_watched", SIZE),
         ("determinants", MarchFunction),
-        ("ties", MarchFunction),
+        ("constraints", MarchFunction),
         *_fields(SIZE, "n_determinants n_rows n_columns rank"),
         *_fields(_REAL, "near before"),
         ("slopes", _REAL * REMEMBERED),
@@ -184,7 +184,7 @@ def function_at(address: Address) -> MarchFunction:
 #
 #     (A^T A + min(|phi|, 1)^2 1) d = -A^T phi,   A = d phi/dq of what is sought,   q <- q + d
 #
-# Runs whose ties do not all hold then to rounding are left to it.
+# Runs whose constraints do not all hold then to rounding are left to it.
 
 
 @dataclass(frozen=True)
@@ -194,7 +194,7 @@ class ManyStarts:
     phase: PhaseModel
 
     def at(self, p: np.ndarray, given: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """(states of the phase, n x states; where coordinates are declared, n x q; whether all ties hold, n).
+        """(states of the phase, n x states; where coordinates are declared, n x q; whether all constraints hold, n).
 
         Args:
             p: n x parameters.
@@ -207,7 +207,7 @@ class ManyStarts:
         columns = {names.index(name): values for name, values in given.items()}
         for k in (k for k in columns if k < places):
             x[:, k] = columns[k]
-        x = on_spheres(x, spheres_of(self._places.program))
+        x = at_unit_norms(x, unit_quaternions_of(self._places.program))
         x[:, places:] = self._speeds.many(0.0, x, p)
         for k in (k for k in columns if k >= places):
             x[:, k] = columns[k]
@@ -257,11 +257,11 @@ class ManyStarts:
 
     @cached_property
     def _sought(self) -> list[Node]:
-        return fixed_by_position(self._system.ties)
+        return fixed_by_position(self._system.constraints)
 
     @cached_property
     def _phi(self) -> tuple[Scalar, ...]:
-        return (*gaps_of(self._system.ties), *norms_of(self._system.ties))
+        return (*gaps_of(self._system.constraints), *norms_of(self._system.constraints))
 
     @cached_property
     def _slopes(self) -> RightHandSide:
@@ -270,7 +270,7 @@ class ManyStarts:
     @cached_property
     def _all(self) -> RightHandSide:
         """What vanishes at a start."""
-        return self._of((*self._phi, *(row.velocity for row in self._system.ties.closing)))
+        return self._of((*self._phi, *(row.velocity for row in self._system.constraints.closing)))
 
     @cached_property
     def _places(self) -> RightHandSide:

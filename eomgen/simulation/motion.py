@@ -13,11 +13,11 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
 from eomgen.mechanics.constraints.rows import left_of, stopped_at
 from eomgen.mechanics.dynamics.pieces import SMOOTH, signs_of_rates
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.departure import RestDeparture
 from eomgen.simulation.event_location import TOUCH, Events
@@ -105,7 +105,9 @@ def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
         wanted = np.concatenate([[here.t], wanted[wanted > here.t]])
     events = _events(phase, here.t, x, plan)
     level = phase.level(here.t, x) if plan.how.stabilization == "energy" else None
-    flow = Flow(phase.rate, plan.how, phase.functions.rhs.spheres, phase.projection, lambda: phase.slope, level)
+    flow = Flow(
+        phase.rate, plan.how, phase.functions.rhs.unit_quaternions, phase.projection, lambda: phase.slope, level
+    )
     run = march_across(flow, (here.t, plan.end), x, phase.nearness, instants=wanted, events=events)
     return _determined(phase, _named(phase, _at_edge(phase, run), here.t), plan.how)
 
@@ -115,8 +117,8 @@ def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
     if run.status in ("step too small", "too many steps") and (large := phase.overlarge(run.end, run.last)):
         return replace(run, message=f"{run.message[:-1]}: {large.what}.")
     if run.status in ("step too small", "too many steps") and (jumping := signs_of_rates(phase.system)):
-        told = f"A force jumps with the sign of {to_text(jumping[0])}, and sticks where that is 0: {SMOOTH}."
-        return replace(run, message=f"{run.message} {told}")
+        reported = f"A force jumps with the sign of {to_text(jumping[0])}, and sticks where that is 0: {SMOOTH}."
+        return replace(run, message=f"{run.message} {reported}")
     found = phase.valueless(run.end, run.last) if run.status == "not finite" else None
     if found is None:
         return run
@@ -148,12 +150,12 @@ def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
 
 
 def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | None:
-    """The bounds of the contacts, the edges of the ties, and last the condition; None without any."""
+    """The bounds of the contacts, the edges of the constraints, and last the condition; None without any."""
     floors = phase.signals.floors(t, x)
-    asked = () if plan.until is None else (plan.until(phase),)
-    if any(type(x) is not Node for x in asked):
-        raise UsageError("nothing in the condition moves: it holds always or never", mend='write "theta = pi/2"')
-    further = (*left_of(phase.edges), *asked)
+    requested = () if plan.until is None else (plan.until(phase),)
+    if any(type(x) is not Node for x in requested):
+        raise UsageError("nothing in the condition moves: it holds always or never", fix='write "theta = pi/2"')
+    further = (*left_of(phase.edges), *requested)
     if not further and not phase.bounds:
         return None
     whole = phase.signals.measured(further)
@@ -165,12 +167,12 @@ def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | 
         return np.hstack([phase.signals.watched(t, x), function.many(t, phase.functions.inner(x), phase.p)])
 
     floors = np.append(floors, np.full(len(further), COMPUTED))
-    either = (len(floors) - 1,) if asked else ()
+    either = (len(floors) - 1,) if requested else ()
     return Events(values, floors, either, TOUCH * plan.how.rtol, whole)
 
 
 def _at_edge(phase: PhaseModel, run: Run) -> Run:
-    """The run; where it came to an edge of a tie, that is why it ended."""
+    """The run; where it came to an edge of a constraint, that is why it ended."""
     k = -1 if run.crossing is None else run.crossing.index - len(phase.bounds)
     if not 0 <= k < len(phase.edges):
         return run
@@ -178,11 +180,11 @@ def _at_edge(phase: PhaseModel, run: Run) -> Run:
 
 
 def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
-    """The run, ended where the ties do not say how it goes on, and it went astray."""
+    """The run, ended where the constraints do not say how it goes on, and it went astray."""
     if run.status == "singular" or not phase.undetermined:
         return run
     finer = replace(how, rtol=_finer(how.rtol), atol=_finer(how.atol), most_steps=STEPS_AGAIN, breakpoints=())
-    flow = Flow(phase.rate, finer, phase.functions.rhs.spheres, phase.projection)
+    flow = Flow(phase.rate, finer, phase.functions.rhs.unit_quaternions, phase.projection)
 
     def again(start: float, x: np.ndarray, end: float) -> np.ndarray:
         found = flow.march((start, end), x, np.array([start, end]), None)
@@ -251,7 +253,7 @@ class DenseMotion:
     def at(self, t: np.ndarray) -> np.ndarray:
         """n x states, by the barycentric formula sum w_k x_k/(s - s_k) / sum w_k/(s - s_k)."""
         if len(self.states) == 0:
-            raise RunFailed("the phase is one instant", mend="a longer run")
+            raise RunFailed("the phase is one instant", fix="a longer run")
         k = np.clip(np.searchsorted(self.edges, t, side="right") - 1, 0, len(self.states) - 1)
         a, b = self.edges[k], self.edges[k + 1]
         nodes = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
@@ -278,7 +280,7 @@ def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
     """
     run, here = phase_run.run, phase_run.here
     if run.status in CUT:
-        raise RunFailed(f"the run was cut: {run.message}", mend="a longer --patience, or a shorter run")
+        raise RunFailed(f"the run was cut: {run.message}", fix="a longer --patience, or a shorter run")
     kept = np.concatenate([part for track in run.tracks for part in track.t])
     edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
     edges = edges[np.append(True, np.diff(edges) > ROUNDING * max(1.0, run.end - here.t))]
@@ -302,7 +304,7 @@ def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
     if again.end != run.end:
         raise RunFailed(
             f"followed once more the phase ends at t = {again.end:.12g} s, not at {run.end:.12g} s",
-            mend="smaller tolerances: rtol, atol",
+            fix="smaller tolerances: rtol, atol",
         )
     t, x = np.append(again.t[again.t < run.end], run.end), np.vstack([again.x[again.t < run.end], run.last])
     return DenseMotion(edges, x[np.searchsorted(t, nodes)])
@@ -390,7 +392,7 @@ class FirstTime:
         if run.status != "finished" or not np.all(np.isfinite(run.last)):
             raise RunFailed(
                 f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}",
-                mend="ask for an earlier one",
+                fix="ask for an earlier one",
             )
         return self._state(run)
 
@@ -407,7 +409,7 @@ class FirstTime:
         if run.crossing is None:
             raise RunFailed(
                 f"the condition is not met as far as the motion was followed: {run.message}",
-                mend="ask for what the motion reaches",
+                fix="ask for what the motion reaches",
             )
         return run
 
@@ -423,7 +425,7 @@ class FirstTime:
             if abs(there) < DEGENERATE * abs(before):
                 raise RunFailed(
                     f"{block} at that instant ({PLACE})",
-                    mend="leave out `dependent`: then their rates belong to the state",
+                    fix="leave out `dependent`: then their rates belong to the state",
                 )
 
     def _given_time(self) -> float:
@@ -434,7 +436,7 @@ class FirstTime:
         if later:
             return min(later)
         if values:
-            raise DerivationError(f"the instant t = {max(values):g} s is before the start", mend="ask for a later one")
+            raise DerivationError(f"the instant t = {max(values):g} s is before the start", fix="ask for a later one")
         function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
         x = np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
         events = Events(
@@ -442,7 +444,7 @@ class FirstTime:
         )
         run = march(lambda t, _: np.ones(1), (self.t0, LONGEST), np.zeros(1), how=SEARCH, events=events)
         if run.crossing is None:
-            raise RunFailed("the condition on the time is never met", mend="ask for an instant after the start")
+            raise RunFailed("the condition on the time is never met", fix="ask for an instant after the start")
         return run.end
 
 

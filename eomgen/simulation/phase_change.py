@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.kinematics.scene import ContactMode
 from eomgen.mechanics.start.state import Start
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.fields import Table
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import Configuration, bounds_of, has_phases, on_pieces, paths_of, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
@@ -92,7 +92,7 @@ def at_start(
     """The state at the start; a contact that can end may be open there. It is found once for the same values.
 
     Raises:
-        DerivationError: the ties do not hold at the start.
+        DerivationError: the constraints do not hold at the start.
     """
     key = t, tuple((parameters or {}).items()), tuple((start or {}).items())
     if key not in models.starts:
@@ -177,8 +177,8 @@ def _piece_at(models: PhaseModels, body: str, t: float, values: Values) -> int:
     """The piece on which a body is; between two of them the one into which it moves."""
     phase = models.of(plain(models.model, {b: 0 for b in paths_of(models.model)}, ()))
     link, value = phase.system.motion.link(body), phase.system.scope.value
-    asked = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(models.model, body)[:-1]))
-    s, rate, *ends = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], asked)[0]
+    requested = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(models.model, body)[:-1]))
+    s, rate, *ends = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], requested)[0]
     close = _length(values)
     return sum(s > end - close if rate > 0 else s > end + close for end in ends)
 
@@ -351,8 +351,8 @@ def agrees(phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str,
     x = phase.state(values)
     found = phase.signals.look(t, x)
     forces, accelerations = phase.signals.sizes(t, x)
-    asked = [contact for contact in phase.contacts if contact.name not in apart]
-    signs = [_signs(phase.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in asked]
+    requested = [contact for contact in phase.contacts if contact.name not in apart]
+    signs = [_signs(phase.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in requested]
     return not any(
         force < -COMPUTED * forces or acceleration < -COMPUTED * accelerations
         for pairs in signs

@@ -9,10 +9,10 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled, compiled_together
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.dynamics.wellposed import refuse_massless
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar
 
 

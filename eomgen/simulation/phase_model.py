@@ -15,6 +15,7 @@ import numpy as np
 from eomgen.codegen.program import bordered, kinematic_rates, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rows import edges_of
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.wellposed import Valueless, is_conservative, overlarge, valueless, why_not_conservative
@@ -23,7 +24,6 @@ from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.start.state import Start, start_of_motion
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
-from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import (
     EnergyLevel,
     Nearness,
@@ -169,10 +169,10 @@ class PhaseModel:
     def begun(
         self, t: float, parameters: Mapping[str, Any] | None, start: Values | None
     ) -> tuple[Start, dict[str, float]]:
-        """(the start at which all ties hold, coordinates, rates and speeds by name).
+        """(the start at which all constraints hold, coordinates, rates and speeds by name).
 
         Raises:
-            DerivationError: the ties do not hold at the start.
+            DerivationError: the constraints do not hold at the start.
         """
         begun = start_of_motion(self.declared, parameters, start)
         return begun, self.with_rates(t, begun.values)
@@ -215,7 +215,7 @@ class PhaseModel:
         """
         if not self.conservative:
             what = f"energy is not kept: {why_not_conservative(self.equations)}"
-            raise UsageError(what, mend='take stabilization "projection"')
+            raise UsageError(what, fix='take stabilization "projection"')
         places, size = len(self.coordinates), len(self.coordinates) + len(self.speeds)
         energy = float(self.energies(np.array([t]), x[None, :]).sum())
         return EnergyLevel(self.functions.energies, self.p, places, size, energy)
@@ -228,13 +228,13 @@ class PhaseModel:
 
     @cached_property
     def projection(self) -> Projection | None:
-        """Onto the ties that hold; None where none closes."""
+        """Onto the constraints that hold; None where none closes."""
         found = self._known("projection", lambda: projection_of(self.system, self.p, self.target))
         return None if found is None else replace(found, p=self.p)
 
     @property
     def nearness(self) -> Nearness | None:
-        """A new measure of how near a motion comes to positions in which the ties do not determine it."""
+        """A new measure of how near a motion comes to positions in which the constraints do not determine it."""
         return None if self._nearness is None else replace(self._nearness)
 
     @cached_property
@@ -271,7 +271,7 @@ class PhaseModel:
 
     def slowest(self, t: float, x: np.ndarray) -> float:
         """The least speed with which anything slides on a surface; inf where nothing does [m/s]."""
-        rows = self.system.ties.rows
+        rows = self.system.constraints.rows
         speeds = tuple(row.sliding for row in rows if row.shares and row.friction is not None)
         return float(np.min(self.functions.evaluated(np.array([t]), x[None, :], speeds))) if speeds else np.inf
 
@@ -301,9 +301,9 @@ def smallest_speed(values: Values) -> float:
     return COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
-def slack_name(tie: str) -> str:
+def slack_name(constraint: str) -> str:
     """What the integrated slack of a string is called among the values of a state."""
-    return f"{tie} slack"
+    return f"{constraint} slack"
 
 
 # -------- slopes ----------------------------------------------------------------------------------------------
@@ -350,7 +350,7 @@ class ExactSlope:
     Args:
         function: the derivatives of q' and of M a - J^T lam - forcing, J a + gamma, at fixed a and lam; M, J.
         p: the parameters' values.
-        n, k: speeds and rows of ties.
+        n, k: speeds and rows of constraints.
     """
 
     function: RightHandSide

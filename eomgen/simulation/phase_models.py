@@ -12,9 +12,10 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, singular_blocks
-from eomgen.mechanics.constraints.rank import freedoms, rank_of_ties, redundant_rows
-from eomgen.mechanics.constraints.rows import rows_of_tie
+from eomgen.mechanics.constraints.rank import degrees_of_freedom, rank_of_constraints, redundant_rows
+from eomgen.mechanics.constraints.rows import rows_of_constraint
 from eomgen.mechanics.dynamics.accelerations import PullBack, stabilized
 from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
@@ -23,7 +24,6 @@ from eomgen.mechanics.free_bodies.release import released, stays_straight
 from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes, start_values, with_unit_quaternions
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, has_phases, on_pieces, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
@@ -196,7 +196,7 @@ class PhaseModels:
     @cached_property
     def _straight(self) -> bool:
         system = system_of(self.model)
-        return all(stays_straight(system, tie) for tie in self.ends)
+        return all(stays_straight(system, constraint) for constraint in self.ends)
 
     def _length(self, system: System, body: str, k: int) -> tuple[bool, Scalar | None]:
         bounds = bounds_of(self.model, body)
@@ -218,23 +218,23 @@ def _opened(model: Model, modes: ContactModes) -> System:
     return system
 
 
-def _released(system: System, tie: str) -> System:
-    """The system without a tie: where its rows only close, they are left out and nothing else changes.
+def _released(system: System, constraint: str) -> System:
+    """The system without a constraint: where its rows only close, they are left out and nothing else changes.
 
     Raises:
-        DerivationError: coordinates that satisfy the tie by themselves cannot leave it.
+        DerivationError: coordinates that satisfy the constraint by themselves cannot leave it.
     """
-    model, modes = released(system, tie)
+    model, modes = released(system, constraint)
     after = system_of(model, modes, begun_as=system)
-    rows = [row for row in system.ties.rows if row.tie == tie]
+    rows = [row for row in system.constraints.rows if row.constraint == constraint]
     if all(row.status == "closing" for row in rows):
         return after
-    dependent = {(row.tie, row.number) for row in redundant_rows(system.ties)}
-    held = [row for row in rows if (row.tie, row.number) not in dependent]
-    if freedoms(after.ties) < freedoms(system.ties) + len(held):
+    dependent = {(row.constraint, row.number) for row in redundant_rows(system.constraints)}
+    held = [row for row in rows if (row.constraint, row.number) not in dependent]
+    if degrees_of_freedom(after.constraints) < degrees_of_freedom(system.constraints) + len(held):
         raise DerivationError(
-            f"'{tie}' ends, and what it held does not become free",
-            f"constraints.{tie}",
+            f"'{constraint}' ends, and what it held does not become free",
+            f"constraints.{constraint}",
             "place the body by coordinates that can leave the contact",
         )
     return after
@@ -245,8 +245,9 @@ def _released(system: System, tie: str) -> System:
 #
 # What is derived holds for all values of the parameters, but for what numbers have decided on the way:
 #
-#     signs        of the parameters, and of what loads and ties asked of the start (`SystemScene.worth`)
-#     dependence   which rows of the ties follow from others: as before where no parameter in them has another value,
+#     signs        of the parameters, and of what loads and constraints asked of the start (`SystemScene.worth`)
+#     dependence   which rows of the constraints follow from others: as before where no parameter in them has another
+# value,
 #         and
 #                  where all rows are independent, rank J = k at a state in which they hold: it is so nearly everywhere
 
@@ -266,7 +267,7 @@ class DerivedAt:
     changes: bool
 
     def holds(self, p: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Of n runs whether equations are the same, as far as the ties need not be closed to see it.
+        """Of n runs whether equations are the same, as far as the constraints need not be closed to see it.
 
         Args:
             p: n x parameters.
@@ -276,11 +277,11 @@ class DerivedAt:
         if self._decided:
             own = self._signs(self.p[None, :], self.declared.many(0.0, self._still(1), self.p))
             found &= np.all(self._signs(p, q) == own, axis=1)
-        return np.asarray(found & (~self.asks(p) | self._is_independent))
+        return np.asarray(found & (~self.requests(p) | self._is_independent))
 
-    def asks(self, p: np.ndarray) -> np.ndarray:
-        """Of n runs whether a parameter that stands in the ties has another value."""
-        return np.asarray(np.any((p != self.p)[:, self._in_ties], axis=1))
+    def requests(self, p: np.ndarray) -> np.ndarray:
+        """Of n runs whether a parameter that stands in the constraints has another value."""
+        return np.asarray(np.any((p != self.p)[:, self._in_constraints], axis=1))
 
     def is_regular(self, p: np.ndarray, x: np.ndarray) -> np.ndarray:
         """Of n runs whether the rows are as independent as elsewhere at states (q, u) in which they hold.
@@ -291,7 +292,7 @@ class DerivedAt:
         J = self._rows.many(0.0, self._of_free(x), p)
         known = np.all(np.isfinite(J), axis=1)
         gaps, J = np.split(np.where(known[:, None], J, 0.0), [len(self._given)], axis=1)
-        J = J.reshape(n, len(free.ties.closing), len(free.symbols.u))
+        J = J.reshape(n, len(free.constraints.closing), len(free.symbols.u))
         found = known & np.all(np.abs(gaps) <= COMPUTED, axis=1)
         found &= _singular_value(J, self._rank) > NEARLY_SINGULAR
         rows, speeds = self._determining
@@ -310,38 +311,38 @@ class DerivedAt:
         return tuple(x for x in found if set(symbols_of((x,))) <= places)
 
     @cached_property
-    def _in_ties(self) -> list[int]:
-        """The places of the parameters that stand in the ties, closed or open."""
+    def _in_constraints(self) -> list[int]:
+        """The places of the parameters that stand in the constraints, closed or open."""
         motion = self._free.motion
-        rows = [row for name in motion.scope.model.constraints for row in rows_of_tie(motion, name)]
-        entries = (*self._free.ties.rows, *rows)
+        rows = [row for name in motion.scope.model.constraints for row in rows_of_constraint(motion, name)]
+        entries = (*self._free.constraints.rows, *rows)
         used = set(symbols_of([x for row in entries for x in (row.velocity, 0 if row.gap is None else row.gap)]))
         return [k for k, x in enumerate(self.system.symbols.parameters.values()) if x in used]
 
     @cached_property
     def _is_independent(self) -> bool:
-        return not self.changes and self._rank == len(self._free.ties.closing)
+        return not self.changes and self._rank == len(self._free.constraints.closing)
 
     @cached_property
     def _rank(self) -> int:
-        return rank_of_ties(self._free.ties)
+        return rank_of_constraints(self._free.constraints)
 
     @cached_property
     def _determining(self) -> tuple[list[int], list[int]]:
         """(the rows by which dependent coordinates are eliminated, their speeds)."""
         used = {} if self.system.elimination is None else self.system.elimination.used
         names = dependent_coordinates(self._free.scope)
-        rows = [i for i, row in enumerate(self._free.ties.closing) if used.get((row.tie, row.number))]
+        rows = [i for i, row in enumerate(self._free.constraints.closing) if used.get((row.constraint, row.number))]
         return rows, [k for k, u in enumerate(self._free.symbols.u) if u.name[:-1] in names]
 
     @cached_property
     def _given(self) -> tuple[Scalar, ...]:
         """The gaps of rows that the coordinates were found to satisfy by themselves."""
-        return tuple(row.gap for row in self._free.ties.rows if row.identical and type(row.gap) is Node)
+        return tuple(row.gap for row in self._free.constraints.rows if row.identical and type(row.gap) is Node)
 
     @cached_property
     def _rows(self) -> RightHandSide:
-        return self._of(self._free, (*self._given, *(x for row in self._free.ties.J for x in row)))
+        return self._of(self._free, (*self._given, *(x for row in self._free.constraints.J for x in row)))
 
     @cached_property
     def declared(self) -> RightHandSide:
@@ -350,13 +351,13 @@ class DerivedAt:
         return self._of(self.system, tuple(with_unit_quaternions(scope, start_values(scope)).values()))
 
     @cached_property
-    def _asked(self) -> RightHandSide:
+    def _requested(self) -> RightHandSide:
         return self._of(self.system, self._decided)
 
     def _signs(self, p: np.ndarray, q: np.ndarray) -> np.ndarray:
         x = self._still(len(q))
         x[:, : q.shape[1]] = q
-        return np.asarray(np.sign(self._asked.many(0.0, x, p)))
+        return np.asarray(np.sign(self._requested.many(0.0, x, p)))
 
     def _still(self, n: int) -> np.ndarray:
         return np.zeros((n, len(self.system.symbols.q) + len(self.system.symbols.u)))

@@ -18,12 +18,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageError
+from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.model.fields import Table, WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import equation_typed
-from eomgen.records import dataclass, with_fields
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.contacts import EventFunction, changed
 from eomgen.simulation.integrate import drift_of
@@ -53,9 +53,9 @@ def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
         equation = until if isinstance(until, WrittenEquation) else equation_typed(model, until)[0]
         dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
     except ExpressionError as error:
-        raise UsageError(f"until '{text}': {error.what}", mend=error.mend or 'write "theta = pi/2"') from error
+        raise UsageError(f"until '{text}': {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
     except ModelError as error:
-        raise UsageError(f"until '{text}': {error.problems[0].what}", mend=error.problems[0].mend) from error
+        raise UsageError(f"until '{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
 
     def difference(system: System) -> Scalar:
         names, value = system.scope.names, Quantities(system).value
@@ -205,7 +205,7 @@ def _drift(runs: Sequence[PhaseRun]) -> float | None:
 
 
 def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
-    """The largest |phi| and |J u + sigma| of the ties that hold; None where none closes."""
+    """The largest |phi| and |J u + sigma| of the constraints that hold; None where none closes."""
     found = [s.phase.projection.open(*s.measured) for s in runs if s.phase.projection is not None]
     if not found:
         return None, None
@@ -223,7 +223,7 @@ def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
     try:
         made = [_reaction_columns(s.phase) for s in runs]
     except DerivationError as error:
-        return replace(full, told=f"No reactions: {error.what}.")
+        return replace(full, reported=f"No reactions: {error.what}.")
     t, rows = full.t, [phase.rows for phase in full.phases]
 
     @cache
@@ -235,11 +235,13 @@ def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
         return found
 
     always = tuple(dict.fromkeys(name for own in made for name in own.indeterminate))
-    told = f"Statically indeterminate: {_few(always)}." if always else ""
+    reported = f"Statically indeterminate: {_few(always)}." if always else ""
     names = tuple(dict.fromkeys(name for own in made for name in own.names))
-    waits = all(s.phase.projection is None and not s.phase.equations.system.ties.rows for s in runs)
+    waits = all(s.phase.projection is None and not s.phase.equations.system.constraints.rows for s in runs)
     reactions = OnDemand(names, columns) if waits else columns()
-    return replace(full, reactions=reactions, units=_units(made), told=told, gaps=lambda: _gaps(t, columns(), always))
+    return replace(
+        full, reactions=reactions, units=_units(made), reported=reported, gaps=lambda: _gaps(t, columns(), always)
+    )
 
 
 def _of_phase(s: PhaseRun, columns: ReactionColumns) -> Iterator[tuple[str, np.ndarray]]:
@@ -268,12 +270,12 @@ def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[s
             found[name][slice(*phase.rows)] = column
     refused = {name: why for columns in made.values() for name, why in columns.refused.items()}
     nowhere = {name for name in refused if all(name in columns.refused for columns in made.values())}
-    told = [
+    reported = [
         f"{'No column' if name in nowhere else 'In some phases no value'} of '{name}': {why}."
         for name, why in refused.items()
     ]
     given = {name: column for name, column in found.items() if name not in nowhere}
-    return replace(full, outputs=given, told=" ".join(filter(None, (full.told, *told))))
+    return replace(full, outputs=given, reported=" ".join(filter(None, (full.reported, *reported))))
 
 
 def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Trajectory:
@@ -338,7 +340,7 @@ def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
 
 
 def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
-    return {named.name: named.unit for each in columns for named in each.asked}
+    return {named.name: named.unit for each in columns for named in each.requested}
 
 
 def _gaps(t: np.ndarray, found: Mapping[str, np.ndarray], always: tuple[str, ...]) -> str:

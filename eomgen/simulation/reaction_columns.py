@@ -17,11 +17,11 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.programs import determinate
 from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rows import STILL
 from eomgen.mechanics.free_bodies.balance import BodyEquation
 from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE, SUMMED, UNBALANCED
@@ -44,13 +44,13 @@ class ReactionColumns:
     given: tuple[NamedReaction, ...] | None = None
 
     @cached_property
-    def asked(self) -> tuple[NamedReaction, ...]:
+    def requested(self) -> tuple[NamedReaction, ...]:
         """What the columns are, in their order."""
         return named_reactions(self.reactions.balance) if self.given is None else self.given
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        return tuple(named.name for named in self.asked)
+        return tuple(named.name for named in self.requested)
 
     @cached_property
     def indeterminate(self) -> tuple[str, ...]:
@@ -70,7 +70,7 @@ class ReactionColumns:
         rates = self.rhs.many(t, x, p)
         a = rates[:, rates.shape[1] - len(self.rhs.speeds) :]
         numbers = self._numbers.many(t, np.hstack([x, a]), p)
-        few = max(1, AT_ONCE // (1 + len(self.asked) * len(self._columns)))
+        few = max(1, AT_ONCE // (1 + len(self.requested) * len(self._columns)))
         pieces = (self._cut(numbers[i : i + few]) for i in range(0, len(numbers), few))
         solutions = [_solutions(A, b, C, self._steps) + d for A, b, C, d in pieces]
         found = np.concatenate([np.zeros((0, len(self.names))), *solutions])
@@ -91,7 +91,7 @@ class ReactionColumns:
         for j, x in self.reactions.balance.given.items():
             A.append((len(b), column[j], 1))
             b.append(x)
-        C = [(i, column[j], x) for i, n in enumerate(self.asked) for j, x in n.combination.items() if j in column]
+        C = [(i, column[j], x) for i, n in enumerate(self.requested) for j, x in n.combination.items() if j in column]
         return A, b, C
 
     @cached_property
@@ -126,7 +126,7 @@ class ReactionColumns:
         A, b, C = self._places
         system = self.reactions.balance.system
         symbols = replace(system.symbols, u=system.symbols.u + system.symbols.a)
-        outputs = (*(x for _, _, x in A), *b, *(x for _, _, x in C), *(named.given for named in self.asked))
+        outputs = (*(x for _, _, x in A), *b, *(x for _, _, x in C), *(named.given for named in self.requested))
         return compiled(program_of(outputs, symbols, inputs=system.inputs), "numpy")
 
     def _cut(self, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -135,7 +135,7 @@ class ReactionColumns:
         ends = np.cumsum([len(places), len(b), len(combined)])
         of_A, of_b, of_C, d = np.split(numbers, ends, axis=1)
         A = np.zeros((len(numbers), len(b), len(self._columns)))
-        C = np.zeros((len(numbers), len(self.asked), len(self._columns)))
+        C = np.zeros((len(numbers), len(self.requested), len(self._columns)))
         A[:, [i for i, _, _ in places], [j for _, j, _ in places]] = of_A
         C[:, [i for i, _, _ in combined], [j for _, j, _ in combined]] = of_C
         return A, of_b, C, d

@@ -14,8 +14,8 @@ import numpy as np
 
 from eomgen import files
 from eomgen.errors import UsageError
+from eomgen.frozen import Pickled, dataclass
 from eomgen.model.units import OUTPUT
-from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
@@ -120,7 +120,7 @@ class Kept:
 
     Args:
         drift: largest |E - E(0)| over the largest T and |V - V(0)|; None where energy need not be constant.
-        gap, gap_rate: largest |phi| and |J u + sigma| of the ties that close; None where none closes.
+        gap, gap_rate: largest |phi| and |J u + sigma| of the constraints that close; None where none closes.
     """
 
     drift: float | None = None
@@ -142,18 +142,20 @@ class Trajectory:
         ended: "finished" or what stopped it.
         words: the same as a sentence.
         steps, evaluations: taken by the integrator.
-        reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
+        reactions: of joints and constraints, n each [N, N m]: nan where one has no single value; {} where there are
+            none.
         units: of the reactions, by name.
         outputs: of the model, n each [SI]: nan where one has no value; one that has no column is in the remark.
         told: what is missing among them whatever the state is, and why; or "".
         gaps: -> the same of single states, found where somebody asks for it.
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
-        assembled: what was changed of the start values so that the ties hold there, and of which; or "".
+        assembled: what was changed of the start values so that the constraints hold there, and of which; or "".
         proof: the run -> its certificate; None where nobody knows its equations.
         whole: text -> what it asks of the whole run (a RunValue); None where nobody knows its equations.
         quantities: of the model's outputs those that are of the whole run, each a RunValue.
         estimate: the run -> its Accuracy, by another run; None where nobody knows its equations.
-        watch: the run -> the checks of what it watches anyway: energy against power, ties, norms; None: nobody does.
+        watch: the run -> the checks of what it watches anyway: energy against power, constraints, norms; None: nobody
+            does.
     """
 
     t: np.ndarray
@@ -170,7 +172,7 @@ class Trajectory:
     reactions: Mapping[str, np.ndarray] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     outputs: Mapping[str, np.ndarray] = field(default_factory=dict)
-    told: str = ""
+    reported: str = ""
     gaps: Callable[[], str] = field(default=Pickled(""), repr=False)
     carried: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
@@ -204,7 +206,7 @@ class Trajectory:
 
     @property
     def gap(self) -> float | None:
-        """Of the ties, as of `Kept`."""
+        """Of the constraints, as of `Kept`."""
         return self.kept.gap
 
     @property
@@ -215,7 +217,7 @@ class Trajectory:
     @cached_property
     def remark(self) -> str:
         """What is missing among the reactions and outputs, and why; or ""."""
-        return " ".join(filter(None, (self.told, self.gaps())))
+        return " ".join(filter(None, (self.reported, self.gaps())))
 
     @cached_property
     def accuracy(self) -> Any:
@@ -225,17 +227,17 @@ class Trajectory:
             UsageError: as of `certify`.
         """
         if self.estimate is None:
-            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that asks")
         return self.estimate(self)
 
     def certify(self) -> Any:
-        """The Certificate of the run: its equations, the code that ran, its steps, energy, ties and reactions.
+        """The Certificate of the run: its equations, the code that ran, its steps, energy, constraints and reactions.
 
         Raises:
             UsageError: it was integrated without the equations of a model.
         """
         if self.proof is None:
-            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that asks")
         return self.proof(self)
 
     def ask(self, text: Any) -> Any:
@@ -247,7 +249,7 @@ class Trajectory:
             UsageError: it cannot be read; or the run is of no model.
         """
         if self.whole is None:
-            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that asks")
         return self.whole(text)
 
     def plot(self, path: str | Path | None = None, view: str = "time") -> Any:
@@ -279,7 +281,7 @@ class Trajectory:
 
     @property
     def contradiction(self) -> str:
-        """What of its energy, ties and norms contradicts a run that came to its end, in words; ""."""
+        """What of its energy, constraints and norms contradicts a run that came to its end, in words; ""."""
         if self.ended not in ("finished", "event"):
             return ""
         return next((f"{check.name}: {check.detail}" for check in self.watched if check.ok is False), "")
@@ -329,9 +331,9 @@ class Trajectory:
         columns = self.columns()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        told = dict[str, Unit]() if units is None else units
-        writer.writerow(f"{name} [{told[name]}]" if name in told else name for name in columns)
-        given = (x / told[name].size if name in told else x for name, x in columns.items())
+        reported = dict[str, Unit]() if units is None else units
+        writer.writerow(f"{name} [{reported[name]}]" if name in reported else name for name in columns)
+        given = (x / reported[name].size if name in reported else x for name, x in columns.items())
         writer.writerows(zip(*(column.tolist() for column in given), strict=True))
         if isinstance(path, (str, Path)):
             files.write(path, text.getvalue())
@@ -368,8 +370,10 @@ class Trajectory:
 
         columns = self.columns()
         times = columns.pop("t")
-        told = {"status": self.status, "message": self.message}
-        return xarray.Dataset({name: ("time", x) for name, x in columns.items()}, coords={"time": times}, attrs=told)
+        reported = {"status": self.status, "message": self.message}
+        return xarray.Dataset(
+            {name: ("time", x) for name, x in columns.items()}, coords={"time": times}, attrs=reported
+        )
 
     def animate(self, path: str | Path | None = None, **how: Any) -> Any:
         """The motion as a moving picture: .gif, .mp4, .png (a strip), .html; without a path its player shows itself.
@@ -390,7 +394,7 @@ class Trajectory:
             parts.append(f"Energy drift {_size(self.drift)} of the energy that moves.")
         if self.gap is not None:
             speed = "" if self.gap_rate is None else f", their velocities by {_size(self.gap_rate)}"
-            parts.append(f"Ties open by at most {_size(self.gap)}{speed}.")
+            parts.append(f"Constraints open by at most {_size(self.gap)}{speed}.")
         return " ".join(parts if self.reactions or self.outputs or not self.remark else [*parts, self.remark])
 
     @property
@@ -399,7 +403,7 @@ class Trajectory:
         if len(self.t) < 2 or not self.coordinates or np.max(np.abs(self.x - self.x[0])) > SOLVED:
             return ""
         near = f"--start {self.coordinates[0]}=..."
-        return f"From this start nothing moves: it is a place of rest. Start beside it ({near}), or with a speed."
+        return f"From this start nothing moves: it is an equilibrium. Start beside it ({near}), or with a speed."
 
     def __repr__(self) -> str:
         names = ", ".join((*self.coordinates, *self.speeds))

@@ -1,6 +1,6 @@
 """Singular positions: runs that end there, and runs that are carried across.
 
-Run -> the same, ended where ties no longer said how the motion goes on, and the tie named.
+Run -> the same, ended where constraints no longer said how the motion goes on, and the constraint named.
 
 Dependent coordinates follow the independent ones as long as det J_d is not zero. Across an instant where it vanishes
 (a change point, a dead centre) the integrator's own estimate of its error is worth nothing. So a run that came by one
@@ -15,9 +15,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import SpherePlaces
+from eomgen.codegen.program import QuaternionPlaces
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.elimination import PLACE
-from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import EnergyLevel, Nearness, Projection, RankLookout, Undetermined
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
 from eomgen.simulation.integrator import Run, Stepping, march
@@ -112,15 +112,17 @@ def _cut(run: Run, i: int, instant: float, what: Undetermined, number: int) -> R
 
 
 # -------- singular crossing -----------------------------------------------------------------------------------
-# x' = f(t, x) -> the states of one run, carried across singular positions of the ties.
+# x' = f(t, x) -> the states of one run, carried across singular positions of the constraints.
 #
-# At a change point or a dead centre the rows of the ties come to depend on one another, and the accelerations are 0/0
+# At a change point or a dead centre the rows of the constraints come to depend on one another, and the accelerations
+# are 0/0
 # there; on either side they are not. A motion that comes by with a speed is an analytic function of time on its
-# branch, so it is continued by a polynomial through what it did just before, and put back onto the ties beyond:
+# branch, so it is continued by a polynomial through what it did just before, and put back onto the constraints beyond:
 #
 #     x(t) = sum of c_n T_n(t)   over t0 - W < t < t0,   taken at t0 + 2 tau,   tau = s/|s'|
 #
-# s is the measure of independence that vanishes. Taken only where polynomials of two degrees agree and the ties hold.
+# s is the measure of independence that vanishes. Taken only where polynomials of two degrees agree and the constraints
+# hold.
 
 
 NEARNESS = (1e-2, 2e-3, 5e-4)  # of s, against its largest value: where the motion is carried across
@@ -153,14 +155,14 @@ class Flow:
     Args:
         f: x' = f(t, x).
         how: the integration.
-        projection: onto the ties.
+        projection: onto the constraints.
         slope: df/dx, asked for where steps are implicit.
         level: the energy that is kept.
     """
 
     f: StateRate
     how: Stepping
-    spheres: Sequence[SpherePlaces] = ()
+    unit_quaternions: Sequence[QuaternionPlaces] = ()
     projection: Projection | None = None
     slope: LateSlope | None = None
     level: EnergyLevel | None = None
@@ -181,7 +183,7 @@ class Flow:
             how=self.how,
             instants=instants,
             events=events,
-            spheres=self.spheres,
+            unit_quaternions=self.unit_quaternions,
             projection=self.projection,
             slope=self.slope,
             lookout=lookout,

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.numeric.tolerances import BEST, LEAST_RTOL, SAME_PLACE, SOLVED

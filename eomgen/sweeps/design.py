@@ -22,12 +22,12 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from eomgen.errors import ExpressionError, UsageError
-from eomgen.model.findings import nearest
+from eomgen.frozen import dataclass
+from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.model.replaced import Taken, TypedNumbers, refuse_what_is_not_set, with_values
-from eomgen.records import dataclass
-from eomgen.sensitivities.sensitivity import slope_asked
+from eomgen.sensitivities.sensitivity import slope_requested
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 
@@ -103,33 +103,33 @@ def spread_of(model: Model, text: str, *, declared: bool = True) -> tuple[DrawnV
     name, equals, law = (part.strip() for part in text.partition("="))
     word, opened, inside = law.partition("(")
     if not equals or not opened or not inside.endswith(")"):
-        raise UsageError(f"'{text}' is no distribution", mend=LIKE)
+        raise UsageError(f"'{text}' is no distribution", fix=LIKE)
     refuse_what_is_not_set(model, name, starts=True)
     known = LAWS.get(word.strip())
     if known is None:
-        raise UsageError(f"'{text}': no distribution '{word}'", mend=nearest(word, LAWS) or f"one of {', '.join(LAWS)}")
+        raise UsageError(f"'{text}': no distribution '{word}'", fix=nearest(word, LAWS) or f"one of {', '.join(LAWS)}")
     given = inside[:-1].split(",")
     shown = f"{word}({', '.join(known.arguments)})"
     if len(given) != len(known.arguments):
-        raise UsageError(f"'{text}' has {len(given)} arguments", mend=shown)
+        raise UsageError(f"'{text}' has {len(given)} arguments", fix=shown)
     typed = TypedNumbers(model, name, declared)
     try:
         pairs = tuple(zip(known.arguments, given, strict=True))
         numbers = tuple(float(x) if what in known.plain else typed.number(x) for what, x in pairs)
     except ValueError as error:
-        raise UsageError(f"'{text}': its arguments are no numbers", mend=shown) from error
+        raise UsageError(f"'{text}': its arguments are no numbers", fix=shown) from error
     except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
+        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
     _refuse_no_law(text, known, numbers)
     drawn = DrawnValues(name, word.strip(), numbers)
     with_unit = [x.strip() for what, x in pairs if what not in known.plain]
     plain = {k: x.strip() for k, (what, x) in enumerate(pairs) if what in known.plain}
 
-    def told(words: list[str]) -> str:
+    def reported(words: list[str]) -> str:
         rest = iter(words)
         return f"{drawn.law}({', '.join(plain.get(k) or next(rest) for k in range(len(pairs)))})"
 
-    taken = typed.taken(law, with_unit, told)
+    taken = typed.taken(law, with_unit, reported)
     values = iter(taken.value if isinstance(taken.value, tuple) else ())
     return drawn, replace(taken, value=tuple(numbers[k] if k in plain else next(values) for k in range(len(pairs))))
 
@@ -137,13 +137,13 @@ def spread_of(model: Model, text: str, *, declared: bool = True) -> tuple[DrawnV
 def _refuse_no_law(text: str, law: Distribution, numbers: Sequence[float]) -> None:
     by_name = dict(zip(law.arguments, numbers, strict=True))
     if not all(map(math.isfinite, numbers)):
-        raise UsageError(f"'{text}': its arguments are no numbers", mend=LIKE)
+        raise UsageError(f"'{text}': its arguments are no numbers", fix=LIKE)
     for what in law.positive:
         if by_name[what] <= 0:
-            raise UsageError(f"'{text}': its {what} is not above 0", mend=LIKE)
+            raise UsageError(f"'{text}': its {what} is not above 0", fix=LIKE)
     ordered = [x for what, x in by_name.items() if what in ("low", "mode", "high")]
     if ordered != sorted(ordered) or (ordered and ordered[0] == ordered[-1]):
-        raise UsageError(f"'{text}': {', '.join(law.arguments)} do not ascend", mend=LIKE)
+        raise UsageError(f"'{text}': {', '.join(law.arguments)} do not ascend", fix=LIKE)
 
 
 @dataclass(frozen=True)
@@ -254,11 +254,11 @@ def refuse_bad_design(kind: Any, runs: Any, seed: Any) -> None:
         UsageError: its kind, the number of its runs or its seed.
     """
     if kind not in DESIGNS:
-        raise UsageError(f"no design '{kind}'", mend=f"one of {', '.join(DESIGNS)}")
+        raise UsageError(f"no design '{kind}'", fix=f"one of {', '.join(DESIGNS)}")
     if not isinstance(runs, int) or isinstance(runs, bool) or runs < 1:
-        raise UsageError(f"{runs} runs make no sense", mend="give 1 or more")
+        raise UsageError(f"{runs} runs make no sense", fix="give 1 or more")
     if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
-        raise UsageError(f"the seed {seed} is no whole number from 0 on", mend="--seed 1")
+        raise UsageError(f"the seed {seed} is no whole number from 0 on", fix="--seed 1")
 
 
 # -------- plan ------------------------------------------------------------------------------------------------
@@ -317,7 +317,7 @@ class SweepPlan:
     @cached_property
     def slopes(self) -> dict[str, tuple[str, str]]:
         """What is asked as a derivative, "d(frequency(1))/d(k)": of what, by what."""
-        pairs = ((text, slope_asked(text)) for text in self.asked)
+        pairs = ((text, slope_requested(text)) for text in self.requested)
         return {text: pair for text, pair in pairs if pair is not None}
 
     @cached_property
@@ -327,7 +327,7 @@ class SweepPlan:
         return Design({name: tuple(x) for name, x in self.over.items()}, spreads, self.draws, self.design, self.seed)
 
     @property
-    def asked(self) -> tuple[str, ...]:
+    def requested(self) -> tuple[str, ...]:
         """What is asked of each run, the critical expression too."""
         return tuple(dict.fromkeys((*self.ask, *filter(None, [self.critical]))))
 
@@ -335,38 +335,42 @@ class SweepPlan:
     def columns(self) -> tuple[str, ...]:
         """Of the table. What is asked under the name of what is set has `(asked)` behind it."""
         names = self.runs.names
-        return (*FIXED, *names, *(f"{ask} (asked)" if ask in names else ask for ask in self.asked))
+        return (*FIXED, *names, *(f"{ask} (asked)" if ask in names else ask for ask in self.requested))
 
     @cached_property
     def hash(self) -> str:
         """Of everything on which the numbers depend; a plan of another hash is another sweep."""
-        told = {name: x for name, x in self.as_dict().items() if name not in ("hash", "versions")}
-        return hashlib.sha256(json.dumps(told, sort_keys=True).encode()).hexdigest()[:16]
+        reported = {name: x for name, x in self.as_dict().items() if name not in ("hash", "versions")}
+        return hashlib.sha256(json.dumps(reported, sort_keys=True).encode()).hexdigest()[:16]
 
     def as_dict(self) -> dict[str, Any]:
         """For plan.json, and for those who run a part of it."""
-        told = {name: x for name, x in asdict_of(self).items() if name != "made"}
-        told["model_hash"] = "" if self.made is None else hashlib.sha256(pickle.dumps(self.made)).hexdigest()
-        return {"schema": SCHEMA, **told}
+        reported = {name: x for name, x in asdict_of(self).items() if name != "made"}
+        reported["model_hash"] = "" if self.made is None else hashlib.sha256(pickle.dumps(self.made)).hexdigest()
+        return {"schema": SCHEMA, **reported}
 
     def written(self) -> str:
         """plan.json."""
         versions = {"eomgen": __version__, "numpy": np.__version__, "python": platform.python_version()}
         versions |= {"machine": platform.machine(), "system": platform.system()}
-        told = {"hash": self.hash, "runs": self.runs.count, "columns": list(self.columns), **self.as_dict()}
-        return json.dumps(told | {"versions": versions}, indent=1) + "\n"
+        reported = {"hash": self.hash, "runs": self.runs.count, "columns": list(self.columns), **self.as_dict()}
+        return json.dumps(reported | {"versions": versions}, indent=1) + "\n"
 
 
 def asdict_of(plan: SweepPlan) -> dict[str, Any]:
     """Its fields as plain values."""
     names = ("text", "title", "draws", "design", "seed", "critical")
-    told: dict[str, Any] = {name: getattr(plan, name) for name in names}
-    told |= {"over": [[name, list(x)] for name, x in plan.over.items()], "ask": list(plan.ask), "how": asdict(plan.how)}
-    told["random"] = [[name, law, list(arguments)] for name, law, arguments in plan.random]
-    return told | {"given": dict(plan.given), "start": dict(plan.start)}
+    reported: dict[str, Any] = {name: getattr(plan, name) for name in names}
+    reported |= {
+        "over": [[name, list(x)] for name, x in plan.over.items()],
+        "ask": list(plan.ask),
+        "how": asdict(plan.how),
+    }
+    reported["random"] = [[name, law, list(arguments)] for name, law, arguments in plan.random]
+    return reported | {"given": dict(plan.given), "start": dict(plan.start)}
 
 
-def plan_of(told: Mapping[str, Any], made: Model | None = None) -> SweepPlan:
+def plan_of(reported: Mapping[str, Any], made: Model | None = None) -> SweepPlan:
     """The plan that `as_dict` or `written` tells.
 
     Raises:
@@ -374,23 +378,23 @@ def plan_of(told: Mapping[str, Any], made: Model | None = None) -> SweepPlan:
     """
     try:
         return SweepPlan(
-            text=told["text"],
-            title=told["title"],
-            over={name: tuple(map(float, values)) for name, values in told["over"]},
-            random=tuple((name, law, tuple(map(float, arguments))) for name, law, arguments in told["random"]),
-            draws=int(told["draws"]),
-            design=told["design"],
-            seed=int(told["seed"]),
-            ask=tuple(told["ask"]),
-            critical=told["critical"],
-            how=Stepped(**told["how"]),
-            given=told["given"],
-            start=told["start"],
+            text=reported["text"],
+            title=reported["title"],
+            over={name: tuple(map(float, values)) for name, values in reported["over"]},
+            random=tuple((name, law, tuple(map(float, arguments))) for name, law, arguments in reported["random"]),
+            draws=int(reported["draws"]),
+            design=reported["design"],
+            seed=int(reported["seed"]),
+            ask=tuple(reported["ask"]),
+            critical=reported["critical"],
+            how=Stepped(**reported["how"]),
+            given=reported["given"],
+            start=reported["start"],
             made=made,
         )
     except (KeyError, TypeError, ValueError, AttributeError) as error:
         raise UsageError(
-            f"plan.json is no plan of a sweep: {error}", mend="begin the sweep anew in another folder"
+            f"plan.json is no plan of a sweep: {error}", fix="begin the sweep anew in another folder"
         ) from error
 
 

@@ -43,7 +43,7 @@ def sweep_picture(sweep: Drawable, view: str = "") -> Picture:
         ranges = len([x for x in sweep.plan.over.values() if len(x) > 1])
         view = "scatter" if sweep.plan.random or not ranges else "lines" if ranges == 1 else "heat"
     if view not in VIEWS:
-        raise UsageError(f"no view '{view}' of a sweep", mend=f"one of {', '.join(VIEWS)}")
+        raise UsageError(f"no view '{view}' of a sweep", fix=f"one of {', '.join(VIEWS)}")
     sizes, heads = sweep.in_units()
     table = {name: x / sizes.get(name, 1.0) if x.dtype == float else x for name, x in sweep.table.items()}
     return VIEWS[view](sweep, table, {name: _plain(heads.get(name, name)) for name in table})
@@ -59,8 +59,8 @@ _Columns = Mapping[str, np.ndarray]
 def _lines(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture:
     """What is asked over the first range; a line for each choice of the rest, draws as their mean and spread."""
     if not sweep.plan.over:
-        raise RunFailed("no range is swept over: there is nothing to draw lines over", mend='--over "NAME=1:2:20"')
-    names, asked, draws = list(sweep.plan.over), _asked(sweep), sweep.plan.draws
+        raise RunFailed("no range is swept over: there is nothing to draw lines over", fix='--over "NAME=1:2:20"')
+    names, requested, draws = list(sweep.plan.over), _requested(sweep), sweep.plan.draws
     x, *others = names
 
     def draw(panel: Any, name: str) -> None:
@@ -80,7 +80,7 @@ def _lines(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Pictur
         if others:
             panel.legend(fontsize=7)
 
-    return _panels(asked, draw)
+    return _panels(requested, draw)
 
 
 def _line(panel: Any, x: np.ndarray, y: np.ndarray, draws: int, label: str, color: str) -> None:
@@ -107,7 +107,7 @@ def _heat(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture
     """Each of what is asked over the first two ranges; the mean over everything else."""
     names = [name for name, values in sweep.plan.over.items() if len(values) > 1]
     if len(names) < 2:
-        raise RunFailed("a heat map needs two ranges: --over twice", mend='--over "A=1:2:20" --over "B=1:2:20"')
+        raise RunFailed("a heat map needs two ranges: --over twice", fix='--over "A=1:2:20" --over "B=1:2:20"')
     x, y = names[:2]
 
     def draw(panel: Any, name: str) -> None:
@@ -125,12 +125,12 @@ def _heat(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture
         panel.set_xlabel(heads[x])
         panel.set_ylabel(heads[y])
 
-    return _panels(_asked(sweep), draw)
+    return _panels(_requested(sweep), draw)
 
 
 def _scatter(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture:
     """All of what was set and asked against one another, their distributions on the diagonal."""
-    names = [*sweep.plan.runs.names, *_asked(sweep)][:MOST_NAMES]
+    names = [*sweep.plan.runs.names, *_requested(sweep)][:MOST_NAMES]
 
     def fill(figure: Any) -> None:
         panels = figure.subplots(len(names), len(names), squeeze=False)
@@ -151,8 +151,8 @@ def _scatter(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Pict
     return Picture((1.9 * len(names) + 0.5, 1.9 * len(names) + 0.3), fill)
 
 
-def _asked(sweep: Drawable) -> list[str]:
-    return list(sweep.plan.columns[-len(sweep.plan.asked) :])[:MOST_PANELS]
+def _requested(sweep: Drawable) -> list[str]:
+    return list(sweep.plan.columns[-len(sweep.plan.requested) :])[:MOST_PANELS]
 
 
 def _panels(names: list[str], draw: Callable[[Any, str], None]) -> Picture:

@@ -15,13 +15,13 @@ import numpy as np
 
 from eomgen import files
 from eomgen.errors import ExpressionError, RunFailed, UsageError
+from eomgen.frozen import dataclass
 from eomgen.model.fields import Table
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads
 from eomgen.model.replaced import LIKE, TypedNumbers, range_of, refuse_what_is_not_set, typed_values
 from eomgen.model.units import units_of
-from eomgen.questions.of_a_run import asked_of
-from eomgen.records import dataclass
+from eomgen.questions.of_a_run import requested_of
 from eomgen.sensitivities.sensitivity import unit_of_slope
 from eomgen.simulation.integrate import refuse_bad_run
 from eomgen.simulation.integrator import Stepping
@@ -115,9 +115,9 @@ class Sweep:
     def in_units(self) -> tuple[dict[str, float], dict[str, str]]:
         """(the size in SI, the head "k [N/m]") of every column that has a unit, as the file declares it."""
         model = self.plan.model
-        slopes, texts = self.plan.slopes, self.plan.asked
-        asked = {f"asked{k}": asked_of(model, text) for k, text in enumerate(texts) if text not in slopes}
-        found = units_of(replace(model, outputs=Table(asked)), asked)
+        slopes, texts = self.plan.slopes, self.plan.requested
+        requested = {f"asked{k}": requested_of(model, text) for k, text in enumerate(texts) if text not in slopes}
+        found = units_of(replace(model, outputs=Table(requested)), requested)
         found |= {f"asked{k}": unit_of_slope(model, *slopes[text]) for k, text in enumerate(texts) if text in slopes}
         units = units_of(model, self.plan.runs.names)
         columns = enumerate(self.columns[-len(texts) :])
@@ -159,15 +159,13 @@ class Sweep:
 
 def _known(plan: SweepPlan) -> SweepPlan:
     if not plan.text and plan.made is None:
-        raise RunFailed(
-            "the model of this sweep was made in Python", mend="call eomgen.sweep with it, and .replay(run)"
-        )
+        raise RunFailed("the model of this sweep was made in Python", fix="call eomgen.sweep with it, and .replay(run)")
     return plan
 
 
 def _refuse_no_run(plan: SweepPlan, run: int) -> None:
     if not 0 <= run < plan.runs.count:
-        raise UsageError(f"there is no run {run}", mend=f"from 0 to {plan.runs.count - 1}")
+        raise UsageError(f"there is no run {run}", fix=f"from 0 to {plan.runs.count - 1}")
 
 
 # -- as a user asks for it ---------------------------------------------------------------------------------
@@ -247,10 +245,10 @@ def _values(model: Model, name: str, given: Any) -> tuple[float, ...]:
     try:
         values = tuple(map(typed.number, typed_values(given)))
     except (ValueError, TypeError, ExpressionError) as error:
-        what, mend = (error.what, error.mend) if isinstance(error, ExpressionError) else ("they are no numbers", "")
-        raise UsageError(f"over: the values of '{name}': {what}", mend=mend or LIKE) from error
+        what, fix = (error.what, error.fix) if isinstance(error, ExpressionError) else ("they are no numbers", "")
+        raise UsageError(f"over: the values of '{name}': {what}", fix=fix or LIKE) from error
     if not values or not all(map(math.isfinite, values)):
-        raise UsageError(f"over: the values of '{name}' are no numbers", mend="give one or more")
+        raise UsageError(f"over: the values of '{name}' are no numbers", fix="give one or more")
     return values
 
 
@@ -263,40 +261,38 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     draws = 1 if runs is None else runs
     refuse_bad_design(fields["design"], draws, fields["seed"])
     if not fields["over"] and not fields["random"]:
-        raise UsageError(
-            "nothing changes from run to run", mend='--over "k=100:1000:10", --random "phi=normal(0, 0.1)"'
-        )
+        raise UsageError("nothing changes from run to run", fix='--over "k=100:1000:10", --random "phi=normal(0, 0.1)"')
     if runs is not None and runs > 1 and not fields["random"]:
         raise UsageError(
-            f"{runs} runs of the same values", mend='give --random "phi=normal(0, 0.1)", or leave --runs out'
+            f"{runs} runs of the same values", fix='give --random "phi=normal(0, 0.1)", or leave --runs out'
         )
     fixed = [*fields.get("given", ()), *fields.get("start", ())]
     names = [*fields["over"], *(name for name, _, _ in fields["random"]), *fixed]
     twice = [name for name in names if names.count(name) > 1]
     if twice:
-        mend = "leave its --set or --start out" if twice[0] in fixed else "once in --over or once in --random"
-        raise UsageError(f"'{twice[0]}' is set twice", mend=mend)
+        fix = "leave its --set or --start out" if twice[0] in fixed else "once in --over or once in --random"
+        raise UsageError(f"'{twice[0]}' is set twice", fix=fix)
     if fields["critical"] and not fields["over"]:
-        raise UsageError("a critical value is sought along a range", mend='give --over "k=100:1000:10"')
+        raise UsageError("a critical value is sought along a range", fix='give --over "k=100:1000:10"')
     if fields["critical"] and fields["random"] and fields["design"] == "random":
         what = "neighbours of the grid have other draws: nothing but the first range may change where a sign is sought"
-        raise UsageError(what, mend="--design sobol or lhs, which draw the same at every point")
+        raise UsageError(what, fix="--design sobol or lhs, which draw the same at every point")
     if not fields["ask"] and not fields["critical"]:
         fields["ask"] = tuple(name for name, output in model.outputs.items() if output.event != "every")
     plan = SweepPlan(draws=draws, **fields)
-    if not plan.asked:
-        raise UsageError("nothing is asked of the runs", mend='--ask "max(theta)", or give the model [outputs]')
+    if not plan.requested:
+        raise UsageError("nothing is asked of the runs", fix='--ask "max(theta)", or give the model [outputs]')
     how = fields["how"]
     if not how.time > 0:
-        raise UsageError(f"the time {how.time:g} s makes no sense", mend="give one above 0")
+        raise UsageError(f"the time {how.time:g} s makes no sense", fix="give one above 0")
     refuse_bad_run(0.0, how.time, Stepping(how.method, how.rtol, how.atol))
-    for text in plan.asked:
+    for text in plan.requested:
         of, to = plan.slopes.get(text, (text, ""))
-        output = asked_of(model, of)
+        output = requested_of(model, of)
         if to and to.removesuffix("'") not in (*model.parameters, *model.coordinates, *model.speeds):
-            raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'", mend="name one of the model")
+            raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'", fix="name one of the model")
         if output.event is not None and not isinstance(output.event, int):
-            raise UsageError(f"'{text}' is of several instants", mend="ask for one of them: event 1")
+            raise UsageError(f"'{text}' is of several instants", fix="ask for one of them: event 1")
     return plan
 
 
@@ -307,7 +303,7 @@ def swept(plan: SweepPlan, *, workers: int = 1, executor: Any = None, out: str |
         UsageError: another plan is in the folder.
     """
     if workers < 1:
-        raise UsageError(f"{workers} workers make no sense", mend="give 1 or more")
+        raise UsageError(f"{workers} workers make no sense", fix="give 1 or more")
     folder = None if out is None else Path(out)
     if folder is not None:
         _begun(plan, folder)
@@ -316,13 +312,13 @@ def swept(plan: SweepPlan, *, workers: int = 1, executor: Any = None, out: str |
     pool = Pool(workers if executor is None else _workers_of(executor), executor)
     payload = payload_of(plan)
     try:
-        with progress_of(plan.runs.count, ledger.count) as told:
+        with progress_of(plan.runs.count, ledger.count) as reported:
             if workers == 1 and executor is None:
                 rows = rows_here(payload, _missing(ledger))
             else:
                 rows = rows_by(pool, payload, _missing(ledger), lambda run: plan.runs.runs(run, run + 1)[0][0])
             for some in rows:
-                told(ledger.add([_whole(plan, row) for row in some]))
+                reported(ledger.add([_whole(plan, row) for row in some]))
                 another_stretch(_kept(ledger.count, folder))
         if plan.critical:
             ledger.add_critical(critical_values(plan, ledger, pool if pool.workers > 1 else None))
@@ -345,7 +341,7 @@ def _whole(plan: SweepPlan, row: SampleRow) -> SampleRow:
     if len(row) == len(plan.columns):
         return row
     values = plan.runs.runs(row[0], row[0] + 1)[1][0].tolist()
-    return (*row, *values, *[None] * len(plan.asked))
+    return (*row, *values, *[None] * len(plan.requested))
 
 
 def _workers_of(executor: Any) -> int:
@@ -367,30 +363,30 @@ def _begun(plan: SweepPlan, folder: Path) -> None:
     """
     path = folder / PLAN
     if folder.exists() and not folder.is_dir():
-        raise UsageError(f"'{folder}' is a file", mend="-o names the folder of the sweep")
+        raise UsageError(f"'{folder}' is a file", fix="-o names the folder of the sweep")
     if not path.exists():
         if (folder / LEDGER).exists():
-            raise UsageError(f"'{folder}' has a ledger and no {PLAN}", mend="give -o another folder")
+            raise UsageError(f"'{folder}' has a ledger and no {PLAN}", fix="give -o another folder")
         files.write(path, plan.written())
         return
-    there = _plan_told(folder)
+    there = _plan_reported(folder)
     if there.get("hash") != plan.hash:
         changed = _changed(plan.as_dict(), there)
-        raise UsageError(f"'{folder}' holds another plan: {changed}", mend="give -o another folder, or the same plan")
+        raise UsageError(f"'{folder}' holds another plan: {changed}", fix="give -o another folder, or the same plan")
 
 
-def _plan_told(folder: Path) -> dict[str, Any]:
+def _plan_reported(folder: Path) -> dict[str, Any]:
     try:
-        told = json.loads((folder / PLAN).read_text(encoding="utf-8"))
+        reported = json.loads((folder / PLAN).read_text(encoding="utf-8"))
     except OSError as error:
         raise UsageError(
-            f"'{folder}' holds no {PLAN}: no sweep was begun there", mend="begin it: eomgen sweep MODEL -o DIR"
+            f"'{folder}' holds no {PLAN}: no sweep was begun there", fix="begin it: eomgen sweep MODEL -o DIR"
         ) from error
     except ValueError as error:
-        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep: {error}", mend="take another folder") from error
-    if not isinstance(told, dict):
-        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep", mend="take another folder")
-    return told
+        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep: {error}", fix="take another folder") from error
+    if not isinstance(reported, dict):
+        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep", fix="take another folder")
+    return reported
 
 
 def _changed(mine: Mapping[str, Any], there: Mapping[str, Any]) -> str:
@@ -405,16 +401,16 @@ def sweep_at(folder: str | Path) -> Sweep:
         UsageError: there is none.
     """
     folder = Path(folder)
-    plan = plan_of(_plan_told(folder))
+    plan = plan_of(_plan_reported(folder))
     if not (folder / LEDGER).exists():
-        raise UsageError(f"'{folder}' holds no {LEDGER}: no run was begun", mend="begin it: eomgen sweep MODEL -o DIR")
-    told = _plan_told(folder)["hash"]
-    if plan.hash != told and plan.text:
+        raise UsageError(f"'{folder}' holds no {LEDGER}: no run was begun", fix="begin it: eomgen sweep MODEL -o DIR")
+    reported = _plan_reported(folder)["hash"]
+    if plan.hash != reported and plan.text:
         raise UsageError(
             f"'{folder / PLAN}' was changed by hand: its hash is not that of what it says",
-            mend="begin the sweep again in another folder",
+            fix="begin the sweep again in another folder",
         )
-    object.__setattr__(plan, "hash", told) if not plan.text else None
+    object.__setattr__(plan, "hash", reported) if not plan.text else None
     return Sweep(plan, ledger_at(folder / LEDGER, plan), folder)
 
 
@@ -442,12 +438,12 @@ def _write_csv(file: IO[bytes], found: Sweep, units: bool) -> None:
     writer.writerow(heads.get(name, name) for name in found.columns)
     factors = [sizes.get(name, 1.0) for name in found.columns]
     for row in found.ledger.rows():
-        writer.writerow(_told(x, size) for x, size in zip(row, factors, strict=True))
+        writer.writerow(_reported(x, size) for x, size in zip(row, factors, strict=True))
     text.flush()
     text.detach()
 
 
-def _told(x: Any, size: float) -> str:
+def _reported(x: Any, size: float) -> str:
     if x is None:
         return "nan"
     return repr(x if size == 1.0 else x / size) if isinstance(x, float) else str(x)
@@ -514,7 +510,7 @@ def _brackets(plan: SweepPlan, ledger: SweepLedger) -> Iterator[Bracket]:
     """Neighbours along the first range at which what is asked has different signs; every other value stays."""
     design, name = plan.runs, next(iter(plan.over))
     many = design.count // len(plan.over[name])
-    k = len(plan.columns) - len(plan.asked) + plan.asked.index(plan.critical)
+    k = len(plan.columns) - len(plan.requested) + plan.requested.index(plan.critical)
     before: dict[int, Any] = {}
     for row in ledger.rows():
         place = row[0] % many
@@ -534,17 +530,17 @@ def _brackets(plan: SweepPlan, ledger: SweepLedger) -> Iterator[Bracket]:
 def remarks_of(plan: SweepPlan, ledger: SweepLedger) -> tuple[str, ...]:
     """What is asked in vain: what is the same in all runs, and what changes its sign nowhere."""
     remarks = []
-    for column, name in enumerate(plan.columns[-len(plan.asked) :], len(plan.columns) - len(plan.asked)):
+    for column, name in enumerate(plan.columns[-len(plan.requested) :], len(plan.columns) - len(plan.requested)):
         count, low, _, high = ledger.summary(column)
         if count < 2 or low is None or high is None:
             continue
         same = high - low <= plan.how.rtol * max(abs(low), abs(high))
-        told = f"'{name}' is {high:.9g} in all runs: nothing that is set changes it"
-        if plan.asked[column - len(plan.columns)] == plan.critical and not ledger.critical():
-            told = told if same else f"it goes from {low:.9g} to {high:.9g}"
-            remarks.append(f"'{plan.critical}' changes its sign nowhere along {next(iter(plan.over))}: {told}")
+        reported = f"'{name}' is {high:.9g} in all runs: nothing that is set changes it"
+        if plan.requested[column - len(plan.columns)] == plan.critical and not ledger.critical():
+            reported = reported if same else f"it goes from {low:.9g} to {high:.9g}"
+            remarks.append(f"'{plan.critical}' changes its sign nowhere along {next(iter(plan.over))}: {reported}")
         elif same:
-            remarks.append(told)
+            remarks.append(reported)
     return tuple(remarks)
 
 
@@ -561,15 +557,15 @@ def bisected(
     from scipy.optimize import brentq
 
     (a, b), (low, high) = ends, values
-    told = json.dumps(dict(staying))
+    reported = json.dumps(dict(staying))
     if high == 0:
-        return number, told, name, b, 0.0, ""
+        return number, reported, name, b, 0.0, ""
     values_at = {a: low, b: high}
 
     def value(x: float) -> float:
         found = values_at[x] if x in values_at else value_of_run(payload, {**staying, name: x}, text)
         if found is None:
-            raise RunFailed(f"no value at {name} = {x:.12g}", mend="narrow the range to where it has values")
+            raise RunFailed(f"no value at {name} = {x:.12g}", fix="narrow the range to where it has values")
         values_at[x] = found
         return found
 
@@ -577,5 +573,5 @@ def bisected(
         root = float(brentq(value, a, b, xtol=SOLVED * max(abs(a), abs(b)), rtol=SOLVED))
         left = abs(value(root))
     except RunFailed as error:
-        return number, told, name, None, None, error.what
-    return number, told, name, root, left, "it jumps there" if left > JUMP * max(map(abs, values)) else ""
+        return number, reported, name, None, None, error.what
+    return number, reported, name, root, left, "it jumps there" if left > JUMP * max(map(abs, values)) else ""

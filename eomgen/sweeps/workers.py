@@ -27,16 +27,16 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
-from eomgen.mechanics.instant.quantities import asks_of
+from eomgen.frozen import dataclass
+from eomgen.mechanics.instant.quantities import requests_of
 from eomgen.model.fields import AtRest, Table
 from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import with_values
 from eomgen.pipeline import simulator
 from eomgen.questions.answers import solve
-from eomgen.questions.of_a_run import asked_of
+from eomgen.questions.of_a_run import requested_of
 from eomgen.questions.simulator import Simulator
-from eomgen.records import dataclass
 from eomgen.sensitivities.sensitivity import slope_in_si
 from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of
@@ -118,7 +118,7 @@ class Pool:
             RunFailed: the executor is the user's.
         """
         if self.executor is not None:
-            raise RunFailed("the executor broke: a worker of it died", mend="what is done is kept: start again")
+            raise RunFailed("the executor broke: a worker of it died", fix="what is done is kept: start again")
         if self._own is not None:
             self._own.shutdown(wait=False, cancel_futures=True)
         self._own = None
@@ -257,22 +257,24 @@ class SweepKernel:
         seeds, values = self.plan.runs.runs(first, last)
         found = []
         for run, seed, set_ in zip(range(first, last), seeds, values.tolist(), strict=True):
-            status, message, asked = self.asked(dict(zip(self.plan.runs.names, set_, strict=True)))
-            found.append((run, seed, status, message, *set_, *asked))
+            status, message, requested = self.requested(dict(zip(self.plan.runs.names, set_, strict=True)))
+            found.append((run, seed, status, message, *set_, *requested))
         return found
 
-    def asked(self, set_: Mapping[str, float]) -> tuple[str, str, list[float | None]]:
+    def requested(self, set_: Mapping[str, float]) -> tuple[str, str, list[float | None]]:
         """(status, message, what is asked) of a run; what goes wrong is its message."""
-        told: dict[str, float | None] = dict.fromkeys(self.plan.asked)
+        reported: dict[str, float | None] = dict.fromkeys(self.plan.requested)
         status, messages = WITHOUT_MOTION, list[str]()
-        for part in (self._in_motion_told, self._without_motion, self._slopes_told):
+        for part in (self._in_motion_reported, self._without_motion, self._slopes_reported):
             try:
-                status = part(set_, told, messages) or status
+                status = part(set_, reported, messages) or status
             except (EomgenError, ArithmeticError, ValueError) as error:
                 status, messages = FAILED, [*messages, _sentence(error)]
-        return status, "; ".join(messages), [finite(x) for x in told.values()]
+        return status, "; ".join(messages), [finite(x) for x in reported.values()]
 
-    def _in_motion_told(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+    def _in_motion_reported(
+        self, set_: Mapping[str, float], reported: dict[str, float | None], messages: list[str]
+    ) -> str:
         """What is asked of the motion; how that ended."""
         if not self._in_motion:
             return ""
@@ -284,7 +286,7 @@ class SweepKernel:
             return run.status
         for text, output in self._in_motion.items():
             found = run.ask(output)
-            told[text] = found.value if isinstance(found.value, float) else None
+            reported[text] = found.value if isinstance(found.value, float) else None
             messages += [f"{text}: {found.message}"] if found.message else []
         return run.status
 
@@ -303,26 +305,28 @@ class SweepKernel:
         parameters = {name: x for name, x in set_.items() if name in names}
         return parameters, {name: x for name, x in set_.items() if name not in names}
 
-    def _without_motion(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+    def _without_motion(self, set_: Mapping[str, float], reported: dict[str, float | None], messages: list[str]) -> str:
         """What is asked at rest, by the energy theorem, of small motions: as `solve` answers it."""
         if not self._solved:
             return ""
-        asked = list(self._solved)
-        outputs = {f"asked{k}": replace(self._solved[text], unit=None) for k, text in enumerate(asked)}
-        answers = dict(zip(asked, solve(replace(self.valued(set_), outputs=Table(outputs))).values(), strict=True))
+        requested = list(self._solved)
+        outputs = {f"asked{k}": replace(self._solved[text], unit=None) for k, text in enumerate(requested)}
+        answers = dict(zip(requested, solve(replace(self.valued(set_), outputs=Table(outputs))).values(), strict=True))
         for text, answer in answers.items():
-            told[text] = answer.value
+            reported[text] = answer.value
             messages += [f"{text}: {answer.message}"] if answer.value is None else []
         return ""
 
-    def _slopes_told(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+    def _slopes_reported(
+        self, set_: Mapping[str, float], reported: dict[str, float | None], messages: list[str]
+    ) -> str:
         """The derivatives that are asked, by the equations themselves."""
         if not self.plan.slopes:
             return ""
         model = self.valued(set_)
         for text, pair in self.plan.slopes.items():
             found, message = slope_in_si(model, *pair, self.plan.how.time)
-            told[text] = found
+            reported[text] = found
             messages += [f"{text}: {message}"] if message else []
         return ""
 
@@ -334,7 +338,9 @@ class SweepKernel:
 
     @cached_property
     def _outputs(self) -> dict[str, Output]:
-        return {text: asked_of(self.plan.model, text) for text in self.plan.asked if text not in self.plan.slopes}
+        return {
+            text: requested_of(self.plan.model, text) for text in self.plan.requested if text not in self.plan.slopes
+        }
 
     @cached_property
     def _in_motion(self) -> dict[str, Output]:
@@ -347,12 +353,12 @@ class SweepKernel:
 
 def is_without_motion(output: Output) -> bool:
     """True if `solve` answers it: at rest, from another start, of the linearized system."""
-    return isinstance(output.at, AtRest) or output.from_ is not None or asks_of(output.value, SMALL_MOTIONS)
+    return isinstance(output.at, AtRest) or output.from_ is not None or requests_of(output.value, SMALL_MOTIONS)
 
 
 def _sentence(error: Exception) -> str:
     if isinstance(error, EomgenError):
-        return f"{error.what}; {error.mend}" if error.mend else error.what
+        return f"{error.what}; {error.fix}" if error.fix else error.what
     return f"{type(error).__name__}: {error}"
 
 
@@ -380,13 +386,13 @@ def rows_of_runs(payload: Payload, first: int, last: int) -> list[SampleRow]:
 def value_of_run(payload: Payload, set_: Mapping[str, float], text: str) -> float | None:
     """What one asked expression is worth at some values [SI]."""
     kernel = _kernel(*payload)
-    _, _, asked = kernel.asked(set_)
-    return finite(asked[kernel.plan.asked.index(text)])
+    _, _, requested = kernel.requested(set_)
+    return finite(requested[kernel.plan.requested.index(text)])
 
 
 @lru_cache(maxsize=2)
-def _kernel(told: str, made: Any) -> SweepKernel:
-    return SweepKernel(plan_of(json.loads(told), made))
+def _kernel(reported: str, made: Any) -> SweepKernel:
+    return SweepKernel(plan_of(json.loads(reported), made))
 
 
 # -------- progress --------------------------------------------------------------------------------------------
@@ -474,14 +480,14 @@ class SweepLedger:
 
     def messages(self, few: int) -> list[tuple[int, str, str]]:
         """(run, status, message) of the first with a message."""
-        asked = "SELECT run, status, message FROM runs WHERE message <> '' ORDER BY run LIMIT ?"
-        return list(self.connection.execute(asked, (few,)))
+        requested = "SELECT run, status, message FROM runs WHERE message <> '' ORDER BY run LIMIT ?"
+        return list(self.connection.execute(requested, (few,)))
 
     def summary(self, column: int) -> tuple[int, float | None, float | None, float | None]:
         """(how many have a value, the least, the mean, the largest) of a column."""
         name = _quoted(_distinct(self.plan.columns)[column])
-        asked = f"SELECT COUNT({name}), MIN({name}), AVG({name}), MAX({name}) FROM runs"
-        found: tuple[int, float | None, float | None, float | None] = self.connection.execute(asked).fetchone()
+        requested = f"SELECT COUNT({name}), MIN({name}), AVG({name}), MAX({name}) FROM runs"
+        found: tuple[int, float | None, float | None, float | None] = self.connection.execute(requested).fetchone()
         return found
 
     def row(self, run: int) -> SampleRow | None:
@@ -547,13 +553,13 @@ def ledger_at(path: Path | None, plan: SweepPlan) -> SweepLedger:
         (found,) = connection.execute("SELECT hash FROM plan").fetchone()
     except sqlite3.OperationalError as error:
         raise WriteFailed(
-            f"the ledger '{path}' cannot be written: {error}", mend="name a folder that can be written to"
+            f"the ledger '{path}' cannot be written: {error}", fix="name a folder that can be written to"
         ) from error
     except sqlite3.DatabaseError as error:
-        raise UsageError(f"'{path}' is no ledger of a sweep: {error}", mend="begin in another folder") from error
+        raise UsageError(f"'{path}' is no ledger of a sweep: {error}", fix="begin in another folder") from error
     if found != plan.hash:
         connection.close()
-        raise UsageError(f"'{path}' is the ledger of another plan", mend="give -o another folder")
+        raise UsageError(f"'{path}' is the ledger of another plan", fix="give -o another folder")
     return SweepLedger(connection, plan)
 
 

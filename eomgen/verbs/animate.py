@@ -30,9 +30,10 @@ from eomgen.documents.statements import prose
 from eomgen.documents.statics.steps import virtual_work_step
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.equilibrium.equations import has_freedoms, with_drives_held
+from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
 from eomgen.mechanics.statics.contacts import modes_at_rest
 from eomgen.mechanics.statics.virtual_work import released_in
@@ -41,17 +42,16 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof.check import Check
-from eomgen.proof.pictures_told import pictures_told, states_shown
+from eomgen.proof.pictures_reported import pictures_reported, states_shown
 from eomgen.questions.run import PAGE_TIME, page_stepping, page_time
 from eomgen.questions.run import run as simulated
-from eomgen.records import dataclass
-from eomgen.scene.phase_frames import picture_told
+from eomgen.scene.phase_frames import picture_reported
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.verbs.outcome import with_start_told
+from eomgen.verbs.outcome import with_start_reported
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
 STILL = (".png", ".html")  # of which --fps says nothing
@@ -118,9 +118,9 @@ class Showing:
         refuse_rates(self.fps, self.speed)
         if _ending(output) == ".gif" and self.fps > GIF_FPS:
             what = f"a .gif shows at most {GIF_FPS} frames a second, not {self.fps:g}"
-            raise UsageError(what, mend=f"take --fps {GIF_FPS}, or write an .mp4")
+            raise UsageError(what, fix=f"take --fps {GIF_FPS}, or write an .mp4")
         if not 1 <= self.frames <= MOST_IN_STRIP:
-            raise UsageError(f"a strip of {self.frames} frames", mend=f"from 1 to {MOST_IN_STRIP}")
+            raise UsageError(f"a strip of {self.frames} frames", fix=f"from 1 to {MOST_IN_STRIP}")
 
 
 def animate_document(
@@ -141,16 +141,16 @@ def animate_document(
     shorter = ""
     if virtual is not None:
         if modes is not None:
-            raise UsageError("--modes and --virtual are two pictures", mend="leave one of them out")
+            raise UsageError("--modes and --virtual are two pictures", fix="leave one of them out")
         return _virtual_document(model, virtual, output, showing)
     if modes is not None:
         movies = _modes(model, modes, output, showing)
         summary = f"{len(movies)} mode{'s' * (len(movies) > 1)}"
     else:
         if time is not None and not time > 0:
-            raise UsageError(f"a motion of {time:g} s has nothing to show", mend="give a --time above 0")
+            raise UsageError(f"a motion of {time:g} s has nothing to show", fix="give a --time above 0")
         if _ending(output) == ".html" and len(showing.trail) > 1:
-            raise UsageError("a page begins with one trail", mend="give one --trail; others are chosen in the page")
+            raise UsageError("a page begins with one trail", fix="give one --trail; others are chosen in the page")
         run, shorter = _followed(pipeline.derive(model), time, showing, output)
         times = showing.times(float(run.t[-1]) if shorter else PAGE_TIME if time is None else time, output)
         movies, summary = [_shown(run, times, showing, _ending(output) == ".png")], run.summary()
@@ -163,10 +163,10 @@ def animate_document(
     else:
         write_movies(movies, output, showing, on_stderr)
         checks = () if run is None else movie_read_back(run, movies[0])
-    told = _told(model, summary, movies, output, showing, run)
-    told = replace(told, notes=(*told.notes, *filter(None, (shorter,))))
+    reported = _reported(model, summary, movies, output, showing, run)
+    reported = replace(reported, notes=(*reported.notes, *filter(None, (shorter,))))
     wrong = "; ".join(f"{check.name}: {check.detail}" for check in checks if check.ok is False)
-    return replace(told, failed="; ".join(filter(None, (told.failed, wrong))))
+    return replace(reported, failed="; ".join(filter(None, (reported.failed, wrong))))
 
 
 def _followed(equations: Equations, time: float | None, showing: Showing, output: str) -> tuple[Trajectory, str]:
@@ -187,8 +187,8 @@ def movie_read_back(run: Trajectory, movie: Movie) -> Iterator[Check]:
     """Whether frames show the run."""
     if movie.scene is None:
         return iter(())
-    return pictures_told(
-        (state, picture_told(movie.drawing, movie.scene, frame)) for frame, state in states_shown(run, movie.times)
+    return pictures_reported(
+        (state, picture_reported(movie.drawing, movie.scene, frame)) for frame, state in states_shown(run, movie.times)
     )
 
 
@@ -199,7 +199,7 @@ def _virtual_document(model: Model, reaction: str, output: str, showing: Showing
     name = found.reaction.name
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "virtual": name}
     summary = f"{model.name}: the virtual displacement that gives {name}"
-    said = prose(summary if stands else f"{summary}; freedoms besides it stand still")
+    said = prose(summary if stands else f"{summary}; degrees of freedom besides it stand still")
     symbol = found.structure.system.symbols.graph.symbol(name)
     steps = virtual_work_step(found.reaction, symbol).statements if stands else ()
     return plain_document(model, lambda: payload, said, *steps, prose(_written(output, count)))
@@ -257,25 +257,25 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
     system = system_of(model, modes_at_rest(model))
-    stands = not has_freedoms(system)
+    stands = not has_degrees_of_freedom(system)
     structure = structure_of(with_drives_held(system)[0] if stands else system)
     if stands:
         refuse_loose(structure)
     return VirtualDisplacement(structure, released_in(structure, reaction)), stands
 
 
-def _told(
+def _reported(
     model: Model, summary: str, movies: Sequence[Movie], output: str, showing: Showing, run: Trajectory | None
 ) -> Document:
     """What was written; a run that did not reach its end fails, though what there is of it is shown."""
     failed = "" if run is None or run.ok else run.message
     count, still = len(movies[0].times), all(movie.stands_still for movie in movies)
-    told_already = run is not None and bool(run.still)
-    notes = (NOTHING_MOVES,) if count > 1 and still and not told_already else ()
+    reported_already = run is not None and bool(run.still)
+    notes = (NOTHING_MOVES,) if count > 1 and still and not reported_already else ()
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "speed": showing.speed}
-    told = (prose(f"{model.name}: {summary}"), prose(_written(output, count)))
-    document = plain_document(model, lambda: payload, *told, failed=failed, notes=notes)
-    document = document if run is None else with_start_told(document, model, run)
+    reported = (prose(f"{model.name}: {summary}"), prose(_written(output, count)))
+    document = plain_document(model, lambda: payload, *reported, failed=failed, notes=notes)
+    document = document if run is None else with_start_reported(document, model, run)
     return replace(document, interrupted=run is not None and run.status == "interrupted")
 
 
@@ -324,7 +324,7 @@ def _run_of(
     if not isinstance(motion, Trajectory):
         return pipeline.simulate(motion, time=PAGE_TIME if time is None else time, parameters=parameters, start=start)
     if time is not None or parameters or start:
-        raise UsageError("a run has its time and values already", mend="give the model in its place")
+        raise UsageError("a run has its time and values already", fix="give the model in its place")
     return motion
 
 
@@ -345,7 +345,7 @@ def refuse_ending(path: str) -> None:
         UsageError: the name has another ending.
     """
     if _ending(path) not in ENDINGS:
-        raise UsageError(f"no moving picture can be written as '{path}'", mend=f"endings are {', '.join(ENDINGS)}")
+        raise UsageError(f"no moving picture can be written as '{path}'", fix=f"endings are {', '.join(ENDINGS)}")
 
 
 def _written(output: str, count: int) -> str:
@@ -382,9 +382,9 @@ def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movi
     from eomgen.documents.linearize.result import linearize
 
     if _ending(output) == ".html":
-        raise UsageError("small motions have no page", mend="write a .gif")
+        raise UsageError("small motions have no page", fix="write a .gif")
     if _ending(output) == ".png" and count > 1:
-        raise UsageError(f"a strip shows one small motion, not {count}", mend="take --modes 1, or write a .gif")
+        raise UsageError(f"a strip shows one small motion, not {count}", fix="take --modes 1, or write a .gif")
     frames = showing.of_a_swing(output)
     return mode_movies(linearize(model).modes, count, frames)
 

@@ -60,10 +60,10 @@ def refuse_no_place(model: Model, names: Iterable[str]) -> None:
     for name in names:
         if name not in model.coordinates:
             what = f"--from-rest: there is no coordinate '{name}'"
-            raise UsageError(what, mend=nearest_name(name, model.coordinates))
+            raise UsageError(what, fix=nearest_name(name, model.coordinates))
         if model.coordinates[name].driven:
             free = listed(q for q, part in model.coordinates.items() if not part.driven)
-            raise UsageError(f"--from-rest: '{name}' is driven, it moves as given", mend=f"there are {free}")
+            raise UsageError(f"--from-rest: '{name}' is driven, it moves as given", fix=f"there are {free}")
 
 
 def _equation(model: Model, text: str, option: str) -> tuple[Any, tuple[Taken, ...]]:
@@ -72,22 +72,20 @@ def _equation(model: Model, text: str, option: str) -> tuple[Any, tuple[Taken, .
     try:
         return equation_typed(model, text, declared=True)
     except ExpressionError as error:
-        raise UsageError(
-            f"{option} {text}: {error.what}", mend=error.mend or f'write {option} "theta = pi/2"'
-        ) from error
+        raise UsageError(f"{option} {text}: {error.what}", fix=error.fix or f'write {option} "theta = pi/2"') from error
 
 
 def assignments(given: Iterable[str], example: str) -> list[tuple[str, str]]:
     """(name, text) of each NAME=VALUE.
 
     Raises:
-        UsageError: a word that is no assignment; `example` is its mend.
+        UsageError: a word that is no assignment; `example` is its fix.
     """
     pairs = []
     for word in given:
         name, sign, text = word.partition("=")
         if not sign or not name.strip() or not text.strip():
-            raise UsageError(f"'{word}' is no assignment", mend=f"write {example}")
+            raise UsageError(f"'{word}' is no assignment", fix=f"write {example}")
         pairs.append((name.strip(), text.strip()))
     return pairs
 

@@ -9,12 +9,12 @@ from eomgen.documents.document import Document, plain_document
 from eomgen.documents.statements import Lines
 from eomgen.errors import Problem
 from eomgen.mechanics.constraints.rank import Freedom
-from eomgen.mechanics.dynamics.formulations import told_of_nodes, with_nodes_balanced
+from eomgen.mechanics.dynamics.formulations import reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.rigidity.structure import Structure
 from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
 from eomgen.model.unbuilt import warnings_of
-from eomgen.proof.freedoms import counted_otherwise, lines_otherwise, standing_otherwise
+from eomgen.proof.degrees_of_freedom import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
@@ -26,13 +26,13 @@ def check_document(model: Model) -> Document:
     model = with_nodes_balanced(model)
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    told = {**_declared(found), **_counted(found), **_started(found.start)}
+    reported = {**_declared(found), **_counted(found), **_started(found.start)}
     wrong = (
         counted_otherwise(model, found.modes, found.freedom)
         or ("" if found.structure is None else standing_otherwise(found.structure))
-        or lines_otherwise(lines, told, found.freedom)
+        or lines_otherwise(lines, reported, found.freedom)
     )
-    entries = {"ok": not wrong, **told, "problems": [Problem("", wrong).as_dict()] if wrong else []}
+    entries = {"ok": not wrong, **reported, "problems": [Problem("", wrong).as_dict()] if wrong else []}
     document = plain_document(model, lambda: entries, Lines(tuple(lines)), failed=wrong)
     return replace(document, cautions=found.cautions)
 
@@ -41,14 +41,14 @@ def _declared_lines(found: Checked) -> list[str]:
     model, missing = found.model, found.missing
     remark = dict.fromkeys(found.driven, " (driven)") | dict.fromkeys(found.dependent, " (dependent)")
     count = len(warnings_of(model)) + len(found.cautions)
-    told = "no problems found" if not count else f"{count} warning{'s' if count > 1 else ''}"
-    lines = [f"{model.name}: {told}", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
+    reported = "no problems found" if not count else f"{count} warning{'s' if count > 1 else ''}"
+    lines = [f"{model.name}: {reported}", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
     lines += [f"trusses: {listed(_truss(*each) for each in model.trusses.items())}"] if model.trusses else []
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"unknowns: {listed(model.unknowns)}"] if model.unknowns else []
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
     units = inferred_units(model)
-    lines += [f"node: {words}" for words in told_of_nodes(model)]
+    lines += [f"node: {words}" for words in reported_of_nodes(model)]
     return [*lines, f"units inferred: {listed(f'{name} [{unit}]' for name, unit in units.items())}"] if units else lines
 
 
@@ -64,7 +64,7 @@ def _start_lines(found: Checked) -> list[str]:
 def _rest_lines(found: Checked) -> list[str]:
     """What has no coordinates, what does not touch, what is not derived."""
     mobility, structure, waiting = found.mobility, found.structure, found.unbuilt
-    lines = [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their ties"]
+    lines = [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their constraints"]
     lines += [] if structure is None else [f"structure: {_held(structure)}"]
     lines += [f"open at the start: {listed(found.open)}"] if found.open else []
     lines += [f"not derived yet: {listed(f'{kind} ({where})' for where, kind in waiting)}"] if waiting else []
@@ -114,7 +114,9 @@ def _counted(found: Checked) -> dict[str, Any]:
         "position_freedoms": found.positions,
         "closing": list(freedom.closing),
         "reaction_only": list(freedom.identical),
-        "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant],
+        "redundant": [
+            {"tie": r.constraint, "row": r.number, "follows_from": list(r.others)} for r in freedom.redundant
+        ],
         "velocity_rows": _velocity_rows(freedom),
     }
 
@@ -129,7 +131,11 @@ def _started(start: LoopStart) -> dict[str, Any]:
         "change_point": begun is not None and begun.fork is not None,
         "start_changed": [{"name": c.name, "from": c.before, "to": c.after, "given": c.given} for c in changes],
         "branches": [
-            {"values": dict(way.values), "sign": way.sign or None, "left": {side.tie: side.left for side in way.sides}}
+            {
+                "values": dict(way.values),
+                "sign": way.sign or None,
+                "left": {side.constraint: side.left for side in way.sides},
+            }
             for way in ways
         ],
     }
@@ -139,7 +145,7 @@ def _velocity_rows(freedom: Freedom) -> list[dict[str, Any]]:
     rows = () if freedom.integrability is None else freedom.integrability.rows
     return [
         {
-            "tie": r.tie,
+            "tie": r.constraint,
             "row": r.number,
             "integrable": r.integrable,
             "integral": None if r.integral is None else to_text(r.integral),

@@ -7,6 +7,7 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import Freedom, freedom_of
 from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
 from eomgen.mechanics.dynamics.system import system_of
@@ -25,7 +26,6 @@ from eomgen.model.fields import Table
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)
@@ -119,19 +119,23 @@ def checked_model(model: Model) -> Checked:
 
 
 def _open(model: Model, start: LoopStart) -> tuple[Problem, ...]:
-    """Ties that do not close."""
-    ties = [name for name in model.constraints if f"'{name}'" in start.refused]
-    return (Problem(f"constraints.{ties[0]}" if ties else "constraints", start.refused),) if start.refused else ()
+    """Constraints that do not close."""
+    constraints = [name for name in model.constraints if f"'{name}'" in start.refused]
+    return (
+        (Problem(f"constraints.{constraints[0]}" if constraints else "constraints", start.refused),)
+        if start.refused
+        else ()
+    )
 
 
 def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
-    """Coordinates that are to move, and ties that let nothing move."""
+    """Coordinates that are to move, and constraints that let nothing move."""
     free = [name for name, q in model.coordinates.items() if not (q.driven or q.dependent)]
     given = any(leaf.path[0] == "constraints" and "t" in x.names for leaf, x in Catalog(model, ()).expressions)
     if freedom.by_rank != 0 or not free or given:
         return ()
-    what = f"nothing can move: the ties leave '{free[0]}' no freedom"
-    return (Problem(f"coordinates.{free[0]}", what, mend="look for a hinge that is missing, or a tie too many"),)
+    what = f"nothing can move: the constraints leave '{free[0]}' no freedom"
+    return (Problem(f"coordinates.{free[0]}", what, fix="look for a hinge that is missing, or a constraint too many"),)
 
 
 def _unhung(model: Model) -> Iterator[Problem]:
@@ -140,33 +144,34 @@ def _unhung(model: Model) -> Iterator[Problem]:
         mass = body.mass if body.shape is None else body.shape.mass
         if body.joint is None and mass is not None and value_of(mass, exact_parameters(model)) != 0:
             what = f"body '{name}' has no joint, and stands still in the ground's frame"
-            yield Problem(f"bodies.{name}", what, mend="hang it by a joint; what is to stand still needs no mass")
+            yield Problem(f"bodies.{name}", what, fix="hang it by a joint; what is to stand still needs no mass")
 
 
 def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Problem]:
-    """Ties with a direction in ground axes that would leave more freedoms if it turned with one of their bodies."""
-    for name, tie in model.constraints.items() if freedom.by_rank is not None and model.space == "space" else ():
-        for written, other in tie.turned():
+    """Constraints with a direction in ground axes that would leave more degrees of freedom if it turned with one of
+    their bodies."""
+    for name, constraint in model.constraints.items() if freedom.by_rank is not None and model.space == "space" else ():
+        for written, other in constraint.turned():
             try:
                 found = freedom_of(replace(model, constraints=Table({**model.constraints, name: other})), modes).by_rank
-            except (DerivationError, ModelError):  # its ties do not close so
+            except (DerivationError, ModelError):  # its constraints do not close so
                 continue
             if found is not None and freedom.by_rank is not None and found > freedom.by_rank:
                 count = f"{freedom.by_rank} degree{'' if freedom.by_rank == 1 else 's'} of freedom"
                 what = f"the axis of '{name}' is in the ground's axes, and leaves {count}"
-                mend = f"in a body's own axes it leaves {found}: {written}"
-                yield Problem(f"constraints.{name}", what, mend=mend)
+                fix = f"in a body's own axes it leaves {found}: {written}"
+                yield Problem(f"constraints.{name}", what, fix=fix)
                 break
 
 
 def _misplaced(model: Model) -> Iterator[Problem]:
-    """Ties whose start lies where hardly anybody means it: in a bowl that is rolled on outside."""
+    """Constraints whose start lies where hardly anybody means it: in a bowl that is rolled on outside."""
     try:
         motion = motion_of(scope_of(model))
-        for name, tie in model.constraints.items():
-            what, mend = tie.misplaced(SystemScene(motion, f"constraints.{name}"))
+        for name, constraint in model.constraints.items():
+            what, fix = constraint.misplaced(SystemScene(motion, f"constraints.{name}"))
             if what:
-                yield Problem(f"constraints.{name}", what, mend=mend)
+                yield Problem(f"constraints.{name}", what, fix=fix)
     except (DerivationError, ModelError):  # verbs that need equations of motion tell it
         return
 

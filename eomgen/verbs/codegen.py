@@ -11,7 +11,7 @@ from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.generated import Generated, generate
 from eomgen.model.parts import Model
-from eomgen.verbs.outcome import with_ties_closed
+from eomgen.verbs.outcome import with_constraints_closed
 
 
 def codegen_document(
@@ -59,7 +59,7 @@ def codegen_document(
     paths = [] if refused else [str(path) for path in found.write(directory)]
     lines = ("no files were written",) if refused else tuple(paths)
     document = plain_document(model, lambda: _payload(found, paths), Lines(lines))
-    document = with_ties_closed(replace(document, notes=tuple(found.notes)), pipeline.derive(found.model).system)
+    document = with_constraints_closed(replace(document, notes=tuple(found.notes)), pipeline.derive(found.model).system)
     return proven(document, certificate)
 
 
@@ -82,8 +82,8 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
     further = {"outputs": found.outputs, "matrices": found.matrices, "jacobian": found.jacobian}
     for key, emitted in (*further.items(), ("regressor", found.regressor)):
         if emitted is not None:
-            program, told = emitted
-            payload[key] = list(told.outputs or [name for name, *_ in told.blocks])
+            program, reported = emitted
+            payload[key] = list(reported.outputs or [name for name, *_ in reported.blocks])
             payload[f"{key}_operations"] = program.count.total
     if moved:
         payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}

@@ -39,20 +39,22 @@ def following(model: Model, given: Sequence[str]) -> Model:
         elif name in coordinates:
             coordinates[name] = _driven(coordinates[name], name, _read(path, name))
         else:
-            mend = nearest_name(name, [*coordinates, *inputs])
-            raise UsageError(f"--follow: there is no coordinate or input '{name}'", mend=mend)
+            fix = nearest_name(name, [*coordinates, *inputs])
+            raise UsageError(f"--follow: there is no coordinate or input '{name}'", fix=fix)
     changes: dict[str, Any] = {"coordinates": Table[Coordinate](coordinates), "inputs": Table[Input](inputs)}
     try:
         replace(model, **changes)  # what is wrong with a model is wrong with this one
     except ModelError as error:
-        raise UsageError(f"--follow: {error.problems[0].what}", mend=error.problems[0].mend) from error
+        raise UsageError(f"--follow: {error.problems[0].what}", fix=error.problems[0].fix) from error
     followed: Model = altered(model, **changes)
     return followed
 
 
 def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:
     if part.dependent:
-        raise UsageError(f"--follow: coordinate '{name}' is dependent, the ties move it", mend="drive another one")
+        raise UsageError(
+            f"--follow: coordinate '{name}' is dependent, the constraints move it", fix="drive another one"
+        )
     (way,) = [way for way in LAWS if getattr(part, way) is not None] or ["motion"]
     own = {} if way != "motion" else {"start": None, "speed": None}
     driven: Coordinate = altered(part, **{way: law}, **own)
@@ -87,11 +89,11 @@ def _read(path: str, name: str) -> Expression:
         raise UsageError(f"--follow: there is no column '{name}'", path, nearest_name(name, heads[1:]))
     column = heads.index(name) if name in heads else 1
     if any(len(row) <= column for row in rows):
-        raise UsageError(f"--follow: a row has no column {column + 1}", path, mend="write a time and a value a row")
+        raise UsageError(f"--follow: a row has no column {column + 1}", path, fix="write a time and a value a row")
     try:
         return samples([row[0].strip() for row in rows], [row[column].strip() for row in rows])
     except ModelError as error:
-        raise UsageError(f"--follow: {error.problems[0].what}", path, mend=error.problems[0].mend) from error
+        raise UsageError(f"--follow: {error.problems[0].what}", path, fix=error.problems[0].fix) from error
 
 
 def _is_number(text: str) -> bool:

@@ -15,7 +15,7 @@ from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_re
 from eomgen.model.parts import Model
 from eomgen.model.reader import load
 from eomgen.model.units import units_of_model
-from eomgen.verbs.outcome import with_ties_closed
+from eomgen.verbs.outcome import with_constraints_closed
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
@@ -45,7 +45,7 @@ def derive_document(
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document
-    document = with_ties_closed(document, equations.system)
+    document = with_constraints_closed(document, equations.system)
     return equations.proven(document, data=data) if certify else proven(document, None)
 
 

@@ -13,11 +13,11 @@ from eomgen.documents.equation_steps import sides_of
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Formula, Grid, Statement, Step, prose
 from eomgen.equations import Equations
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -35,7 +35,7 @@ class Compared:
     """One equation in both models, R = 0.
 
     Args:
-        name: of the speed along which it is, or of a tie's row.
+        name: of the speed along which it is, or of a constraint's row.
         first, second: R in this model and in the other; None where one does not have it.
         same: whether they are the same function, by a factor of 1.
     """
@@ -82,7 +82,7 @@ class Difference:
 
     @cached_property
     def equations(self) -> tuple[Compared, ...]:
-        """Every equation of motion and every row that closes a tie, of either."""
+        """Every equation of motion and every row that closes a constraint, of either."""
         graph = Graph()
         rows = [_rows(e.graph, graph) for e in (self.first, self.second)]
         names = dict.fromkeys((*rows[0], *rows[1]))
@@ -117,29 +117,29 @@ class Difference:
     def _declarations(self) -> tuple[Step, ...]:
         rows = [(table, ", ".join(new), ", ".join(old)) for table, (new, old) in self.declared.items()]
         values = [(name, _shown(a), _shown(b)) for name, (a, b) in self.values.items()]
-        told: list[Statement] = []
+        reported: list[Statement] = []
         if rows:
-            told.append(Grid(("declared", "only in the other", "only in this one"), tuple(rows)))
+            reported.append(Grid(("declared", "only in the other", "only in this one"), tuple(rows)))
         if values:
-            told.append(Grid(("value of", "in this one", "in the other"), tuple(values)))
-        return (Step("declared", "What is declared", tuple(told)),) if told else ()
+            reported.append(Grid(("value of", "in this one", "in the other"), tuple(values)))
+        return (Step("declared", "What is declared", tuple(reported)),) if reported else ()
 
     @property
     def _statements(self) -> list[Statement]:
         by_status = {status: [x for x in self.equations if x.status == status] for status in ("same", "changed")}
-        told: list[Statement] = []
+        reported: list[Statement] = []
         if by_status["same"]:
             names = ", ".join(x.name for x in by_status["same"])
-            told.append(prose(f"The same in both, as functions of all names: {names}."))
+            reported.append(prose(f"The same in both, as functions of all names: {names}."))
         for x in by_status["changed"]:
             assert x.first is not None and x.second is not None
-            told += [prose(f"Along {x.name}, here and in the other, and the other less this one:")]
-            told += [Formula((side, 0)) for side in (x.first, x.second)] + [Formula((_difference(x),))]
+            reported += [prose(f"Along {x.name}, here and in the other, and the other less this one:")]
+            reported += [Formula((side, 0)) for side in (x.first, x.second)] + [Formula((_difference(x),))]
         for x in self.equations:
             if x.status in ("added", "removed"):
                 where = "in the other" if x.status == "added" else "in this one"
-                told += [prose(f"Along {x.name}, only {where}:"), Formula((_present(x), 0))]
-        return told or [prose("Nothing is free to move in either.")]
+                reported += [prose(f"Along {x.name}, only {where}:"), Formula((_present(x), 0))]
+        return reported or [prose("Nothing is free to move in either.")]
 
 
 def difference_document(model: Model, other: Model, *, method: str, certify: bool) -> Document:
@@ -150,14 +150,17 @@ def difference_document(model: Model, other: Model, *, method: str, certify: boo
 
 
 def _both(first: Certificate, second: Certificate) -> Certificate:
-    told = ((f"this model: {c.name}", c) for c in first.checks), ((f"the other: {c.name}", c) for c in second.checks)
-    return Certificate(tuple(replace(check, name=name) for part in told for name, check in part))
+    reported = (
+        ((f"this model: {c.name}", c) for c in first.checks),
+        ((f"the other: {c.name}", c) for c in second.checks),
+    )
+    return Certificate(tuple(replace(check, name=name) for part in reported for name, check in part))
 
 
 def _rows(equations: EquationsOfMotion, graph: Graph) -> dict[str, Scalar]:
     """R of every equation by its name, over the symbols of a common graph; symbols of one name are one."""
     named = {u.name.removesuffix("'"): R for u, R in zip(equations.symbols.u, _residuals(equations), strict=True)}
-    rows = zip(equations.system.ties.closing, equations.J, equations.gamma, strict=True)
+    rows = zip(equations.system.constraints.closing, equations.J, equations.gamma, strict=True)
     for row, J, gamma in rows:
         terms = (x * a for x, a in zip(J, equations.symbols.a, strict=True))
         named[row.label] = sum(terms, start=gamma)

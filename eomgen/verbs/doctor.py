@@ -8,10 +8,10 @@ import shutil
 from importlib import metadata
 
 from eomgen.codegen.build import compiler
+from eomgen.disk_cache import cache_folder
 from eomgen.documents.document import Document, lines_document
 from eomgen.documents.moving_picture import ffmpeg
 from eomgen.errors import ToolMissing
-from eomgen.kept import cache_folder
 from eomgen.version import __version__
 
 EXTRAS = {"formulas": "math-core", "PDF": "typst", "space": "jupyter-threejs-sage", "notebooks": "nbclient"}

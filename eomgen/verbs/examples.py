@@ -8,7 +8,7 @@ from pathlib import Path
 
 from eomgen.documents.document import Document, lines_document
 from eomgen.errors import UsageError
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 
 HOMES = (Path(__file__).parent.parent / "examples", Path(__file__).parent.parent.parent / "models")
 """where the models are: in what is installed, in the tree"""
@@ -34,7 +34,7 @@ def example_named(name: str) -> Path:
         if known in found:
             return found[known]
     short = {known.rpartition("/")[2]: known for known in found}
-    raise UsageError(f"there is no example '{name}'", mend=nearest(bare, short) or "see eomgen examples")
+    raise UsageError(f"there is no example '{name}'", fix=nearest(bare, short) or "see eomgen examples")
 
 
 def examples_document() -> Document:

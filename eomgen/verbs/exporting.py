@@ -21,7 +21,7 @@ def refuse_strange_endings(output: str) -> None:
         UsageError: the file is called like no robot.
     """
     if Path(output).suffix.lower() != ".urdf":
-        raise UsageError(f"'{output}' is no name for a robot: the ending is .urdf", mend="name it so")
+        raise UsageError(f"'{output}' is no name for a robot: the ending is .urdf", fix="name it so")
 
 
 def export_document(model: Model, *, output: str) -> Document:

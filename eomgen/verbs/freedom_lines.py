@@ -18,25 +18,34 @@ def freedom_lines(model: Model, freedom: Freedom) -> list[str]:
         lines = [f"degrees of freedom: not counted yet ({freedom.not_counted})"]
         return lines if freedom.by_formula is None else [*lines, _formula_line(model, freedom)]
     lines = [f"degrees of freedom: {freedom.by_rank} by rank", _formula_line(model, freedom)]
-    lines += [f"ties that close: {_ties(freedom.closing_rows, freedom.identical)}"] if freedom.closing else []
-    lines += [f"ties that only react: {_ties(freedom.identical_rows, freedom.closing)}"] if freedom.identical else []
+    lines += (
+        [f"constraints that close: {_constraints(freedom.closing_rows, freedom.identical)}"] if freedom.closing else []
+    )
+    lines += (
+        [f"constraints that only react: {_constraints(freedom.identical_rows, freedom.closing)}"]
+        if freedom.identical
+        else []
+    )
     lines += _velocity_lines(freedom)
     for row in freedom.redundant:
         alone = "the joints" if row.by_joints else "its other rows"
         others = f", it follows from {listed(row.others) if row.others else alone}"
-        lines.append(f"redundant: row {row.number} of tie '{row.tie}'{others}")
+        lines.append(f"redundant: row {row.number} of constraint '{row.constraint}'{others}")
     return lines
 
 
-def _ties(rows: Sequence[RowName], beside: Sequence[str]) -> str:
-    """The ties of rows; these too of a tie that stands beside them with others: floor (rows 2 and 3)."""
-    return listed(f"{tie} ({_numbered(numbers)})" if tie in beside else tie for tie, numbers in _by_tie(rows).items())
+def _constraints(rows: Sequence[RowName], beside: Sequence[str]) -> str:
+    """The constraints of rows; these too of a constraint that stands beside them with others: floor (rows 2 and 3)."""
+    return listed(
+        f"{constraint} ({_numbered(numbers)})" if constraint in beside else constraint
+        for constraint, numbers in _by_constraint(rows).items()
+    )
 
 
-def _by_tie(rows: Sequence[RowName]) -> dict[str, list[int]]:
+def _by_constraint(rows: Sequence[RowName]) -> dict[str, list[int]]:
     found: dict[str, list[int]] = {}
-    for tie, number in rows:
-        found.setdefault(tie, []).append(number)
+    for constraint, number in rows:
+        found.setdefault(constraint, []).append(number)
     return found
 
 
@@ -47,7 +56,8 @@ def _numbered(numbers: Sequence[int]) -> str:
 
 
 def _velocity_lines(freedom: Freedom) -> list[str]:
-    """Of ties that are velocities: which of them are holonomic, what they keep, and how many freedoms in position."""
+    """Of constraints that are velocities: which of them are holonomic, what they keep, and how many degrees of
+    freedom in position."""
     found = freedom.integrability
     if found is None:
         return []
@@ -63,9 +73,9 @@ def _velocity_lines(freedom: Freedom) -> list[str]:
 
 
 def _rows(rows: Sequence[VelocityRow]) -> list[str]:
-    """row 1 of tie 'edge', rows 2 and 3 of tie 'wheel'"""
-    named = _by_tie([(row.tie, row.number) for row in rows])
-    return [f"{_numbered(numbers)} of tie '{tie}'" for tie, numbers in named.items()]
+    """row 1 of constraint 'edge', rows 2 and 3 of constraint 'wheel'"""
+    named = _by_constraint([(row.constraint, row.number) for row in rows])
+    return [f"{_numbered(numbers)} of constraint '{constraint}'" for constraint, numbers in named.items()]
 
 
 def _formula_line(model: Model, freedom: Freedom) -> str:
@@ -74,7 +84,7 @@ def _formula_line(model: Model, freedom: Freedom) -> str:
     return f"count by formula: {freedom.by_formula} = {freedom.formula or '0'}{remark}"
 
 
-MOST_TOLD = 5  # other ways
+MOST_REPORTED = 5  # other ways
 
 
 def branch_lines(model: Model, branches: Branches | None) -> list[str]:
@@ -82,10 +92,13 @@ def branch_lines(model: Model, branches: Branches | None) -> list[str]:
     if branches is None:
         return []
     sided = _sided(branches)
-    lines = [f"loops at the start: {_told(branches.here, sided)}"]
+    lines = [f"loops at the start: {_reported(branches.here, sided)}"]
     if not branches.others:
         return lines
-    others, more = [_told(each, sided) for each in branches.others[:MOST_TOLD]], len(branches.others) - MOST_TOLD
+    others, more = (
+        [_reported(each, sided) for each in branches.others[:MOST_REPORTED]],
+        len(branches.others) - MOST_REPORTED,
+    )
     others += [f"and {more} more ways"] if more > 0 else []
     kept = f" with the same {listed(branches.kept)}" if branches.kept else ""
     also = [f"they also close{kept} at {others[0]}"] if len(others) == 1 else [f"they also close{kept} at"]
@@ -94,14 +107,16 @@ def branch_lines(model: Model, branches: Branches | None) -> list[str]:
 
 def _sided(branches: Branches) -> tuple[str, ...]:
     """The pins that do not lie on the same side in all ways."""
-    here = {side.tie: side.left for side in branches.here.sides}
-    others = [{side.tie: side.left for side in each.sides} for each in branches.others]
-    return tuple(tie for tie, left in here.items() if any(each.get(tie, left) != left for each in others))
+    here = {side.constraint: side.left for side in branches.here.sides}
+    others = [{side.constraint: side.left for side in each.sides} for each in branches.others]
+    return tuple(
+        constraint for constraint, left in here.items() if any(each.get(constraint, left) != left for each in others)
+    )
 
 
-def _told(branch: AssemblyMode, sided: tuple[str, ...]) -> str:
+def _reported(branch: AssemblyMode, sided: tuple[str, ...]) -> str:
     """beta = 0.48, gamma = 1.57 (-), 'B' on the left"""
-    sides = [f"'{s.tie}' on the {'left' if s.left else 'right'}" for s in branch.sides if s.tie in sided]
+    sides = [f"'{s.constraint}' on the {'left' if s.left else 'right'}" for s in branch.sides if s.constraint in sided]
     return ", ".join([str(branch), *sides])
 
 
@@ -110,9 +125,9 @@ def _keys(model: Model, branches: Branches, sided: tuple[str, ...]) -> list[str]
     sign = f"(+) and (-): det d phi/d({listed(here.values)}), which is 0 in a dead centre, where two ways meet"
     lines = [sign] if here.sign else []
     lines += [
-        f"left and right of '{s.tie}': of the line from the hinge of '{s.first}' to that of '{s.second}'"
+        f"left and right of '{s.constraint}': of the line from the hinge of '{s.first}' to that of '{s.second}'"
         for s in here.sides
-        if s.tie in sided
+        if s.constraint in sided
     ]
     near = ", ".join(f"{name} = {{ near = {_number(model, name, x)} }}" for name, x in first.values.items())
     return [f"  {line}" for line in (*lines, f"another way is taken from a start near it: {near}")]

@@ -33,7 +33,7 @@ def identify_document(model: Model, *, data: str | None = None, certify: bool = 
     """
     if data is None:
         groups = regressor(model)
-        return proven(_groups_told(groups), groups.certify() if certify else None)
+        return proven(_groups_reported(groups), groups.certify() if certify else None)
     found = identify(model, columns_of(data))
     width = max(map(len, (*found.base, *found.values)), default=0)
     poor = f" (poor: beyond {POOR:g})" if found.condition > POOR else ""
@@ -55,7 +55,7 @@ def identify_document(model: Model, *, data: str | None = None, certify: bool = 
     return proven(document, found.certify() if certify else None)
 
 
-def _groups_told(found: Regressor) -> Document:
+def _groups_reported(found: Regressor) -> Document:
     """The base parameters of any motion."""
     base = found.base
     width = max((len(group.name) for group in base.groups), default=0)

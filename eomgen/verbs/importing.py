@@ -25,7 +25,7 @@ def refuse_other_endings(output: str | None) -> None:
         UsageError: the file that is to be written is called like no model file.
     """
     if output is not None and Path(output).suffix.lower() != ".toml":
-        raise UsageError(f"'{output}' is no name for a model file: the ending is .toml", mend="name it so")
+        raise UsageError(f"'{output}' is no name for a model file: the ending is .toml", fix="name it so")
 
 
 def import_document(
@@ -53,9 +53,9 @@ def import_document(
     }
     document = lines_document(lambda: entries, *([output] if output else robot.text.splitlines()))
     wrong = _otherwise(file, robot)
-    told = tuple(f"left out: {each}" for each in robot.left_out)
+    reported = tuple(f"left out: {each}" for each in robot.left_out)
     return replace(
-        document, failed=wrong, notes=(*told, *([f"now try: eomgen check {shlex.quote(output)}"] if output else ()))
+        document, failed=wrong, notes=(*reported, *([f"now try: eomgen check {shlex.quote(output)}"] if output else ()))
     )
 
 

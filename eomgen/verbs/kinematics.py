@@ -12,7 +12,7 @@ from eomgen.questions.velocities import kinematics as found_in
 from eomgen.verbs.assignments import nearest_name
 
 
-def kinematics_asked(
+def kinematics_requested(
     model: Model,
     *,
     at: WrittenEquation | None = None,
@@ -34,7 +34,7 @@ def kinematics_asked(
     except ModelError as error:
         if not given:
             raise
-        raise UsageError(f"--given: {error.what}", mend=error.mend) from error
+        raise UsageError(f"--given: {error.what}", fix=error.fix) from error
 
 
 def _pair(model: Model, text: str) -> tuple[str, str]:
@@ -45,9 +45,9 @@ def _pair(model: Model, text: str) -> tuple[str, str]:
     """
     point, word, body = (part.strip() for part in text.partition(" in "))
     if not word:
-        raise UsageError(f'--relative "{text}" is no point in a body', mend='write --relative "bead.center in hoop"')
+        raise UsageError(f'--relative "{text}" is no point in a body', fix='write --relative "bead.center in hoop"')
     if body not in model.bodies:
-        raise UsageError(f"--relative: there is no body '{body}'", mend=nearest_name(body, model.bodies))
+        raise UsageError(f"--relative: there is no body '{body}'", fix=nearest_name(body, model.bodies))
     if point not in model.named_points:
-        raise UsageError(f"--relative: there is no point '{point}'", mend=nearest_name(point, model.named_points))
+        raise UsageError(f"--relative: there is no point '{point}'", fix=nearest_name(point, model.named_points))
     return point, body

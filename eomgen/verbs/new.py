@@ -26,14 +26,14 @@ def new_document(name: str, example: str | None = None) -> Document:
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
     ending = Path(name).suffix
     if ending and ending != ".toml" and ending[1:].isalpha():
-        raise UsageError(f"a model file ends in .toml, not in {ending}", mend=f"eomgen new {Path(name).stem}")
+        raise UsageError(f"a model file ends in .toml, not in {ending}", fix=f"eomgen new {Path(name).stem}")
     if not path.stem.isprintable() or path.stem.startswith(".") or path.name == ".toml":
-        raise UsageError(f"{name!r} is no name for a model", mend="use letters, digits, _ and -")
+        raise UsageError(f"{name!r} is no name for a model", fix="use letters, digits, _ and -")
     text = (example_named(example) if example else TEMPLATES / "starter.toml").read_text(encoding="utf-8")
     if not example:
         text = text.replace('"NAME"', json.dumps(path.stem, ensure_ascii=False)).replace("FILE", shlex.quote(str(path)))
     if os.path.lexists(path):
-        raise UsageError(f"'{path}' is there already", mend="take another name")
+        raise UsageError(f"'{path}' is there already", fix="take another name")
     files.write(path, text)
     document = lines_document(lambda: {"file": str(path)}, str(path))
     return replace(document, notes=(f"now try: eomgen derive {shlex.quote(str(path))}",))

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
-from eomgen.errors import DerivationError, ModelError, OpenTies, Problem
+from eomgen.errors import DerivationError, ModelError, OpenConstraints, Problem
 from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.mechanics.start.state import Start, start_of_motion
 from eomgen.mechanics.statics.contacts import contacts_at_start
@@ -28,9 +28,9 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
     return document if over is None else replace(document, taken=(*document.taken, over.taken))
 
 
-def with_start_told(document: Document, model: Model, run: Trajectory | None = None) -> Document:
+def with_start_reported(document: Document, model: Model, run: Trajectory | None = None) -> Document:
     """The document with a note of what was changed where its model could not start as it is written; a warning where
-    nothing closes its ties.
+    nothing closes its constraints.
 
     Args:
         run: the motion that it tells of: that nothing moves is a note too.
@@ -41,34 +41,34 @@ def with_start_told(document: Document, model: Model, run: Trajectory | None = N
         return document
     try:
         words = _begun(model).words
-    except OpenTies as error:
-        return with_open_ties(document, error)
+    except OpenConstraints as error:
+        return with_open_constraints(document, error)
     except (DerivationError, ModelError):  # told by the verb, where it needs a start
         return document
     return replace(document, notes=(*document.notes, f"The start was {words}.")) if words else document
 
 
-def with_ties_closed(document: Document, system: System) -> Document:
-    """The document of what needs no start; with a warning where nothing closes the ties near it."""
+def with_constraints_closed(document: Document, system: System) -> Document:
+    """The document of what needs no start; with a warning where nothing closes the constraints near it."""
     try:
         start_of_motion(system)
-    except OpenTies as error:
-        return with_open_ties(document, error)
+    except OpenConstraints as error:
+        return with_open_constraints(document, error)
     except (DerivationError, ModelError):  # told by the verbs that need a start
         pass
     return document
 
 
-def with_open_ties(document: Document, error: OpenTies) -> Document:
-    """The document with a warning that nothing closes the ties of its model near the start."""
-    return replace(document, cautions=(*document.cautions, Problem(error.where, error.what, mend=error.mend)))
+def with_open_constraints(document: Document, error: OpenConstraints) -> Document:
+    """The document with a warning that nothing closes the constraints of its model near the start."""
+    return replace(document, cautions=(*document.cautions, Problem(error.where, error.what, fix=error.fix)))
 
 
-def named_open(model: Model, error: OpenTies) -> OpenTies:
-    """Which of its ties stays open at the start, and by how much, where all that is known is that one does."""
+def named_open(model: Model, error: OpenConstraints) -> OpenConstraints:
+    """Which of its constraints stays open at the start, and by how much, where all that is known is that one does."""
     try:
         _begun(model)
-    except OpenTies as exact:
+    except OpenConstraints as exact:
         return exact
     except (DerivationError, ModelError):
         pass

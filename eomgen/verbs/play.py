@@ -13,7 +13,7 @@ from eomgen.errors import UsageError
 from eomgen.model.parts import Model
 from eomgen.page.play import played, slider_ranges
 from eomgen.page.player import PlayerOptions
-from eomgen.verbs.outcome import with_start_told
+from eomgen.verbs.outcome import with_start_reported
 
 
 def play_document(
@@ -34,14 +34,14 @@ def play_document(
     found.write(output)
 
     def payload() -> dict[str, Any]:
-        told = found.played.told()
-        names = [slider["name"] for slider in told["sliders"]]
+        reported = found.played.reported()
+        names = [slider["name"] for slider in reported["sliders"]]
         return {"name": model.name, "files": [output], "sliders": names, "rests": found.rests or None}
 
     run = found.played.run
     document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
     document = replace(document, taken=taken, notes=tuple(filter(None, (found.rests, found.shorter))))
-    return proven(with_start_told(document, model, run), found.certify() if certify else None)
+    return proven(with_start_reported(document, model, run), found.certify() if certify else None)
 
 
 def refuse_other_endings(output: str) -> None:
@@ -51,4 +51,4 @@ def refuse_other_endings(output: str) -> None:
         UsageError: the name does not end in .html.
     """
     if Path(output).suffix.lower() not in (".html", ".htm"):
-        raise UsageError(f"no page can be written as '{output}'", mend="the ending is .html")
+        raise UsageError(f"no page can be written as '{output}'", fix="the ending is .html")

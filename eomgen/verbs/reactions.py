@@ -47,7 +47,7 @@ from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
-from eomgen.verbs.outcome import listed, with_start_told
+from eomgen.verbs.outcome import listed, with_start_reported
 
 NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
@@ -112,19 +112,19 @@ def reactions(
     held = bool(in_loads(model))
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system
-    asked = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
+    requested = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
     answered = partial(_answers, _at_rest(model, from_rest), at=at, from_rest=bool(from_rest))
     found: dict[str, Quantity]
     proof: Callable[[Mapping[str, Quantity]], Certificate]
     if at is None and not from_rest and resting_contacts(model):
-        found, proof = answered({named.name: named.unit for named in asked}, at="t = 0")
+        found, proof = answered({named.name: named.unit for named in requested}, at="t = 0")
     elif equations is not None and at is None and not from_rest:
-        found, proof = _formulas(equations, asked), partial(_proof_of_formulas, equations)
+        found, proof = _formulas(equations, requested), partial(_proof_of_formulas, equations)
     else:
-        found, proof = answered({named.name: named.unit for named in asked})
+        found, proof = answered({named.name: named.unit for named in requested})
     open_ = any(OPEN in (answer.message or "") for answer in found.values())
-    told = dict(sums_of_open(equations.in_print)) if open_ and equations is not None else {}
-    return FoundReactions(found, equations, proof, *(answered(told) if told else ({}, proof)))
+    reported = dict(sums_of_open(equations.in_print)) if open_ and equations is not None else {}
+    return FoundReactions(found, equations, proof, *(answered(reported) if reported else ({}, proof)))
 
 
 def reactions_document(
@@ -147,7 +147,7 @@ def reactions_document(
     found = reactions(model, at=at, from_rest=from_rest)
     equations = found.equations
     system = system_of(model) if equations is None else equations.system
-    asked = [named for named in named_reactions(balance_of(system)) if named.name in found]
+    requested = [named for named in named_reactions(balance_of(system)) if named.name in found]
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
@@ -159,15 +159,15 @@ def reactions_document(
     document = plain_document(
         model,
         lambda: {"name": model.name, "reactions": found, **more},
-        _listing(system, asked, found, bool(space)),
+        _listing(system, requested, found, bool(space)),
         *_law_statements(laws),
         *_open_statements(space),
         *_sum_statements(found.sums),
         failed=f"not answered: {listed(failed)}" if failed else broken,
         notes=(*_without_force(system), *(() if at or from_rest else _without_sliding(starting)))
-        or (() if found else ("nothing reacts: no body is held by joints or ties",)),
+        or (() if found else ("nothing reacts: no body is held by joints or constraints",)),
     )
-    document = with_start_told(document, starting)
+    document = with_start_reported(document, starting)
     if plot is not None:
         from eomgen.verbs.reaction_picture import reaction_picture
 
@@ -195,12 +195,12 @@ def _function(name: str) -> str:
 # -- as formulas -----------------------------------------------------------------------------------
 
 
-def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Quantity]:
+def _formulas(equations: Equations, requested: list[NamedReaction]) -> dict[str, Quantity]:
     """Every reaction as a formula, and its value at the start."""
     found = reaction_formulas(equations.in_print)
     values, missing = _at_start(equations)
     answered = {}
-    for named in asked:
+    for named in requested:
         formula = found[named.name]
         method = "balance of the bodies" + (", accelerations left in it" if formula.accelerated else "")
         value = 0.0 if formula.text == "0" else values.get(named.name)
@@ -219,7 +219,7 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
         columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
         values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
     except (MissingValues, DerivationError, ModelError) as error:
-        return {}, f"{error.what}; {error.mend}" if isinstance(error, DerivationError) and error.mend else error.what
+        return {}, f"{error.what}; {error.fix}" if isinstance(error, DerivationError) and error.fix else error.what
     rounding = ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
     return {
         n: float(x) if abs(x) > rounding else 0.0
@@ -247,7 +247,7 @@ def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> C
 
 
 def _answers(
-    model: Model, asked: Mapping[str, str], at: WrittenEquation | AtRest | str | None, from_rest: bool
+    model: Model, requested: Mapping[str, str], at: WrittenEquation | AtRest | str | None, from_rest: bool
 ) -> tuple[dict[str, Quantity], Callable[[Mapping[str, Quantity]], Certificate]]:
     """The answers to outputs that ask for reactions, or sums of them, in their order; and their proof.
 
@@ -256,11 +256,11 @@ def _answers(
     """
     instant = None if at is None else _instant(model, at)
     from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
-    values = [parse(text, references=True) for text in asked]
+    values = [parse(text, references=True) for text in requested]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
     model = _checked(model, f"--at {getattr(at, 'text', at)}", outputs=Table(outputs))
     solved = answers.solve(model)
-    pairs = zip(asked.items(), solved.values(), strict=True)
+    pairs = zip(requested.items(), solved.values(), strict=True)
     return {text: replace(answer, unit=unit) for (text, unit), answer in pairs}, partial(_proof_of_answers, solved)
 
 
@@ -269,10 +269,10 @@ def _proof_of_answers(solved: answers.Answers, found: Mapping[str, Quantity]) ->
     names = dict(zip(solved, found, strict=True))
     solved.update(zip(solved, found.values(), strict=True))
 
-    def told(check: Check) -> Check:
+    def reported(check: Check) -> Check:
         return replace(check, detail=re.sub(r"\bo\d+\b", lambda m: names.get(m[0], m[0]), check.detail))
 
-    return Certificate(tuple(map(told, solved.certify().checks)))
+    return Certificate(tuple(map(reported, solved.certify().checks)))
 
 
 def _instant(model: Model, at: WrittenEquation | AtRest | str) -> WrittenEquation | AtRest:
@@ -283,7 +283,7 @@ def _instant(model: Model, at: WrittenEquation | AtRest | str) -> WrittenEquatio
     try:
         return equation_typed(model, at)[0]
     except ExpressionError as error:
-        raise UsageError(f"at {at}: {error.what}", mend=error.mend or 'write "theta = pi/2"') from error
+        raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
 
 
 def _at_rest(model: Model, given: Values | Sequence[str]) -> Model:
@@ -306,13 +306,13 @@ def _checked(model: Model, where: str, **changes: Any) -> Model:
     try:
         return replace(model, **changes)
     except ModelError as error:
-        raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", mend=error.mend) from error
+        raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", fix=error.fix) from error
 
 
 # -- as it is told -----------------------------------------------------------------------------------
 
 
-def _listing(system: System, asked: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
+def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
     """Each reaction by name and in words, then as `solve` tells its answers.
 
     Args:
@@ -320,7 +320,7 @@ def _listing(system: System, asked: Iterable[NamedReaction], found: dict[str, Qu
     """
     balance = balance_of(system)
     rows = []
-    for named in asked:
+    for named in requested:
         answer = found[named.name]
         if below and OPEN in (answer.message or ""):
             answer = replace(answer, message=f"{OPEN}, see below")

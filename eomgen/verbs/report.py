@@ -13,16 +13,17 @@ from typing import Any
 from eomgen import files, pipeline
 from eomgen.codegen.program import identifier
 from eomgen.documents.document import Document, document_of, plain_document
+from eomgen.documents.equilibrium_picture import drawing_at_rest
 from eomgen.documents.inertia.result import inertia
 from eomgen.documents.latex import with_listings_typeset
 from eomgen.documents.linearize.result import linearize
 from eomgen.documents.proven import proven
-from eomgen.documents.rest_picture import drawing_at_rest
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Lines
 from eomgen.documents.statics.result import Statics, statics
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing, UsageError
+from eomgen.frozen import dataclass
 from eomgen.generated import Generated
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.model.parts import Model
@@ -43,19 +44,18 @@ from eomgen.page.player import (
 )
 from eomgen.page.read_back import report_read_back
 from eomgen.proof.check import Certificate, Check
-from eomgen.proof.pictures_told import pictures_told, states_shown
+from eomgen.proof.pictures_reported import pictures_reported, states_shown
 from eomgen.questions import answers
 from eomgen.questions.run import PAGE_TIME, run_of_a_page
 from eomgen.questions.velocities import kinematics
-from eomgen.records import dataclass
 from eomgen.scene.making import scene_of
-from eomgen.scene.phase_frames import picture_told
+from eomgen.scene.phase_frames import picture_reported
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import nearest_name
-from eomgen.verbs.outcome import with_start_told
+from eomgen.verbs.outcome import with_start_reported
 
 SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
 MOST_RELEASED = 8  # reactions whose virtual displacement a page plays
@@ -118,7 +118,7 @@ class Subject:
     def document(self, key: str) -> Document:
         """The document of a verb, proven where that is asked; no listings are left in it."""
         if key not in self.documents:
-            self.documents[key] = with_listings_typeset(_derived(self) if key == "derivation" else self._told(key))
+            self.documents[key] = with_listings_typeset(_derived(self) if key == "derivation" else self._reported(key))
         return self.documents[key]
 
     @cached_property
@@ -126,7 +126,7 @@ class Subject:
         """The results of those that have one, by section."""
         return {}
 
-    def _told(self, key: str) -> Document:
+    def _reported(self, key: str) -> Document:
         found = self.found[key] = FOUND[key](self.model)
         return proven(found.document, found.certify() if self.certify else None)
 
@@ -227,7 +227,7 @@ def form_of(path: str) -> str:
     """
     form = Path(path).suffix.lower()
     if form not in FORMATS:
-        raise UsageError(f"no report can be written as '{path}'", mend=f"endings are {', '.join(FORMATS)}")
+        raise UsageError(f"no report can be written as '{path}'", fix=f"endings are {', '.join(FORMATS)}")
     return form
 
 
@@ -236,7 +236,7 @@ def _figure_read_back(subject: Subject, run: Trajectory) -> Iterator[Check]:
     scene = scene_of(subject.model)
     for _, state in states_shown(run, run.t[:1]):
         if [q.name for q in state.equations.symbols.q] == [q.name for q in scene.system.symbols.q]:
-            yield from pictures_told([(state, picture_told(drawing_at_rest(scene), scene, 0))])
+            yield from pictures_reported([(state, picture_reported(drawing_at_rest(scene), scene, 0))])
 
 
 def _player_read_back(subject: Subject, found: Report) -> Iterator[Check]:
@@ -275,7 +275,7 @@ def report_document(
         failed=found.head.failed,
         notes=tuple(f"{key}: {remark}" for key, remark in remarks.items()),
     )
-    return proven(with_start_told(document, model), found.certificate)
+    return proven(with_start_reported(document, model), found.certificate)
 
 
 def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str] = ()) -> Report:
@@ -286,9 +286,9 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     """
     for name in (*with_, *without):
         if name not in SECTIONS:
-            raise UsageError(f"there is no section '{name}'", mend=nearest_name(name, SECTIONS))
+            raise UsageError(f"there is no section '{name}'", fix=nearest_name(name, SECTIONS))
         if name in with_ and name in without:
-            raise UsageError(f"the section '{name}' is wanted and left out", mend="say one of the two")
+            raise UsageError(f"the section '{name}' is wanted and left out", fix="say one of the two")
     keys = [key for key in SECTIONS if key not in without and (key in with_ or key in fitting(subject))]
     made = [_made(subject, key, key in with_) for key in keys]
     sections = tuple(section for section in made if section is not None)
@@ -336,7 +336,7 @@ def fitting(subject: Subject) -> tuple[str, ...]:
     return tuple(keys)
 
 
-def _made(subject: Subject, key: str, asked: bool) -> ReportSection | None:
+def _made(subject: Subject, key: str, requested: bool) -> ReportSection | None:
     """A section; one that fits and cannot be had says why. None: there is nothing in it.
 
     Raises:
@@ -345,7 +345,7 @@ def _made(subject: Subject, key: str, asked: bool) -> ReportSection | None:
     try:
         section = MADE[key](subject)
     except UNFIT as error:
-        if asked or key == subject.main[0]:
+        if requested or key == subject.main[0]:
             raise
         return ReportSection(key, remark=f"Not here: {error.what}.")
     return section

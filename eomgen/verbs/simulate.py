@@ -25,14 +25,14 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.samples import left_tables
 from eomgen.model.units import units_of
-from eomgen.proof.run_told import ToldRun, run_told
+from eomgen.proof.run_reported import ReportedRun, run_reported
 from eomgen.questions.run import run as simulated
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.solvers import Accuracy
 from eomgen.symbolic.expression.units import Unit
 
-MOST_TOLD = 20  # phases in the text
+MOST_REPORTED = 20  # phases in the text
 MOST_AGAIN = 500_000  # evaluations of a run that is made again, finer, to know its error
 
 
@@ -89,11 +89,11 @@ def simulate_document(
     if cut:
         return replace(proven(document, None), interrupted=run.status == "interrupted")
     return proven(
-        document, run.certify() + run_told(run, model, _told(statements, payload, output)) if certify else None
+        document, run.certify() + run_reported(run, model, _reported(statements, payload, output)) if certify else None
     )
 
 
-def _told(statements: Sequence[Statement], payload: Mapping[str, Any], output: str | None) -> ToldRun:
+def _reported(statements: Sequence[Statement], payload: Mapping[str, Any], output: str | None) -> ReportedRun:
     """What is told of a run, as it stands in the text, the entries and the file."""
     grids = {
         cell_text(grid.head[-1]): [list(map(cell_text, row)) for row in grid.rows]
@@ -104,7 +104,7 @@ def _told(statements: Sequence[Statement], payload: Mapping[str, Any], output: s
     if output and not is_stream(output) and Path(output).suffix.lower() == ".csv":
         head, *lines = csv.reader(io.StringIO(Path(output).read_text(encoding="utf-8")))
         table = head, lines
-    return ToldRun(grids.get("end", ()), grids.get("at", ()), payload, table)
+    return ReportedRun(grids.get("end", ()), grids.get("at", ()), payload, table)
 
 
 def _first_instant(equations: Equations, run: Trajectory) -> dict[str, Any]:
@@ -126,7 +126,7 @@ def _check_ending(output: str | None) -> None:
         UsageError: the name ends in neither .csv nor .npz.
     """
     if output and not is_stream(output) and Path(output).suffix.lower() not in (".csv", ".npz"):
-        raise UsageError(f"no trajectory can be written as '{output}'", mend="endings are .csv, .npz")
+        raise UsageError(f"no trajectory can be written as '{output}'", fix="endings are .csv, .npz")
 
 
 def _write_run(run: Trajectory, output: str, units: Mapping[str, Unit] | None) -> None:
@@ -138,9 +138,9 @@ def _write_run(run: Trajectory, output: str, units: Mapping[str, Unit] | None) -
 
 def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     """Where the motion ended, and how well the laws were kept."""
-    shown = run.phases[:MOST_TOLD] if len(run.phases) > 1 else ()
+    shown = run.phases[:MOST_REPORTED] if len(run.phases) > 1 else ()
     lines = [f"from {phase.start:.6g} s: {phase.ended_by}" for phase in shown]
-    lines += [f"and {len(run.phases) - MOST_TOLD} phases more"] if len(run.phases) > MOST_TOLD else []
+    lines += [f"and {len(run.phases) - MOST_REPORTED} phases more"] if len(run.phases) > MOST_REPORTED else []
     units, columns = units_of(model, run.columns()), run.columns()
     columns = {name: x / units[name].size if name in units else x for name, x in columns.items()}
     heads = {name: f"{name} [{units[name]}]" if name in units else name for name in columns}
@@ -148,8 +148,12 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     grids = (Grid(("", "start", "end"), rows), Grid(("of the run", "", "at"), _whole(model, run)))
     table = tuple(grid for grid in grids if grid.rows)
     accuracy = _accuracy(run)
-    told = [] if accuracy is None else [str(accuracy)]
-    return (prose(" ".join([f"{model.name}: {run.summary()}", *told])), *(prose(f"  {line}") for line in lines), *table)
+    reported = [] if accuracy is None else [str(accuracy)]
+    return (
+        prose(" ".join([f"{model.name}: {run.summary()}", *reported])),
+        *(prose(f"  {line}") for line in lines),
+        *table,
+    )
 
 
 def _accuracy(run: Trajectory) -> Accuracy | None:
@@ -174,16 +178,16 @@ def _whole(model: Model, run: Trajectory) -> tuple[tuple[str, str, str], ...]:
 
 def _quantities(model: Model, run: Trajectory) -> dict[str, Any]:
     """The same for machines, in the output's unit."""
-    told: dict[str, Any] = {}
+    reported: dict[str, Any] = {}
     units = units_of(model, run.quantities)
     for name, found in run.quantities.items():
         unit = units.get(name)
         size = 1.0 if unit is None else unit.size
         value = [x / size for x in found.value] if isinstance(found.value, tuple) else found.value
         value = value / size if isinstance(value, float) else value
-        told[name] = {"value": value, "unit": "" if unit is None else unit.text, "t": list(found.t)}
-        told[name]["message"] = found.message or None
-    return told
+        reported[name] = {"value": value, "unit": "" if unit is None else unit.text, "t": list(found.t)}
+        reported[name]["message"] = found.message or None
+    return reported
 
 
 def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.model.parts import Model
 from eomgen.questions import answers
-from eomgen.verbs.outcome import with_start_told
+from eomgen.verbs.outcome import with_start_reported
 
 LATE = "there was no time left"
 
@@ -16,7 +16,7 @@ LATE = "there was no time left"
 def solve_document(model: Model, *, certify: bool = True) -> Document:
     """Every entry of [outputs]."""
     found = answers.solve(model)
-    document = with_start_told(found.document, model)
+    document = with_start_reported(found.document, model)
     if found.stopped:
         note = f"Nothing of it is proven: {'it was interrupted' if found.stopped == 'interrupted' else LATE}."
         document = proven(document, None)

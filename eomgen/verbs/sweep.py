@@ -13,16 +13,16 @@ from eomgen.documents.document import Document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, prose
 from eomgen.errors import EomgenError, RunFailed, UsageError
+from eomgen.frozen import dataclass
 from eomgen.model.fields import Table
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import range_of
 from eomgen.pipeline import simulate
 from eomgen.proof.check import Certificate, Check, Tally, differing
-from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
+from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
 from eomgen.questions.answers import solve
-from eomgen.questions.of_a_run import asked_of, asked_typed
+from eomgen.questions.of_a_run import requested_of, requested_typed
 from eomgen.questions.run import answered_otherwise
-from eomgen.records import dataclass
 from eomgen.sensitivities.sensitivity import checks_of_slope, slope_in_si
 from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.design import Stepped, SweepPlan, spread_of
@@ -38,7 +38,7 @@ MOST_PROVEN = 10_000  # runs whose rows are looked at one by one
 
 
 @dataclass(frozen=True)
-class SweepAsked:
+class SweepRequested:
     """What is typed beside the model."""
 
     over: tuple[str, ...]
@@ -56,7 +56,7 @@ class SweepAsked:
 
 def sweep_document(
     model: Model,
-    asked: SweepAsked,
+    requested: SweepRequested,
     *,
     text: str,
     title: str,
@@ -67,46 +67,46 @@ def sweep_document(
     certify: bool = True,
 ) -> Document:
     """The runs that the folder lacks are made; the document says what they gave."""
-    valued, _ = typed(model, {"set_": asked.set_, "start": asked.start})
-    ranges = [range_of(valued.model, word, starts=True) for word in asked.over]
-    spreads = [spread_of(valued.model, word) for word in asked.random]
-    ask = [asked_typed(valued.model, text) for text in asked.ask]
-    critical = asked_typed(valued.model, asked.critical)
+    valued, _ = typed(model, {"set_": requested.set_, "start": requested.start})
+    ranges = [range_of(valued.model, word, starts=True) for word in requested.over]
+    spreads = [spread_of(valued.model, word) for word in requested.random]
+    ask = [requested_typed(valued.model, text) for text in requested.ask]
+    critical = requested_typed(valued.model, requested.critical)
     names = [each.name for each in ranges]
     if len(set(names)) < len(names):
-        raise UsageError("--over: one name twice", mend="give each range once")
+        raise UsageError("--over: one name twice", fix="give each range once")
     plan = planned(
         valued.model,
         text=text,
         title=title,
         over={each.name: each.values for each in ranges},
         random=tuple((each.name, each.law, each.arguments) for each, _ in spreads),
-        runs=asked.runs,
-        design=asked.design,
-        seed=asked.seed,
+        runs=requested.runs,
+        design=requested.design,
+        seed=requested.seed,
         ask=tuple(text for text, _ in ask),
         critical=critical[0],
-        how=asked.how,
-        given=dict(assignments(asked.set_, "--set m=2")),
-        start=dict(assignments(asked.start, "--start theta=1")),
+        how=requested.how,
+        given=dict(assignments(requested.set_, "--set m=2")),
+        start=dict(assignments(requested.start, "--start theta=1")),
     )
-    found = swept(plan, workers=asked.workers, out=output)
+    found = swept(plan, workers=requested.workers, out=output)
     if units and found.folder is not None:
         found.to_csv(found.folder / TABLE, units=True)
     if plot:
         found.plot(plot, view)
-    document = _told(valued.model, found, [plot] if plot else [])
+    document = _reported(valued.model, found, [plot] if plot else [])
     taken = [*valued.taken, *(each.taken for each in ranges), *(each for _, each in spreads)]
     taken += [each for _, of_one in (*ask, critical) for each in of_one]
     return replace(proven(document, _proof(found) if certify else None), taken=tuple(taken))
 
 
-def _told(model: Model, found: Sweep, files: list[str]) -> Document:
+def _reported(model: Model, found: Sweep, files: list[str]) -> Document:
     statuses, failed = found.ledger.statuses(), found.failed
     ended = ", ".join(f"{count} {status}" for status, count in statuses.items())
     where = "" if found.folder is None else f" In {found.folder}."
     lines = [f"{model.name}: {len(found)} runs: {ended}.{where}"]
-    told = [f"run {run}, {status}: {message}" for run, status, message in found.ledger.messages(FEW)]
+    reported = [f"run {run}, {status}: {message}" for run, status, message in found.ledger.messages(FEW)]
     sizes, heads = found.in_units()
     numbers = {name: found.ledger.summary(found.columns.index(name)) for name in found.columns[4:]}
     rows = tuple(
@@ -128,7 +128,7 @@ def _told(model: Model, found: Sweep, files: list[str]) -> Document:
         *map(prose, lines),
         grid,
         *critical,
-        *(prose(f"  {line}") for line in told),
+        *(prose(f"  {line}") for line in reported),
         failed="no run came to its end" if failed == len(found) else "",
         notes=(*found.remarks, *(without if 0 < failed < len(found) else ())),
     )
@@ -138,8 +138,8 @@ def _critical(row: Mapping[str, Any], sizes: Mapping[str, float], heads: Mapping
     staying = {**row["at"], row["name"]: row["value"]}
     if row["value"] is None:
         return f"no place that was found: {row['message']}"
-    told = ", ".join(f"{heads.get(name, name)} = {x / sizes.get(name, 1.0):.12g}" for name, x in staying.items())
-    return f"{told} ({row['message']})" if row["message"] else told
+    reported = ", ".join(f"{heads.get(name, name)} = {x / sizes.get(name, 1.0):.12g}" for name, x in staying.items())
+    return f"{reported} ({row['message']})" if row["message"] else reported
 
 
 def _number(x: float | None, size: float) -> str:
@@ -151,7 +151,7 @@ def _payload(found: Sweep, files: list[str]) -> dict[str, Any]:
     summary = {
         name: {"runs": n, "least": low, "mean": mean, "largest": high} for name, (n, low, mean, high) in numbers.items()
     }
-    told: dict[str, Any] = {
+    reported: dict[str, Any] = {
         "name": found.plan.model.name,
         "runs": len(found),
         "failed": found.failed,
@@ -165,8 +165,8 @@ def _payload(found: Sweep, files: list[str]) -> dict[str, Any]:
     }
     if len(found) <= MOST_IN_JSON:
         rows = list(found.ledger.rows())
-        told["table"] = {name: [row[k] for row in rows] for k, name in enumerate(found.columns)}
-    return told
+        reported["table"] = {name: [row[k] for row in rows] for k, name in enumerate(found.columns)}
+    return reported
 
 
 def _proof(found: Sweep) -> Certificate | None:
@@ -177,9 +177,9 @@ def _proof(found: Sweep) -> Certificate | None:
     kernel, plan = SweepKernel(found.plan), found.plan
     set_ = dict(zip(plan.runs.names, first[4:], strict=False))
     model = kernel.valued(set_)
-    formulas = [text for text in plan.asked if text not in plan.slopes]
-    asked = {f"asked{k}": asked_of(plan.model, text) for k, text in enumerate(formulas)}
-    model = replace(model, outputs=Table(asked))
+    formulas = [text for text in plan.requested if text not in plan.slopes]
+    requested = {f"asked{k}": requested_of(plan.model, text) for k, text in enumerate(formulas)}
+    model = replace(model, outputs=Table(requested))
     run = None if first[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
     certificate = solve(model).certify() if run is None else run.certify()
     slopes = [check for pair in plan.slopes.values() for check in checks_of_slope(model, *pair, plan.how.time)]
@@ -202,61 +202,61 @@ def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[
     between = [Random(plan.hash).choice(done[1:-1])] if len(done) > 2 else []
     tally = Tally("what is asked of a run is answered as its samples and equations say", "first, last, one between")
     for row in {row[0]: row for row in (*done[:1], *between, *done[-1:])}.values():
-        told = dict(zip(plan.asked, row[4 + len(plan.runs.names) :], strict=True))
+        reported = dict(zip(plan.requested, row[4 + len(plan.runs.names) :], strict=True))
         model, run = made.get(row[0], (None, None))
         if model is None:
             model = replace(kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))), outputs=Table({}))
             run = None if row[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
-        for text, wrong in _answered_otherwise(plan, model, told, run):
+        for text, wrong in _answered_otherwise(plan, model, reported, run):
             tally.add(f"{text} of run {row[0]}", wrong)
     yield from tally.checks()
 
 
 def _answered_otherwise(
-    plan: SweepPlan, model: Model, told: Mapping[str, float | None], run: Trajectory | None
+    plan: SweepPlan, model: Model, reported: Mapping[str, float | None], run: Trajectory | None
 ) -> Iterator[tuple[str, Callable[[], str]]]:
     """(what is asked of a run, how what is told of it differs): by its samples, by `solve`, by derivatives alone."""
     how = plan.how
-    outputs = {text: asked_of(plan.model, text) for text in plan.asked if text not in plan.slopes}
+    outputs = {text: requested_of(plan.model, text) for text in plan.requested if text not in plan.slopes}
     for text, output in outputs.items():
         if is_without_motion(output):
-            yield text, partial(_solved_otherwise, model, replace(output, unit=None), told[text])
+            yield text, partial(_solved_otherwise, model, replace(output, unit=None), reported[text])
         elif run is not None and run.ok:
-            yield text, partial(_sampled_otherwise, model, how, run, output, told[text])
+            yield text, partial(_sampled_otherwise, model, how, run, output, reported[text])
     for text, pair in plan.slopes.items():
-        yield text, partial(_slope_otherwise, model, pair, how.time, told[text])
+        yield text, partial(_slope_otherwise, model, pair, how.time, reported[text])
 
 
 def _run_anew(model: Model, how: Stepped, coarser: float = 1.0) -> Trajectory:
     return simulate(model, time=how.time, rtol=coarser * how.rtol, atol=coarser * how.atol, method=how.method)
 
 
-def _sampled_otherwise(model: Model, how: Stepped, run: Trajectory, output: Output, told: float | None) -> str:
+def _sampled_otherwise(model: Model, how: Stepped, run: Trajectory, output: Output, reported: float | None) -> str:
     """How what is told differs from the samples of the run.
 
     Raises:
         NoValue: so does what the run itself says from another one by coarser steps: motions part.
     """
-    wrong = answered_otherwise(run, output, told)
+    wrong = answered_otherwise(run, output, reported)
     own = run.ask(output).value if wrong else None
     if isinstance(own, float) and answered_otherwise(_run_anew(model, how, COARSER), output, own):
         raise NoValue("motions from one start part by their steps")
     return wrong
 
 
-def _solved_otherwise(model: Model, output: Output, told: float | None) -> str:
+def _solved_otherwise(model: Model, output: Output, reported: float | None) -> str:
     (answer,) = solve(replace(model, outputs=Table({"asked": output}))).values()
-    return _other_number(told, answer.value)
+    return _other_number(reported, answer.value)
 
 
-def _slope_otherwise(model: Model, pair: tuple[str, str], time: float, told: float | None) -> str:
-    return _other_number(told, slope_in_si(model, *pair, time)[0])
+def _slope_otherwise(model: Model, pair: tuple[str, str], time: float, reported: float | None) -> str:
+    return _other_number(reported, slope_in_si(model, *pair, time)[0])
 
 
-def _other_number(told: float | None, due: float | None) -> str:
-    if told is None or due is None:
-        return "" if told is due else f"{told} for {due}"
-    return differing(told, due)
+def _other_number(reported: float | None, due: float | None) -> str:
+    if reported is None or due is None:
+        return "" if reported is due else f"{reported} for {due}"
+    return differing(reported, due)
 
 
 def _rows_proven(found: Sweep) -> Iterator[Check]:
@@ -268,13 +268,13 @@ def _rows_proven(found: Sweep) -> Iterator[Check]:
     yield drawn_otherwise(plan.over, plan.random, plan.draws, plan.design, [(*row[:2], *row[4:last]) for row in rows])
     columns = {name: [row[k] for row in rows] for k, name in enumerate(names) if k >= 4}
     summary = {name: found.ledger.summary(names.index(name)) for name in columns}
-    yield told_of_all(columns, summary, found.remarks, plan.critical, plan.how.rtol, names[last:])
+    yield reported_of_all(columns, summary, found.remarks, plan.critical, plan.how.rtol, names[last:])
 
 
 def replay_document(folder: str, run: int, *, output: str | None, samples: int | None) -> Document:
     """One run of a sweep once more; what it gives is what stands in the table, bit for bit."""
     if output is not None and Path(output).suffix.lower() not in (".csv", ".npz"):
-        raise UsageError(f"no trajectory can be written as '{output}'", mend="endings are .csv, .npz")
+        raise UsageError(f"no trajectory can be written as '{output}'", fix="endings are .csv, .npz")
     found = sweep_at(folder)
     row = found.again(run)
     stood = found.ledger.row(run)
@@ -283,7 +283,7 @@ def replay_document(folder: str, run: int, *, output: str | None, samples: int |
         try:
             motion = found.replay(run, samples or 1001)
         except EomgenError as error:
-            raise RunFailed(f"run {run} has no motion: {error.what}", mend=error.mend) from error
+            raise RunFailed(f"run {run} has no motion: {error.what}", fix=error.fix) from error
         (motion.to_npz if Path(output).suffix.lower() == ".npz" else motion.to_csv)(output)
         messages.append(motion.summary())
     differ = [name for name, x, y in zip(found.columns, row, stood or row, strict=True) if x != y]

@@ -13,6 +13,7 @@ from eomgen.documents.document import Document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.errors import ExpressionError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.judge import Judge
 from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict
@@ -21,8 +22,7 @@ from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values
 from eomgen.proof.check import Certificate
 from eomgen.proof.verdicts import verdicts_again
-from eomgen.records import dataclass
-from eomgen.verbs.outcome import with_ties_closed
+from eomgen.verbs.outcome import with_constraints_closed
 
 LARGEST = 1_000_000  # bytes of a file of answers
 
@@ -62,25 +62,25 @@ def verify_document(
     Raises:
         UsageError: there is no equation; the only one cannot be read.
     """
-    asked = [
+    requested = [
         *(each for text in equations for each in _typed(text)),
         *(each for path in answers for each in _of_path(path)),
     ]
-    if not asked:
-        raise UsageError("there is no equation to judge", mend="write one behind the model, or --file FILE")
+    if not requested:
+        raise UsageError("there is no equation to judge", fix="write one behind the model, or --file FILE")
     placed = with_values(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
     judge = Judge(Case(placed, from_rest is not None))
     entries: list[dict[str, Any]] = []
     lines: list[str] = []
     codes: list[int] = []
     found: list[Verdict] = []
-    for each in asked:
-        verdict, entry, told, code = _judged(judge, each, at, kind, hint, alone=len(asked) == 1)
+    for each in requested:
+        verdict, entry, reported, code = _judged(judge, each, at, kind, hint, alone=len(requested) == 1)
         found += [verdict]
         entries.append(entry | ({"file": each.file, "line": each.line} if each.file else {}))
-        lines += [f"{each.file}:{each.line}: {told[0]}" if each.file else told[0], *told[1:]]
+        lines += [f"{each.file}:{each.line}: {reported[0]}" if each.file else reported[0], *reported[1:]]
         codes.append(code)
-    if len(asked) > 1:
+    if len(requested) > 1:
         count = {name: sum(entry["verdict"] == name for entry in entries) for name in EXIT_CODES}
         lines.append(f"{count[RIGHT]} right, {count[WRONG]} wrong, {count[UNDECIDED]} undecided")
     code = next((c for c in (EXIT_CODES[WRONG], UNREADABLE, EXIT_CODES[UNDECIDED]) if c in codes), 0)
@@ -88,7 +88,7 @@ def verify_document(
         model, lambda: {"name": model.name, "equations": entries}, Lines(tuple(lines)), answer_code=code
     )
     if judge.case.equations is not None:
-        document = with_ties_closed(document, judge.case.equations.system)
+        document = with_constraints_closed(document, judge.case.equations.system)
     return proven(document, _certificate(judge, found if at is None else ()) if certify else None)
 
 
@@ -111,10 +111,10 @@ def _judged(
         where = f"{each.file}:{each.line}:{error.column + 1}" if each.file else ""
         if alone:
             caret = " " * error.column + "^" * max(1, min(error.length, len(each.text) - error.column))
-            raise UsageError(f"{error.what}\n    {each.text}\n    {caret}", where, error.mend) from error
-        told = Verdict(each.text, kind or "", UNDECIDED, reason=f"it cannot be read: {error.what}")
-        problem = {"what": error.what, "column": error.column + 1, "mend": error.mend}
-        return told, told.as_dict() | {"error": problem}, told.lines(), UNREADABLE
+            raise UsageError(f"{error.what}\n    {each.text}\n    {caret}", where, error.fix) from error
+        reported = Verdict(each.text, kind or "", UNDECIDED, reason=f"it cannot be read: {error.what}")
+        problem = {"what": error.what, "column": error.column + 1, "fix": error.fix}
+        return reported, reported.as_dict() | {"error": problem}, reported.lines(), UNREADABLE
     return verdict, verdict.as_dict(hint), verdict.lines(hint), verdict.exit_code
 
 
@@ -123,7 +123,7 @@ def _typed(text: str) -> Iterator[Answered]:
         yield Answered(text)
         return
     if sys.stdin is None:
-        raise UsageError("there are no equations on stdin: it is closed", mend="write one behind the model")
+        raise UsageError("there are no equations on stdin: it is closed", fix="write one behind the model")
     yield from _lines(sys.stdin.read(LARGEST), "<stdin>")
 
 
@@ -141,7 +141,7 @@ def _of_path(path: str) -> Iterator[Answered]:
         try:
             yield from _lines(data.decode("utf-8-sig"), str(each))
         except UnicodeDecodeError as error:
-            raise UsageError(f"{each} is no text in UTF-8", mend="save it as UTF-8") from error
+            raise UsageError(f"{each} is no text in UTF-8", fix="save it as UTF-8") from error
 
 
 def _lines(text: str, name: str) -> Iterator[Answered]:

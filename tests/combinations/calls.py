@@ -23,7 +23,7 @@ from compare import filled, quiet
 from refusals import lacking
 
 import eomgen
-import eomgen.edge
+import eomgen.cli_errors
 from eomgen.cli import main
 
 SECONDS = 20  # of CPU that one call may take
@@ -129,8 +129,8 @@ def commands(text: str, rng: Random, more: int = 3, *, every_format: bool = Fals
         "simulate": ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units"],
     }
     drawn = sorted(rest, key=lambda verb: rng.random() ** (1 / WEIGHTS[verb]), reverse=True)
-    asked = found + [rest[verb] for verb in drawn[:more]]
-    return [each for words in asked for each in (in_every_format(words) if every_format else [words])]
+    requested = found + [rest[verb] for verb in drawn[:more]]
+    return [each for words in requested for each in (in_every_format(words) if every_format else [words])]
 
 
 def in_every_format(words: list[str]) -> list[list[str]]:
@@ -145,8 +145,8 @@ def in_every_format(words: list[str]) -> list[list[str]]:
 def by_command(text: str, words: list[str], folder: Path) -> Outcome:
     """One command line; of what runs, a parameter without a value gets one."""
     path = folder / "model.toml"
-    asked = text if words[0] in SYMBOLIC else filled(text)
-    path.write_text(asked, encoding="utf-8")
+    requested = text if words[0] in SYMBOLIC else filled(text)
+    path.write_text(requested, encoding="utf-8")
     (folder / "out").mkdir(exist_ok=True)
     known = {"MODEL": str(path)}
     arguments = [known.get(w, w.replace("OUT", str(folder / "out"))) for w in words]
@@ -154,7 +154,7 @@ def by_command(text: str, words: list[str], folder: Path) -> Outcome:
         arguments += ["--patience", "none"]
     call, begin = " ".join(words), time.process_time()
     try:
-        with limit(SECONDS), told_problems() as problems:
+        with limit(SECONDS), reported_problems() as problems:
             result = CliRunner().invoke(main, arguments)
     except TooLong:
         return Outcome(call, -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
@@ -164,25 +164,25 @@ def by_command(text: str, words: list[str], folder: Path) -> Outcome:
     fault, detail = _fault(words, result)
     note = str(problems[0]).splitlines()[0][:200] if problems else _refusal(result)
     if result.exit_code and not fault and not result.stdout.strip():
-        left = lacking(problems, asked)
+        left = lacking(problems, requested)
         fault, detail = ("refusal", f"{left}: {note}") if left else ("", "")
     return Outcome(call, result.exit_code, fault, detail, seconds, note)
 
 
 @contextmanager
-def told_problems() -> Iterator[list[Any]]:
+def reported_problems() -> Iterator[list[Any]]:
     """What the command line tells as wrong within it."""
-    own, found = eomgen.edge._told, []  # type: ignore[var-annotated]
+    own, found = eomgen.cli_errors._reported, []  # type: ignore[var-annotated]
 
-    def told(code: int, problems: Any, *rest: Any) -> int:
+    def reported(code: int, problems: Any, *rest: Any) -> int:
         found.extend(problems)
         return own(code, problems, *rest)
 
-    eomgen.edge._told = told  # type: ignore[assignment]
+    eomgen.cli_errors._reported = reported  # type: ignore[assignment]
     try:
         yield found
     finally:
-        eomgen.edge._told = own
+        eomgen.cli_errors._reported = own
 
 
 def _fault(words: list[str], result: Any) -> tuple[str, str]:
@@ -204,13 +204,13 @@ def _fault(words: list[str], result: Any) -> tuple[str, str]:
 def _refusal(result: Any) -> str:
     if not result.exit_code:
         return ""
-    lines = [x for x in result.stderr.splitlines() if x.strip() and not x.startswith(("warning", " ", "mend"))]
+    lines = [x for x in result.stderr.splitlines() if x.strip() and not x.startswith(("warning", " ", "fix"))]
     return lines[0][:200] if lines else ""
 
 
 def _refused(call: str, no: eomgen.EomgenError, text: str, seconds: float) -> Outcome:
     """A refusal in Python: as the command line's."""
-    left = lacking(eomgen.edge.problems_of(no), text)
+    left = lacking(eomgen.cli_errors.problems_of(no), text)
     first = str(no).splitlines()[0][:200]
     return Outcome(call, 1, "refusal" if left else "", f"{left}: {first}" if left else "", seconds, first)
 
@@ -220,11 +220,11 @@ def judged(text: str, rng: Random, most: int = 2) -> Iterator[Outcome]:
     try:
         with quiet(), limit(SECONDS):
             model = eomgen.loads(text)
-            told = eomgen.derive(model).render("text")
+            reported = eomgen.derive(model).render("text")
     except (TooLong, eomgen.EomgenError):
         return  # told by `derive`
-    told = re.sub(r"(?<=\S)\n {8,}(?=[+*-] )", " ", told)  # what stands in several lines is one
-    lines = [x.strip() for x in told.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
+    reported = re.sub(r"(?<=\S)\n {8,}(?=[+*-] )", " ", reported)  # what stands in several lines is one
+    lines = [x.strip() for x in reported.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
     lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
     for line in [lines[-1], *rng.sample(lines[:-1], min(most - 1, len(lines) - 1))] if lines else []:
         begin = time.process_time()

@@ -62,7 +62,7 @@ def quiet() -> Iterator[None]:
 
 
 def states(oracle: Oracle, e: Any, x0: np.ndarray, seed: int, count: int = 2) -> Iterator[tuple[str, State]]:
-    """The start, and states near it that keep every tie."""
+    """The start, and states near it that keep every constraint."""
     nq = len(e.coordinates)
     yield "start", oracle.of_speeds(0.0, x0[:nq], e.speeds, x0[nq:])
     rng = Random(seed)
@@ -99,7 +99,8 @@ def of_model(text: str, seed: int, *, count: int = 2, targets: tuple[str, ...] =
 
 
 def against(product: Product, seed: int, count: int = 2) -> Found:
-    """The product's numbers held against the oracle's, at the start and at states near it that keep every tie."""
+    """The product's numbers held against the oracle's, at the start and at states near it that keep every
+    constraint."""
     found, e = Found(), product.equations
     x0 = next(iter(product.functions.values())).x0
     if x0 is None:
@@ -121,7 +122,9 @@ def _at(found: Found, name: str, s: State, oracle: Oracle, e: Any, functions: di
         found.skipped.append("a contact sticks: code has friction by the law of sliding, runs and `solve` stick")
         return
     if any(
-        oracle.modes[tie] and not laws.agrees(tie, oracle, s, solved) for tie in solved.pressed if tie in oracle.modes
+        oracle.modes[constraint] and not laws.agrees(constraint, oracle, s, solved)
+        for constraint in solved.pressed
+        if constraint in oracle.modes
     ):
         found.skipped.append("a contact that rubs and can end would have to pull: it is not closed there")
         return

@@ -90,9 +90,9 @@ def _size(want: dict[str, float]) -> float:
 
 def _reactions(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
     want = oracle.reactions(solved, s)
-    for name, told in eomgen.reactions(model).items():
-        if name in want and told.value is not None:
-            found.same("reactions", f"{name} at the start", told.value, want[name], _size(want))
+    for name, reported in eomgen.reactions(model).items():
+        if name in want and reported.value is not None:
+            found.same("reactions", f"{name} at the start", reported.value, want[name], _size(want))
 
 
 def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
@@ -109,8 +109,8 @@ def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, s
             if not oracle.modes:
                 raise
             here = oracle.of_all_rates(float(t), x[:n], run.speeds, x[n:])
-        told = oracle.contacts(here) if oracle.modes else oracle.solve(here)
-        want = expected(oracle, here, told) | kinematic(oracle, here, told)
+        reported = oracle.contacts(here) if oracle.modes else oracle.solve(here)
+        want = expected(oracle, here, reported) | kinematic(oracle, here, reported)
         at = Found()
         for name in sorted(want.keys() & columns.keys()):
             got = columns[name][i]
@@ -118,7 +118,7 @@ def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, s
                 found.skipped.append(f"run: {name} is nan")
                 continue
             at.same("run", f"{name} at t = {t:.3g}", got, want[name], 10 * _size(want))
-        if at.faults and _beyond(oracle, here, told, columns, i):
+        if at.faults and _beyond(oracle, here, reported, columns, i):
             found.skipped.append(f"run at t = {t:.3g}: on the other side of a switch")
             at.faults.clear()
         found.numbers += at.numbers
@@ -134,8 +134,8 @@ def _beyond(oracle: Oracle, s: State, solved: Solved, columns: Any, i: int) -> b
     """Whether a row of a run holds just before or just behind its instant, where a law or a path changes its piece."""
     for dt in (1e-6, -1e-6):
         near = State(s.t + dt, s.q + dt * s.v, s.v + dt * solved.a)
-        told = oracle.contacts(near) if oracle.modes else oracle.solve(near)
-        want = expected(oracle, near, told) | kinematic(oracle, near, told)
+        reported = oracle.contacts(near) if oracle.modes else oracle.solve(near)
+        want = expected(oracle, near, reported) | kinematic(oracle, near, reported)
         beside = Found()
         for name in sorted(want.keys() & columns.keys()):
             if np.isfinite(columns[name][i]):
@@ -151,18 +151,19 @@ def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State,
         not oracle.stands()
         or oracle.modes
         or any(
-            "rate" in tie or (tie["kind"] in ("rolling", "skate", "motion", "gear") and not tie.get("slip"))
-            for tie in oracle.model.constraints.values()
+            "rate" in constraint
+            or (constraint["kind"] in ("rolling", "skate", "motion", "gear") and not constraint.get("slip"))
+            for constraint in oracle.model.constraints.values()
         )
     ):
         return
-    told = eomgen.linearize(model).as_dict()
-    at = {name: x["value"] for name, x in told["state"].items()}
+    reported = eomgen.linearize(model).as_dict()
+    at = {name: x["value"] for name, x in reported["state"].items()}
     at |= {q: float(oracle.model.driven_at(q, 0.0)[0]) for q in oracle.model.driven}
     if any(q not in at for q in oracle.names):
         return
     A = oracle.small(np.array([at[q] for q in oracle.names]))
-    own = np.array([complex(*x) for x in told["eigenvalues"]])
+    own = np.array([complex(*x) for x in reported["eigenvalues"]])
     if len(own) != len(A):
         found.skipped.append("linearize: other states")
         return
@@ -173,7 +174,7 @@ def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State,
 
 
 def _inverse(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
-    """tau of given accelerations: of all that is free, with ties along what these leave free."""
+    """tau of given accelerations: of all that is free, with constraints along what these leave free."""
     e = product.equations
     if oracle.model.speeds or oracle.modes or not {f"{q}'" for q in oracle.names} >= set(e.speeds):
         return
@@ -228,11 +229,11 @@ def _javascript(found: Found, model: Any, product: Product, oracle: Oracle, s: S
         )
         script = Path(folder) / "ask.mjs"
         script.write_text(say)
-        told = subprocess.run([node, str(script)], capture_output=True, text=True, timeout=60, check=False)
-    if told.returncode:
-        found.faults.append(("code", f"JavaScript: {told.stderr.strip().splitlines()[-1][:200]}"))
+        reported = subprocess.run([node, str(script)], capture_output=True, text=True, timeout=60, check=False)
+    if reported.returncode:
+        found.faults.append(("code", f"JavaScript: {reported.stderr.strip().splitlines()[-1][:200]}"))
         return
-    _right(found, "JavaScript", json.loads(told.stdout), product, oracle, s, solved)
+    _right(found, "JavaScript", json.loads(reported.stdout), product, oracle, s, solved)
 
 
 PARTS = {"answers": _answers, "reactions": _reactions, "run": _run, "small motions": _small, "inverse": _inverse}

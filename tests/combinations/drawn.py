@@ -107,7 +107,7 @@ class Drawing:
         return name
 
     def depends(self, *names: str) -> None:
-        """These coordinates follow from a tie, as the level of closure says."""
+        """These coordinates follow from a constraint, as the level of closure says."""
         how = self.levels["closure"]
         if how == "multipliers":
             return
@@ -316,9 +316,9 @@ class Drawing:
             self.slider_crank()
         self.host = host
 
-    # ties
+    # constraints
 
-    def tie(self) -> None:
+    def constraint(self) -> None:
         how = self.levels["tie"]
         if how != "none":
             getattr(self, f"tie_{how}")()
@@ -647,17 +647,23 @@ class Drawing:
             z = self.coordinate("p3", "length", 0.0, 0.0 if how == "sticking" else 0.3)
             place, normal = [x, z, y], [0, 0, 1]
         self.particle("puck", {"kind": "placed", "at": place, "angle": 0})
-        tie = {"kind": "support", "point": "puck.center", "at": self.v(0, 0, 0), "normal": normal, "unilateral": True}
+        constraint = {
+            "kind": "support",
+            "point": "puck.center",
+            "at": self.v(0, 0, 0),
+            "normal": normal,
+            "unilateral": True,
+        }
         if how in ("sliding", "sticking"):
-            tie["friction"] = "mu"
+            constraint["friction"] = "mu"
         if how == "sticking":
             side = self.v("mu*m*g/3", "-mu*m*g/4") if self.plane else ["mu*m*g/3", "mu*m*g/4", "-mu*m*g/5"]
             self.forces["own_push"] = {"kind": "force", "point": "puck.center", "force": side}
         if how == "viscous":
-            tie["friction"] = {"viscous": 0.3}
+            constraint["friction"] = {"viscous": 0.3}
             if self.levels["units"] != "none":
-                tie["friction"] = {"viscous": {"value": 0.3, "unit": "s/m"}}
-        self.constraints["floor"] = tie
+                constraint["friction"] = {"viscous": {"value": 0.3, "unit": "s/m"}}
+        self.constraints["floor"] = constraint
 
     # forces
 
@@ -861,7 +867,7 @@ class Drawing:
     def model(self) -> dict[str, Any]:
         self.base()
         self.loops()
-        self.tie()
+        self.constraint()
         self.featured()
         self.contact()
         if self.levels["base"] == "all_driven":

@@ -144,7 +144,7 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         ("base", "all_driven"),
         "tie",
         tuple(x for x in FACTORS["tie"] if x != "none"),
-        "ties determine what would be driven",
+        "constraints determine what would be driven",
         "nothing that is free moves it",
     ),
     *_each(("base", "all_driven"), "joint", ("quaternion",), "a quaternion is free", "is driven"),

@@ -1,4 +1,5 @@
-"""The oracle's laws, each kind of joint, tie and force for itself: tables of functions in which a test plants errors.
+"""The oracle's laws, each kind of joint, constraint and force for itself: tables of functions in which a test plants
+errors.
 
 Imports nothing of eomgen.
 """
@@ -164,7 +165,7 @@ def pose(now: Any, body: dict) -> tuple[Jet, Jet]:
     return place + matmul(axes, d) - matmul(R, point), R
 
 
-# ties
+# constraints
 
 
 def _left(v: Jet) -> Jet:
@@ -191,8 +192,8 @@ def _turned_since(now: Any, start: Any, body: str | None) -> Jet:
     return matmul(now.poses[body][1], R0.T)
 
 
-def _pin(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    points, plane = tie["points"], now.model.plane
+def _pin(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    points, plane = constraint["points"], now.model.plane
     places = [now.point(p) for p in points]
     if len(points) == 1:
         places.append(vector(o.start.point(points[0]).c[0][:, 0]))
@@ -200,8 +201,8 @@ def _pin(name: str, tie: dict, now: Any, o: Any) -> Rows:
     for other in places[1:]:
         gap = places[0] - other
         rows += [(component(gap, k), False, "xyz"[k]) for k in range(2 if plane else 3)]
-    if "axis" in tie:
-        axis = _unit(now, tie["axis"])
+    if "axis" in constraint:
+        axis = _unit(now, constraint["axis"])
         first = matmul(_turned_since(now, o.start, _split(now, points[0])), vector(axis))
         others = [_split(now, p) for p in points[1:]] or [None]
         for body in others:
@@ -210,14 +211,14 @@ def _pin(name: str, tie: dict, now: Any, o: Any) -> Rows:
     return rows
 
 
-def _support(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    n = _unit(now, tie["normal"])
-    at = now.model.numbers(tie["at"]) if "at" in tie else o.start.point(tie["point"]).c[0][:, 0]
-    return [(dot(vector(n), now.point(tie["point"]) - vector(at)), False, "n")]
+def _support(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    n = _unit(now, constraint["normal"])
+    at = now.model.numbers(constraint["at"]) if "at" in constraint else o.start.point(constraint["point"]).c[0][:, 0]
+    return [(dot(vector(n), now.point(constraint["point"]) - vector(at)), False, "n")]
 
 
-def _clamp(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    points = tie.get("points") or [tie["point"]]
+def _clamp(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    points = constraint.get("points") or [constraint["point"]]
     rows = _pin(name, {"points": points}, now, o)
     first = _turned_since(now, o.start, _split(now, points[0]))
     for body in [_split(now, p) for p in points[1:]] or [None]:
@@ -226,60 +227,60 @@ def _clamp(name: str, tie: dict, now: Any, o: Any) -> Rows:
     return rows
 
 
-def _guide(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    along = _unit(now, tie["along"])
-    gap = now.point(tie["point"]) - vector(o.start.point(tie["point"]).c[0][:, 0])
+def _guide(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    along = _unit(now, constraint["along"])
+    gap = now.point(constraint["point"]) - vector(o.start.point(constraint["point"]).c[0][:, 0])
     across = [np.array([-along[1], along[0], 0])] if now.model.plane else list(_across(along))
     rows: Rows = [(dot(vector(e), gap), False, "n") for e in across]
-    turn = ty.vee(_turned_since(now, o.start, _split(now, tie["point"])))
+    turn = ty.vee(_turned_since(now, o.start, _split(now, constraint["point"])))
     return rows + [(component(turn, k), False, "couple") for k in ([2] if now.model.plane else range(3))]
 
 
-def _slider(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    a, b = now.model.bodies[tie["on"]].get("line", ["start", "end"])
-    A, B = (now.of_body(tie["on"], x) for x in (a, b))
+def _slider(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    a, b = now.model.bodies[constraint["on"]].get("line", ["start", "end"])
+    A, B = (now.of_body(constraint["on"], x) for x in (a, b))
     d = (B - A).c[0][:, 0]
     d = d / np.linalg.norm(d)
     across = [np.array([-d[1], d[0], 0])] if now.model.plane else list(_across(d))
-    p, R = now.poses[tie["on"]]
-    gap = now.point(tie["point"]) - (p + matmul(R, A))
+    p, R = now.poses[constraint["on"]]
+    gap = now.point(constraint["point"]) - (p + matmul(R, A))
     return [(dot(matmul(R, vector(e)), gap), False, "n") for e in across]
 
 
-def _link(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    a, b = (now.point(p) for p in tie["points"])
-    if "length" in tie:
-        length = now.model.number(tie["length"])
+def _link(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    a, b = (now.point(p) for p in constraint["points"])
+    if "length" in constraint:
+        length = now.model.number(constraint["length"])
     else:
-        length = float(ty.norm(o.start.point(tie["points"][0]) - o.start.point(tie["points"][1])).value)
+        length = float(ty.norm(o.start.point(constraint["points"][0]) - o.start.point(constraint["points"][1])).value)
     d = a - b
     return [((length**2 - dot(d, d)) / (2 * length), False, "n")]
 
 
-def _radius(now: Any, body: str, tie: dict) -> Any:
-    declared = tie.get("radius", now.model.bodies[body].get("shape", {}).get("radius"))
+def _radius(now: Any, body: str, constraint: dict) -> Any:
+    declared = constraint.get("radius", now.model.bodies[body].get("shape", {}).get("radius"))
     return None if declared is None else now.model.number(declared)
 
 
-def _meeting(tie: dict, now: Any) -> tuple[Jet, Jet, Jet, str | None]:
+def _meeting(constraint: dict, now: Any) -> tuple[Jet, Jet, Jet, str | None]:
     """(gap, unit normal towards the rolling body, place of contact, body of the track)."""
-    body, r = tie["body"], _radius(now, tie["body"], tie)
-    center = now.of_body(body, tie["center"]) if "center" in tie else vector([0, 0, 0])
+    body, r = constraint["body"], _radius(now, constraint["body"], constraint)
+    center = now.of_body(body, constraint["center"]) if "center" in constraint else vector([0, 0, 0])
     p, R = now.poses[body]
     c = p + matmul(R, center)
-    on = tie.get("on")
+    on = constraint.get("on")
     o, axes = now.frame(on or "ground")
-    if "line" in tie or "plane" in tie:
-        track = tie.get("line") or tie.get("plane")
+    if "line" in constraint or "plane" in constraint:
+        track = constraint.get("line") or constraint.get("plane")
         n = matmul(axes, vector(_unit(now, track["normal"])))
         at = o + matmul(axes, now.vector(track["at"]))
         gap = dot(n, c - at) - r
-        if "axis" in tie:
-            return _wheel(tie, now, R, c, n, at, r, on)
+        if "axis" in constraint:
+            return _wheel(constraint, now, R, c, n, at, r, on)
         if r is None:
-            return _ellipsoid(tie, now, R, c, n, at, on)
+            return _ellipsoid(constraint, now, R, c, n, at, on)
         return gap, n, c - _times(n, r), on
-    circle = tie.get("circle")
+    circle = constraint.get("circle")
     middle = o + matmul(axes, now.vector(circle["at"]) if circle else vector([0, 0, 0]))
     size = now.model.number(circle["radius"]) if circle else _radius(now, on, {})
     inside = bool(circle and circle.get("inside"))
@@ -293,18 +294,18 @@ def _meeting(tie: dict, now: Any) -> tuple[Jet, Jet, Jet, str | None]:
     return gap, n, c - _times(n, r), on
 
 
-def _wheel(tie: dict, now: Any, R: Jet, c: Jet, n: Jet, at: Jet, r: float, on: str | None) -> tuple:
+def _wheel(constraint: dict, now: Any, R: Jet, c: Jet, n: Jet, at: Jet, r: float, on: str | None) -> tuple:
     """A thin wheel on a plane: its rim's lowest point."""
-    axle = matmul(R, vector(_unit(now, tie["axis"])))
+    axle = matmul(R, vector(_unit(now, constraint["axis"])))
     down = -(n - _times(axle, dot(axle, n)))
     down = _times(down, 1.0 / ty.norm(down))
-    place = c + _times(down, r) - _times(n, now.model.number(tie.get("tube", 0)))
+    place = c + _times(down, r) - _times(n, now.model.number(constraint.get("tube", 0)))
     return dot(n, place - at), n, place, on
 
 
-def _ellipsoid(tie: dict, now: Any, R: Jet, c: Jet, n: Jet, at: Jet, on: str | None) -> tuple:
+def _ellipsoid(constraint: dict, now: Any, R: Jet, c: Jet, n: Jet, at: Jet, on: str | None) -> tuple:
     """The place of an ellipsoid whose normal is -n."""
-    declared = tie.get("ellipsoid") or now.model.bodies[tie["body"]]["shape"]["semiaxes"]
+    declared = constraint.get("ellipsoid") or now.model.bodies[constraint["body"]]["shape"]["semiaxes"]
     square = vector(now.model.numbers(declared) ** 2)
     own = matmul(transpose(R), n)
     scaled = square * own
@@ -316,21 +317,21 @@ def _times(v: Jet, x: Any) -> Jet:
     return Jet(v.c * x) if isinstance(x, (int, float)) else Jet(jet(x).c[:, None, :]) * v
 
 
-def _rolling(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    gap, n, place, on = _meeting(tie, now)
+def _rolling(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    gap, n, place, on = _meeting(constraint, now)
     rows: Rows = [(gap, False, "n")]
-    if tie.get("slip"):
+    if constraint.get("slip"):
         return rows
-    v = now.velocity_at(tie["body"], place) - now.velocity_at(on, place)
-    return rows + [(dot(e, v), True, role) for e, role in _tangents(now, n, tie, on)]
+    v = now.velocity_at(constraint["body"], place) - now.velocity_at(on, place)
+    return rows + [(dot(e, v), True, role) for e, role in _tangents(now, n, constraint, on)]
 
 
-def _tangents(now: Any, n: Jet, tie: dict, on: str | None) -> list[tuple[Jet, str]]:
+def _tangents(now: Any, n: Jet, constraint: dict, on: str | None) -> list[tuple[Jet, str]]:
     if now.model.plane:
         return [(-_left(n), "t")]
     axes = now.frame(on or "ground")[1]
-    if "axis" in tie.get("circle", {}):
-        t = matmul(axes, vector(_unit(now, tie["circle"]["axis"])))
+    if "axis" in constraint.get("circle", {}):
+        t = matmul(axes, vector(_unit(now, constraint["circle"]["axis"])))
         return [(t, "t"), (cross(n, t), "s")]
     x = component(transpose(axes), 0)
     along = x - _times(n, dot(n, x))
@@ -341,11 +342,11 @@ def _tangents(now: Any, n: Jet, tie: dict, on: str | None) -> list[tuple[Jet, st
     return [(t, "t"), (cross(n, t), "s")]
 
 
-def _skate(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    body = _split(now, tie["point"])
-    along = matmul(now.poses[body][1], vector(_unit(now, tie["along"])))
-    v = now.velocity_at(body, now.point(tie["point"]))
-    n = cross(vector(_unit(now, tie["normal"]) if "normal" in tie else Z), along)
+def _skate(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    body = _split(now, constraint["point"])
+    along = matmul(now.poses[body][1], vector(_unit(now, constraint["along"])))
+    v = now.velocity_at(body, now.point(constraint["point"]))
+    n = cross(vector(_unit(now, constraint["normal"]) if "normal" in constraint else Z), along)
     return [(dot(_times(n, 1.0 / ty.norm(n)), v), True, "n")]
 
 
@@ -388,13 +389,13 @@ def _tangent(now: Any, one: Any, two: Any) -> Jet:
     return _times(d, ty.sqrt(1.0 - sine * sine)) - _times(left(d), sine)
 
 
-def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    items, tensions, keeping = tie["path"], [], []
+def _string(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    items, tensions, keeping = constraint["path"], [], []
     for k, (one, two) in enumerate(itertools.pairwise(items)):
         (A, body_a, s_a), (B, body_b, s_b) = _touch(now, one), _touch(now, two)
         left = _beside(now, [one, two])
-        if "strands" in tie:
-            given = tie["strands"][k]
+        if "strands" in constraint:
+            given = constraint["strands"][k]
             way = np.array(DIRECTIONS[given]) if isinstance(given, str) else _unit(now, given)
             d = vector(way)
         else:
@@ -406,7 +407,7 @@ def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
         v = now.velocity_at(body_b, b) if not isinstance(two, str) else now.point(two).rate()
         w = now.velocity_at(body_a, a) if not isinstance(one, str) else now.point(one).rate()
         tensions.append(-dot(d, v - w))
-        if "strands" in tie:
+        if "strands" in constraint:
             keeping.append(dot(left(d), b - a))
     joined: Rows = []
     for k, (item, row) in enumerate(zip(items[:-1], tensions, strict=True)):
@@ -416,22 +417,22 @@ def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
         else:
             joined.append((row, True, "n"))
     for row in keeping:
-        if row.c.shape[-1] > 1 and np.max(np.abs(row.c[1][2:])) > 1e-12 and _moves(o, now, tie):
+        if row.c.shape[-1] > 1 and np.max(np.abs(row.c[1][2:])) > 1e-12 and _moves(o, now, constraint):
             joined.append((row, False, "side"))
     return joined
 
 
-def _moves(o: Any, now: Any, tie: dict) -> bool:
+def _moves(o: Any, now: Any, constraint: dict) -> bool:
     return True
 
 
-def _gear(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    ratio = now.model.number(tie["ratio"])
+def _gear(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    ratio = now.model.number(constraint["ratio"])
     if now.model.plane:
-        one, two = (component(now.spin(b), 2) for b in tie["bodies"])
+        one, two = (component(now.spin(b), 2) for b in constraint["bodies"])
         return [(one - ratio * two, True, "couple")]
     rates = []
-    for b in tie["bodies"]:
+    for b in constraint["bodies"]:
         body = now.model.bodies[b]
         axes = seat(now, body)[1]
         e = matmul(axes, vector(_axis(now, body["joint"])))
@@ -439,29 +440,29 @@ def _gear(name: str, tie: dict, now: Any, o: Any) -> Rows:
     return [(rates[0] - ratio * rates[1], True, "couple")]
 
 
-def _equation(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    return [(jet(now.value(tie.get("gap", tie.get("rate")))), "rate" in tie, "n")]
+def _equation(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    return [(jet(now.value(constraint.get("gap", constraint.get("rate")))), "rate" in constraint, "n")]
 
 
-def _motion(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    value = tie["value"]
+def _motion(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    value = constraint["value"]
     if isinstance(value, dict) and "samples" in value:
         f = now.model.law(value, now.t.value)
         n = now.t.c.shape[-1]
         c = np.zeros((3, n))
         c[0], c[1, 0], c[2, 0] = f[0], f[1], f[2] / 2
-        return [(now.q[tie["coordinate"]] - Jet(c), False, "drive")]
-    return [(now.q[tie["coordinate"]] - now.value(value), False, "drive")]
+        return [(now.q[constraint["coordinate"]] - Jet(c), False, "drive")]
+    return [(now.q[constraint["coordinate"]] - now.value(value), False, "drive")]
 
 
-TIES: dict[str, Callable] = {
+CONSTRAINTS: dict[str, Callable] = {
     "pin": _pin, "support": _support, "clamp": _clamp, "guide": _guide, "slider": _slider, "link": _link,
     "rolling": _rolling, "skate": _skate, "string": _string, "gear": _gear, "equation": _equation, "motion": _motion,
 }  # fmt: skip
 
 
-def tie_rows(name: str, tie: dict, now: Any, o: Any) -> Rows:
-    return TIES[tie["kind"]](name, tie, now, o)
+def constraint_rows(name: str, constraint: dict, now: Any, o: Any) -> Rows:
+    return CONSTRAINTS[constraint["kind"]](name, constraint, now, o)
 
 
 # loads
@@ -799,25 +800,25 @@ def frictions(o: Any, now: Any, rows: list) -> list[tuple[int, np.ndarray]]:
     """(row, force per unit of |N|) of each contact that rubs; one that sticks has rows of its own instead."""
     found, stuck = [], {row.owner for row in rows if row.role in ("stick t", "stick s")}
     for i, row in enumerate(rows):
-        tie = now.model.constraints.get(row.owner)
-        if tie is None or row.role != "n" or "friction" not in tie or row.owner in stuck:
+        constraint = now.model.constraints.get(row.owner)
+        if constraint is None or row.role != "n" or "friction" not in constraint or row.owner in stuck:
             continue
-        if tie["kind"] == "rolling" and not tie.get("slip"):
+        if constraint["kind"] == "rolling" and not constraint.get("slip"):
             continue
-        found.append((i, rubbing(o, now, tie)))
+        found.append((i, rubbing(o, now, constraint)))
     return found
 
 
 def sticking(o: Any, now: Any, rows: list) -> list[tuple[str, bool, Any]]:
-    """(tie, its row of rates, mu) of each closed contact with dry friction at rest: nothing slides there."""
+    """(constraint, its row of rates, mu) of each closed contact with dry friction at rest: nothing slides there."""
     found = []
     for name in dict.fromkeys(row.owner for row in rows if row.role == "n"):
-        tie = now.model.constraints.get(name, {})
-        if not isinstance(tie.get("friction", {}), (int, float, str)) or (
-            tie["kind"] == "rolling" and not tie.get("slip")
+        constraint = now.model.constraints.get(name, {})
+        if not isinstance(constraint.get("friction", {}), (int, float, str)) or (
+            constraint["kind"] == "rolling" and not constraint.get("slip")
         ):
             continue
-        place, body, on, tangents = _sliding(now, tie)
+        place, body, on, tangents = _sliding(now, constraint)
         v = now.velocity_at(body, place) - now.velocity_at(on, place)
         slips = [dot(e, v) for e in tangents]
         if max(abs(float(x.c[0][0])) for x in slips) < 1e-9:
@@ -825,22 +826,22 @@ def sticking(o: Any, now: Any, rows: list) -> list[tuple[str, bool, Any]]:
     return found
 
 
-def rubbing(o: Any, now: Any, tie: dict) -> np.ndarray:
-    place, body, on, tangents = _sliding(now, tie)
-    push = _push(now, tie, place, body, on, tangents)
+def rubbing(o: Any, now: Any, constraint: dict) -> np.ndarray:
+    place, body, on, tangents = _sliding(now, constraint)
+    push = _push(now, constraint, place, body, on, tangents)
     F = Load("", body, _now(place), push).on(o, now)
     return F + Load("", on, _now(place), -push).on(o, now) if on is not None else F
 
 
-def _push(now: Any, tie: dict, place: Jet, body: Any, on: Any, tangents: list[Jet]) -> np.ndarray:
+def _push(now: Any, constraint: dict, place: Jet, body: Any, on: Any, tangents: list[Jet]) -> np.ndarray:
     """Force on the body for |N| = 1."""
     v = now.velocity_at(body, place) - now.velocity_at(on, place)
     slip = sum((float(dot(e, v).c[0][0]) * _now(e) for e in tangents), np.zeros(3))
-    if isinstance(tie["friction"], dict):
-        return FRICTION["viscous"](now.model.number(tie["friction"]["viscous"]), slip)
+    if isinstance(constraint["friction"], dict):
+        return FRICTION["viscous"](now.model.number(constraint["friction"]["viscous"]), slip)
     if np.linalg.norm(slip) < 1e-9:
-        raise NoSliding(tie)
-    return FRICTION["coulomb"](now.model.number(tie["friction"]), slip)
+        raise NoSliding(constraint)
+    return FRICTION["coulomb"](now.model.number(constraint["friction"]), slip)
 
 
 FRICTION: dict[str, Callable] = {
@@ -853,23 +854,23 @@ class NoSliding(Exception):
     """Friction at rest: no law gives its value."""
 
 
-def _sliding(now: Any, tie: dict) -> tuple[Jet, str | None, str | None, list[Jet]]:
-    if tie["kind"] == "rolling":
-        _, n, place, on = _meeting(tie, now)
-        return place, tie["body"], on, [e for e, _ in _tangents(now, n, tie, on)]
-    place = now.point(tie["point"])
-    body = _split(now, tie["point"])
-    if tie["kind"] == "slider":
-        a, b = now.model.bodies[tie["on"]].get("line", ["start", "end"])
-        d = now.of_body(tie["on"], b) - now.of_body(tie["on"], a)
-        d = matmul(now.poses[tie["on"]][1], _times(d, 1.0 / ty.norm(d)))
-        return place, body, tie["on"], [d]
-    return place, body, None, [e for e, _ in _tangents(now, vector(_unit(now, tie["normal"])), tie, None)]
+def _sliding(now: Any, constraint: dict) -> tuple[Jet, str | None, str | None, list[Jet]]:
+    if constraint["kind"] == "rolling":
+        _, n, place, on = _meeting(constraint, now)
+        return place, constraint["body"], on, [e for e, _ in _tangents(now, n, constraint, on)]
+    place = now.point(constraint["point"])
+    body = _split(now, constraint["point"])
+    if constraint["kind"] == "slider":
+        a, b = now.model.bodies[constraint["on"]].get("line", ["start", "end"])
+        d = now.of_body(constraint["on"], b) - now.of_body(constraint["on"], a)
+        d = matmul(now.poses[constraint["on"]][1], _times(d, 1.0 / ty.norm(d)))
+        return place, body, constraint["on"], [d]
+    return place, body, None, [e for e, _ in _tangents(now, vector(_unit(now, constraint["normal"])), constraint, None)]
 
 
 def _gap(name: str, o: Any, s: Any) -> Jet:
     now = o.reduced(s)
-    return next(jet_ for jet_, rate, role in tie_rows(name, o.model.constraints[name], now, o) if role == "n")
+    return next(jet_ for jet_, rate, role in constraint_rows(name, o.model.constraints[name], now, o) if role == "n")
 
 
 def touches(name: str, o: Any, s: Any) -> bool:
@@ -884,7 +885,7 @@ def agrees(name: str, o: Any, s: Any, solved: Any) -> bool:
         found = {solved.rows[i].owner: x for i, x in zip(kept, lam, strict=True) if solved.rows[i].role == "n"}
         return found[name] >= -1e-9
     now = o.reduced(s, solved.a)
-    c = next(j for j, rate, role in tie_rows(name, o.model.constraints[name], now, o) if role == "n").c
+    c = next(j for j, rate, role in constraint_rows(name, o.model.constraints[name], now, o) if role == "n").c
     return float(c[2][0]) >= -1e-9
 
 
@@ -968,7 +969,8 @@ def _parts(A: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
-    """Reactions that have one value, by the product's names: force and couple of joints on the child, those of ties."""
+    """Reactions that have one value, by the product's names: force and couple of joints on the child, those of
+    constraints."""
     now = solved.now
     kept, lam, null = holding(o, solved)
     size = float(np.max(np.abs(lam), initial=1.0))
@@ -988,14 +990,14 @@ def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
             own = _of_joint(name, o, now, s, columns)
             for key, x in sure({key: g for key, (g, _) in own.items()}).items():
                 found[key] = x + own[key][1]
-    for name, tie in now.model.constraints.items():
+    for name, constraint in now.model.constraints.items():
         mine = [k for k, i in enumerate(kept) if solved.rows[i].owner == name]
         units = np.eye(len(kept))
-        found |= sure(_of_tie(name, tie, now, [(solved.rows[kept[k]].role, units[k]) for k in mine]))
+        found |= sure(_of_constraint(name, constraint, now, [(solved.rows[kept[k]].role, units[k]) for k in mine]))
         if not solved.closed.get(name, True):
-            found |= {key: 0.0 for key in _of_tie(name, tie, now, [("n", None)])}
+            found |= {key: 0.0 for key in _of_constraint(name, constraint, now, [("n", None)])}
         if name in solved.pressed:
-            found |= _rubbed(name, tie, now, solved.pressed[name])
+            found |= _rubbed(name, constraint, now, solved.pressed[name])
     for k, i in enumerate(kept):
         row = solved.rows[i]
         if row.role == "drive":
@@ -1004,10 +1006,10 @@ def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
     return {key: x for key, x in found.items() if abs(x) < 1e9 * size}
 
 
-def _rubbed(name: str, tie: dict, now: Any, pressed: float) -> dict[str, float]:
-    place, body, on, tangents = _sliding(now, tie)
-    push = _push(now, tie, place, body, on, tangents) * pressed
-    if tie["kind"] == "slider":
+def _rubbed(name: str, constraint: dict, now: Any, pressed: float) -> dict[str, float]:
+    place, body, on, tangents = _sliding(now, constraint)
+    push = _push(now, constraint, place, body, on, tangents) * pressed
+    if constraint["kind"] == "slider":
         return {}
     return {f"reaction_{role}({name})": float(_now(e) @ push) for e, role in zip(tangents, "ts", strict=False)}
 
@@ -1065,19 +1067,19 @@ def holds(o: Any, solved: Any) -> bool:
 STICKING: dict[str, Callable] = {"least": lambda mu, N: mu * N * (1 + 1e-9)}
 
 
-def _of_tie(name: str, tie: dict, now: Any, rows: list[tuple[str, Any]]) -> dict[str, Any]:
-    kind = tie["kind"]
+def _of_constraint(name: str, constraint: dict, now: Any, rows: list[tuple[str, Any]]) -> dict[str, Any]:
+    kind = constraint["kind"]
     rows = [(role.removeprefix("stick "), x) for role, x in rows]
     plane = now.model.plane
     if not rows:
         return {}
-    if kind == "pin" and len(tie["points"]) <= 2:
+    if kind == "pin" and len(constraint["points"]) <= 2:
         return {f"reaction_{role}({name})": x for role, x in rows if role in ("x", "y", "z")}
     if kind in ("support", "slider", "rolling", "skate") and (plane or kind != "slider"):
         return {f"reaction_{role}({name})": x for role, x in rows}
     if kind == "guide" and plane:
         return {f"reaction_{'couple' if role == 'couple' else 'n'}({name})": x for role, x in rows}
-    if kind == "clamp" and plane and len(tie.get("points", [0])) <= 2:
+    if kind == "clamp" and plane and len(constraint.get("points", [0])) <= 2:
         return {f"reaction_{role}({name})": x for role, x in rows}
     if kind == "link":
         return {f"tension({name})": rows[0][1]}

@@ -1,7 +1,7 @@
 """The oracle: accelerations, reactions, energies of a model by maximal coordinates, in numpy.
 
 Every body has six accelerations of its own, every coordinate one; each joint is six equations between two bodies and
-the coordinates, each tie its rows, each drive one:
+the coordinates, each constraint its rows, each drive one:
 
     M z'' = F + J^T lam,        J z'' + gamma = 0,        z = (mass centres, turns, coordinates)
 
@@ -38,10 +38,10 @@ class State:
 
 @dataclass
 class Row:
-    """One row of a joint, tie or drive along all curves.
+    """One row of a joint, constraint or drive along all curves.
 
     Args:
-        owner: the body of a joint, the name of a tie, or "drive q".
+        owner: the body of a joint, the name of a constraint, or "drive q".
         jet: the gap, or (`rate`) what must vanish of velocities.
         role: n, t, s, x, ... what its multiplier is called.
     """
@@ -87,7 +87,7 @@ class Oracle:
     """The oracle of one model file."""
 
     def __init__(self, text: str, start: np.ndarray | None = None) -> None:
-        """start: q at t = 0, which says where ties that hold things as they stand hold them."""
+        """start: q at t = 0, which says where constraints that hold things as they stand hold them."""
         self.model = Declared(text)
         self.names = list(self.model.coordinates)
         self.bodies = self.model.order
@@ -98,7 +98,7 @@ class Oracle:
 
     def begin(self, q: np.ndarray) -> None:
         self.start = self._frozen(0.0, q)
-        self.modes = {name: True for name, tie in self.model.constraints.items() if tie.get("unilateral")}
+        self.modes = {name: True for name, constraint in self.model.constraints.items() if constraint.get("unilateral")}
 
     def _frozen(self, t: float, q: np.ndarray) -> Moving:
         one = np.zeros((3, 1))
@@ -167,12 +167,12 @@ class Oracle:
 
     # rows
 
-    def tie_rows(self, now: Moving, closed: dict[str, bool] | None = None) -> list[Row]:
+    def constraint_rows(self, now: Moving, closed: dict[str, bool] | None = None) -> list[Row]:
         found = []
-        for name, tie in self.model.constraints.items():
+        for name, constraint in self.model.constraints.items():
             if closed is not None and not closed.get(name, True):
                 continue
-            found += [Row(name, *row) for row in laws.tie_rows(name, tie, now, self)]
+            found += [Row(name, *row) for row in laws.constraint_rows(name, constraint, now, self)]
         for body in self.model.bodies.values():
             four = body.get("joint", {}).get("quaternion")
             if four:
@@ -210,7 +210,7 @@ class Oracle:
                 q[k] = drives[name][0]
         for _ in range(50):
             s = State(t, q, np.zeros(len(q)))
-            rows = [r for r in self.tie_rows(self.reduced(s), closed) if not r.rate]
+            rows = [r for r in self.constraint_rows(self.reduced(s), closed) if not r.rate]
             if not rows or not free.any():
                 break
             gap = np.array([float(r.jet.c[0][0]) for r in rows])
@@ -223,10 +223,10 @@ class Oracle:
             if size < 1e-15:
                 break
         s = State(t, q, np.zeros(len(q)))
-        rows = self.tie_rows(self.reduced(s), closed)
+        rows = self.constraint_rows(self.reduced(s), closed)
         open_by = max((abs(float(r.jet.c[0][0])) for r in rows if not r.rate), default=0.0)
         if open_by > 1e-9:
-            raise NoAnswer(f"ties stay open by {open_by:.1e}")
+            raise NoAnswer(f"constraints stay open by {open_by:.1e}")
         v = np.array(v, dtype=float)
         for k, name in enumerate(self.names):
             if name in drives:
@@ -250,12 +250,12 @@ class Oracle:
             left = -(sigma + J @ v)
             v[free] += np.linalg.lstsq(J[:, free], left, rcond=1e-9)[0]
             if np.max(np.abs(sigma + J @ v)) > 1e-8 * (1 + np.max(np.abs(v))):
-                raise NoAnswer("no rates keep the ties")
+                raise NoAnswer("no rates keep the constraints")
         return State(s.t, s.q, v)
 
     def _velocity_rows(self, s: State, closed: dict[str, bool] | None) -> tuple[np.ndarray, np.ndarray]:
         """(J, sigma) with J v + sigma = 0, in the coordinates."""
-        rows = self.tie_rows(self.reduced(s), closed)
+        rows = self.constraint_rows(self.reduced(s), closed)
         J, sigma = [], []
         for r in rows:
             c = r.jet.c
@@ -279,7 +279,7 @@ class Oracle:
         loose: float = 1e-7,
         closed: dict[str, bool] | None = None,
     ) -> State:
-        """The state of given speeds: rates, declared speeds, and the ties' rows, solved together."""
+        """The state of given speeds: rates, declared speeds, and the constraints' rows, solved together."""
         drives = self.drives(t)
         zero = State(t, np.array(q, dtype=float), np.zeros(len(q)))
         closed = self.closed_at_start() if closed is None else closed
@@ -300,7 +300,7 @@ class Oracle:
         A, b = np.array(A), np.array(b)
         v = np.linalg.lstsq(A, b, rcond=1e-10)[0]
         if np.max(np.abs(A @ v - b)) > loose * (1 + np.max(np.abs(b))):
-            raise NoAnswer("these speeds break the ties")
+            raise NoAnswer("these speeds break the constraints")
         return State(t, np.array(q, dtype=float), v)
 
     def speeds_of(
@@ -322,7 +322,7 @@ class Oracle:
         closed = self.closed_at_start() if closed is None else closed
         now = self.maximal(s)
         drives = self.drives(s.t)
-        rows = self.joint_rows(now) + self.tie_rows(now, closed)
+        rows = self.joint_rows(now) + self.constraint_rows(now, closed)
         rows += [Row(name, slip, True, f"stick {role}") for name, slip, role in laws.sticking(self, now, rows)]
         first = 6 * len(self.bodies)
         rows += [Row(f"drive {name}", now.q[name], role="drive") for name in drives]
@@ -437,7 +437,8 @@ class Oracle:
         return np.array(found + [now.q[q].c[1][0] for q in self.names])
 
     def other_accelerations(self, s: State, solved: Solved) -> tuple[np.ndarray, list[str]]:
-        """(accelerations beside those of the motion that keep the ties and drives, the coordinates free by these)."""
+        """(accelerations beside those of the motion that keep the constraints and drives, the coordinates free by
+        these)."""
         free = [k for k, name in enumerate(self.names) if name not in self.model.driven]
         J, _ = self._velocity_rows(s, self.closed_at_start())
         J = J[:, free] if len(J) else np.zeros((0, len(free)))
@@ -482,7 +483,7 @@ class Oracle:
     def small(self, q: np.ndarray, h: float = 1e-5) -> np.ndarray:
         """A of x' = A x about rest at q, x = independent coordinates and their rates, by differences.
 
-        The ties are positions alone; the rest follows from the independent ones, which the rows of J choose.
+        The constraints are positions alone; the rest follows from the independent ones, which the rows of J choose.
         """
         J = self._velocity_rows(State(0.0, q, np.zeros(len(q))), None)[0]
         free = [k for k, name in enumerate(self.names) if name not in self.model.driven]
@@ -499,10 +500,10 @@ class Oracle:
         return np.array([(slope(h * e) - slope(-h * e)) / (2 * h) for e in np.eye(n)]).T
 
     def _closed_by(self, q: np.ndarray, v: np.ndarray, dependent: list[int]) -> State:
-        """The state in which the dependent coordinates and rates close the ties."""
+        """The state in which the dependent coordinates and rates close the constraints."""
         if dependent:
             for _ in range(20):
-                rows = self.tie_rows(self.reduced(State(0.0, q, np.zeros(len(q)))))
+                rows = self.constraint_rows(self.reduced(State(0.0, q, np.zeros(len(q)))))
                 gap = np.array([float(r.jet.c[0][0]) for r in rows])
                 J = np.array([r.jet.c[1][2:] if r.jet.c.shape[-1] > 1 else np.zeros(len(q)) for r in rows])
                 q[dependent] += np.linalg.lstsq(J[:, dependent], -gap, rcond=1e-9)[0]

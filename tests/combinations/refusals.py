@@ -37,6 +37,6 @@ def lacking(problems: Sequence[Any], text: str) -> str:
             left.append("names nothing of the model")
         elif not own and not AT.search(problem.where) and not re.search(r"'[^']+'|--\w+|\bt = ", said):
             left.append("says no place")
-        if not problem.mend:
+        if not problem.fix:
             left.append("says not what to do")
     return ", ".join(dict.fromkeys(left))

@@ -37,7 +37,7 @@ from refusals import lacking  # noqa: E402
 from shared import one_model  # noqa: E402
 
 import eomgen  # noqa: E402
-from eomgen.edge import problems_of  # noqa: E402
+from eomgen.cli_errors import problems_of  # noqa: E402
 
 LANGUAGES = ((), ("c",), ("javascript",))
 
@@ -69,11 +69,11 @@ def _of_model(text: str, levels: dict[str, str], seed: int, through_verbs: bool)
             found = compare.against(product, seed)
         if through_verbs:
             with calls.limit(120):
-                told = cross.across(product, languages=LANGUAGES[seed_of(levels) % 3])
+                reported = cross.across(product, languages=LANGUAGES[seed_of(levels) % 3])
             row["calls"] += [[f"python {call}", 0, 0.0, ""] for call in ("solve", "reactions", "simulate", "linearize")]
-            found.numbers += told.numbers
-            found.faults += told.faults
-            found.skipped += told.skipped
+            found.numbers += reported.numbers
+            found.faults += reported.faults
+            found.skipped += reported.skipped
         row["numbers"], row["skipped"] = found.numbers, found.skipped
         row["calls"] += [[f"python {call}", 0, 0.0, ""] for call in ("derive", "rhs", "reaction_rhs")]
         row["faults"] += [["oracle: " + kind, what] for kind, what in found.faults[:5]]

@@ -1,6 +1,6 @@
 """Structures at rest, without coordinates: beams, frames, trusses, in the plane and in space; drawn, and the balance.
 
-The oracle's part: every body is free but for its ties, a truss is its nodes and links between them:
+The oracle's part: every body is free but for its constraints, a truss is its nodes and links between them:
 
     J^T lam + F = 0
 
@@ -235,7 +235,7 @@ class Structure:
         self.o = Oracle(text, np.zeros(0))
         s = State(0.0, np.zeros(0), np.zeros(0))
         self.now = self.o.maximal(s)
-        self.rows: list[Row] = self.o.tie_rows(self.now)
+        self.rows: list[Row] = self.o.constraint_rows(self.now)
         self.J = np.array([row.parts()[0] for row in self.rows])
         self.loads = laws.loads(self.o, self.now, s)
         F = sum((load.on(self.o, self.now) for load in self.loads), np.zeros(6 * len(self.o.bodies)))
@@ -253,10 +253,10 @@ class Structure:
     def reactions(self) -> dict[str, float]:
         """Those that have one value, by the product's names."""
         found: dict[str, float] = {}
-        for name, tie in self.o.model.constraints.items():
+        for name, constraint in self.o.model.constraints.items():
             mine = [k for k, row in enumerate(self.rows) if row.owner == name]
-            said = laws._of_tie(name, tie, self.now, [(self.rows[k].role, k) for k in mine])
-            if tie["kind"] == "clamp" and not self.o.model.plane:
+            said = laws._of_constraint(name, constraint, self.now, [(self.rows[k].role, k) for k in mine])
+            if constraint["kind"] == "clamp" and not self.o.model.plane:
                 couples = [k for k in mine if self.rows[k].role == "couple"]
                 said = {f"reaction_{self.rows[k].role}({name})": k for k in mine if k not in couples}
                 said |= {f"reaction_couple_{'xyz'[j]}({name})": k for j, k in enumerate(couples)}
@@ -286,7 +286,7 @@ class Structure:
                     return None  # a couple stands nowhere along the member
                 add(load.place, load.force)
         center = self.now.poses[body][0].c[0][:, 0] + self.o.model.mass[body][1]
-        for name, tie in self.o.model.constraints.items():
+        for name, constraint in self.o.model.constraints.items():
             mine = [k for k, row in enumerate(self.rows) if row.owner == name]
             W = self.J[mine][:, 6 * i : 6 * i + 6].T
             if not np.any(W):
@@ -294,7 +294,7 @@ class Structure:
             if len(self.null) and np.max(np.abs(self.null[:, mine])) > 1e-9:
                 return None
             w = W @ self.lam[mine]
-            named = tie.get("points") or [tie["point"]]
+            named = constraint.get("points") or [constraint["point"]]
             own = next((p for p in named if p.startswith(f"{body}.")), named[0])  # of a rail: the point that slides
             place = self.now.point(own).c[0][:, 0]
             add(place, w[:3], float(w[5] - np.cross(place - center, w[:3])[2]))
@@ -330,7 +330,7 @@ class Structure:
 # the product against it
 
 
-def told(text: str) -> dict[str, dict]:
+def reported(text: str) -> dict[str, dict]:
     """What the product says of a structure: reactions by two verbs, section forces."""
     from compare import quiet
 
@@ -348,7 +348,7 @@ def compared(text: str, said: dict[str, dict] | None = None) -> Any:
     """The reactions and section forces of the product against the balance of the bodies."""
     from compare import Found
 
-    found, said = Found(), told(text) if said is None else said
+    found, said = Found(), reported(text) if said is None else said
     oracle = Structure(text)
     want = oracle.reactions()
     size = 1.0 + 1e-3 * max((abs(x) for x in want.values()), default=0.0)

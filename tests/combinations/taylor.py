@@ -121,7 +121,7 @@ def sign(x: Any) -> Jet:
 
 
 def pick(a: Any, b: Any, least: bool) -> Jet:
-    """min or max of two, by their values on the first curve; at a tie by their rates, each curve for itself."""
+    """min or max of two, by their values on the first curve; at a constraint by their rates, each curve for itself."""
     a, b = together(jet(a), jet(b))
     first = a.c[0] <= b.c[0] if least else a.c[0] >= b.c[0]
     return Jet(np.where(first, a.c, b.c))

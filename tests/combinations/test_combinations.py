@@ -32,7 +32,7 @@ from refusals import lacking
 
 import eomgen
 from eomgen.cli import main
-from eomgen.edge import problems_of
+from eomgen.cli_errors import problems_of
 
 pytestmark = pytest.mark.slow
 
@@ -56,9 +56,14 @@ def of_law(table: str, law: str) -> compare.Product:
         level = {"spherical": "quaternion"}.get(law, law)
         return product(joint=level, space="space" if level in IN_SPACE else "plane")
     if table == "TIES":
-        ties = {"equation": "points", "pin": "none"}
+        constraints = {"equation": "points", "pin": "none"}
         space = "space" if law == "string" else "plane"
-        return product(tie=ties.get(law, law), loop="four_bar" if law == "pin" else "none", base="ground", space=space)
+        return product(
+            constraint=constraints.get(law, law),
+            loop="four_bar" if law == "pin" else "none",
+            base="ground",
+            space=space,
+        )
     if table == "FORCES":
         return product(force=law, second_force="gravity")
     if table == "MOVING":
@@ -78,8 +83,8 @@ def planted(table: str, law: str) -> Callable:
         R, d = own(now, j)
         return ty.matmul(R, ty.turn([0, 0, 1], ty.component(R, 1, 0) * 0.3 + ty.component(d, 0) * 0.3)), d * 1.3
 
-    def tie(name: str, tie: dict, now: Any, o: Any) -> Any:
-        (gap, rate, role), *rest = own(name, tie, now, o)
+    def constraint(name: str, constraint: dict, now: Any, o: Any) -> Any:
+        (gap, rate, role), *rest = own(name, constraint, now, o)
         q = next(iter(now.q.values()))
         return [(gap + (q.rate() if rate else q * q) * 0.3, rate, role), *rest]
 
@@ -97,14 +102,14 @@ def planted(table: str, law: str) -> Callable:
 
     if table == "STICKING":
         return lambda *arguments: 0.1 * own(*arguments)
-    by_table = {"JOINTS": joint, "TIES": tie, "FORCES": force}
+    by_table = {"JOINTS": joint, "TIES": constraint, "FORCES": force}
     return by_table.get(table, kinetic if law == "kinetic" else lambda *arguments: 1.5 * own(*arguments))
 
 
 STICKS = ("answers", "run")  # code and `reactions` have friction by the law of sliding
 LAWS = [
     *(("JOINTS", law) for law in laws.JOINTS),
-    *(("TIES", law) for law in laws.TIES),
+    *(("TIES", law) for law in laws.CONSTRAINTS),
     *(("FORCES", law) for law in laws.FORCES if law != "kinetic"),
     *(("EFFORTS", law) for law in ("spring", "damper", "torque")),
     ("ARMATURE", "armature"),
@@ -179,13 +184,13 @@ REFUSED = {
 
 @each("what", REFUSED)
 def test_a_refusal_names_an_object_its_place_and_what_to_do(what):
-    """What cannot be asked of a model is refused by a name of the model, and with a mend."""
+    """What cannot be asked of a model is refused by a name of the model, and with a fix."""
     levels, ask = REFUSED[what]
     text = text_of(PLAIN | levels, 1)
     model = eomgen.loads(text)
-    with pytest.raises(eomgen.EomgenError) as told:
+    with pytest.raises(eomgen.EomgenError) as reported:
         ask(model)
-    assert not lacking(problems_of(told.value), text)
+    assert not lacking(problems_of(reported.value), text)
 
 
 EXPORTED = (
@@ -312,10 +317,10 @@ def test_a_pair_that_cannot_be_is_refused_by_name(pair):
     if pair.one == ("speeds", "omega") and pair.two[0] == "shape":
         levels["joint"] = "quaternion"
     text = compare.filled(text_of(levels, 1))
-    with pytest.raises(eomgen.EomgenError) as told:
+    with pytest.raises(eomgen.EomgenError) as reported:
         eomgen.derive(eomgen.loads(text)).rhs("numpy")
-    assert pair.refused in str(told.value)
-    assert not lacking(problems_of(told.value), text)
+    assert pair.refused in str(reported.value)
+    assert not lacking(problems_of(reported.value), text)
 
 
 @pytest.mark.parametrize("number", [0, *beside(1), 2, 3])
@@ -334,7 +339,8 @@ def test_verbs_say_of_one_quantity_one_number(number):
 
 @pytest.mark.parametrize("closure", ["multipliers", "dependent"])
 def test_forces_that_accelerations_take_along_a_loop_are_the_oracles(monkeypatch, closure):
-    """tau of J a + gamma = 0: along the crank, the rest by the ties; an error of the oracle's masses is noticed."""
+    """tau of J a + gamma = 0: along the crank, the rest by the constraints; an error of the oracle's masses is
+    noticed."""
     known = product(loop="slider_crank", joint="prismatic", force="spring", closure=closure)
     right = cross.across(known, parts=("inverse",))
     assert right.numbers > 0
@@ -347,14 +353,16 @@ def test_forces_that_accelerations_take_along_a_loop_are_the_oracles(monkeypatch
 def test_structures_at_rest_stand_as_the_balance_of_their_bodies_says(monkeypatch, kind):
     """Reactions by virtual work and by equilibrium, member forces, N, V and M; errors of the oracle are noticed."""
     text = structures.structure(kind, Random(f"{kind}2"))
-    said = structures.told(text)
+    said = structures.reported(text)
     right = structures.compared(text, said)
     assert right.numbers > 0
     assert not right.faults
     balance = structures.Structure(text)
     known = {key.partition("(")[2].rstrip(")") for key in balance.reactions()}
-    for name in {tie["kind"] for tied, tie in balance.o.model.constraints.items() if tied in known}:
-        own = laws.TIES[name]
+    for name in {
+        constraint["kind"] for constrained, constraint in balance.o.model.constraints.items() if constrained in known
+    }:
+        own = laws.CONSTRAINTS[name]
         with monkeypatch.context() as patch:
-            patch.setitem(laws.TIES, name, lambda *x, own=own: [(gap * 1.3, *rest) for gap, *rest in own(*x)])
+            patch.setitem(laws.CONSTRAINTS, name, lambda *x, own=own: [(gap * 1.3, *rest) for gap, *rest in own(*x)])
             assert structures.compared(text, said).faults

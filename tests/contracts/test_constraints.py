@@ -1,4 +1,4 @@
-"""What every tie promises: its rows are the rates of its gaps, and its forces do no virtual work."""
+"""What every constraint promises: its rows are the rates of its gaps, and its forces do no virtual work."""
 
 from __future__ import annotations
 
@@ -144,7 +144,7 @@ EXAMPLES = {
     "motion": {PLANE: ['coordinate = "a", value = "l*sin(w*t)"'], SPACE: ['coordinate = "s", value = "l*w*t^2"']},
 }
 CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
-KINDS = {tie.kind: tie for tie in ALL}
+KINDS = {constraint.kind: constraint for constraint in ALL}
 built = each("kind, space, fields", CASES, by="kind")
 WITHOUT_GAP = {"rolling": ["t", "s"], "skate": ["n"]}
 """The components whose rows are of velocities alone."""
@@ -220,13 +220,13 @@ e = 0.6
 
 
 def system_with(kind: str, space: str, fields: str) -> System:
-    """Three bodies, one of them on a seat that moves by itself, and the tie."""
+    """Three bodies, one of them on a seat that moves by itself, and the constraint."""
     return written(HEAD + BODIES[space] + f'[constraints]\ntie = {{ kind = "{kind}", {fields} }}\n', space)
 
 
 def test_every_kind_of_tie_has_examples_here():
-    """A tie that is added to ALL is held to the contract."""
-    assert {tie.kind for tie in ALL} == set(EXAMPLES)
+    """A constraint that is added to ALL is held to the contract."""
+    assert {constraint.kind for constraint in ALL} == set(EXAMPLES)
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -242,17 +242,19 @@ def row_times(row: tuple[Scalar, ...], x: tuple[Scalar, ...], start: Scalar) -> 
 @built
 def test_the_tie_closes(kind, space, fields):
     """None of the examples is satisfied by the coordinates: every row closes and no row of J is 0."""
-    ties = system_with(kind, space, fields).ties
-    assert ties.rows and ties.closing == ties.rows
-    assert [row.label for row in ties.closing] == [f"lam(tie, {k})" for k in range(1, len(ties.rows) + 1)]
+    constraints = system_with(kind, space, fields).constraints
+    assert constraints.rows and constraints.closing == constraints.rows
+    assert [row.label for row in constraints.closing] == [
+        f"lam(constraint, {k})" for k in range(1, len(constraints.rows) + 1)
+    ]
 
 
 @built
 def test_the_rows_are_the_rates_of_the_gaps(kind, space, fields):
     """J u + sigma = dphi/dt, as exact functions."""
     system = system_with(kind, space, fields)
-    ties, u = system.ties, system.symbols.u
-    for row, sigma, phi in zip(ties.J, ties.sigma, ties.phi, strict=True):
+    constraints, u = system.constraints, system.symbols.u
+    for row, sigma, phi in zip(constraints.J, constraints.sigma, constraints.phi, strict=True):
         if phi is not None:
             assert equal((row_times(row, u, sigma),), system.scope.time_derivative((phi,)))
 
@@ -261,8 +263,8 @@ def test_the_rows_are_the_rates_of_the_gaps(kind, space, fields):
 def test_gamma_is_what_stays_of_the_rate_of_the_rows(kind, space, fields):
     """J a + gamma = d/dt (J u + sigma), J' u and sigma' included."""
     system = system_with(kind, space, fields)
-    ties, symbols = system.ties, system.symbols
-    for J, sigma, gamma in zip(ties.J, ties.sigma, ties.gamma, strict=True):
+    constraints, symbols = system.constraints, system.symbols
+    for J, sigma, gamma in zip(constraints.J, constraints.sigma, constraints.gamma, strict=True):
         velocity = row_times(J, symbols.u, sigma)
         assert equal((row_times(J, symbols.a, gamma),), system.scope.with_accelerations((velocity,)))
 
@@ -270,7 +272,7 @@ def test_gamma_is_what_stays_of_the_rate_of_the_rows(kind, space, fields):
 @built
 def test_a_gap_is_left_out_only_where_no_configuration_says_whether_the_tie_holds(kind, space, fields):
     """phi is None for rates that were given, no slip, knife edges, and strands that turn on something round."""
-    for row in system_with(kind, space, fields).ties.rows:
+    for row in system_with(kind, space, fields).constraints.rows:
         turning = kind == "string" and ("body" in fields or "radius = 0.3" in fields) and "strands" not in fields
         assert (row.gap is None) == ("rate" in fields or row.component in WITHOUT_GAP.get(kind, ()) or turning)
 
@@ -289,7 +291,7 @@ def power_row(system: System, row: Row) -> tuple[Scalar, ...]:
 def test_the_force_of_a_tie_is_dual_to_the_motion_that_it_forbids(kind, space, fields):
     """J^T = sum over bodies of B^T W, J = (dphi/dq) N: what pushes along n forbids motion along n."""
     system = system_with(kind, space, fields)
-    for row, J in zip(system.ties.closing, system.ties.J, strict=True):
+    for row, J in zip(system.constraints.closing, system.constraints.J, strict=True):
         if row.wrenches:
             assert equal(J, power_row(system, row))
         if row.gap is not None:
@@ -298,7 +300,7 @@ def test_the_force_of_a_tie_is_dual_to_the_motion_that_it_forbids(kind, space, f
 
 def virtual_velocities(system: System, state: State) -> np.ndarray:
     """A basis of the u with J u = 0, one in each column."""
-    J = np.array([at(row, state) for row in system.ties.J])
+    J = np.array([at(row, state) for row in system.constraints.J])
     _, values, V = np.linalg.svd(J)
     return V[np.sum(values > 1e-9) :].T
 
@@ -310,7 +312,7 @@ def test_a_tie_does_no_virtual_work(kind, space, fields):
     state = state_of(system)
     free = virtual_velocities(system, state)
     assert free.shape[1] >= 1
-    forces = np.array([at(power_row(system, row), state) for row in system.ties.closing if row.wrenches])
+    forces = np.array([at(power_row(system, row), state) for row in system.constraints.closing if row.wrenches])
     lam = np.random.default_rng(1).normal(size=len(forces))
     if len(forces):
         assert lam @ forces @ free == pytest.approx(np.zeros(free.shape[1]), abs=1e-13)
@@ -320,7 +322,7 @@ def test_a_tie_does_no_virtual_work(kind, space, fields):
 def test_a_tie_that_moves_by_itself_has_the_power_of_its_own_motion(kind, space, fields):
     """sigma = dphi/dt at u = 0, so that J u + sigma = 0 gives (J^T lam) . u = - lam . sigma."""
     system = system_with(kind, space, fields)
-    for sigma, phi in zip(system.ties.sigma, system.ties.phi, strict=True):
+    for sigma, phi in zip(system.constraints.sigma, system.constraints.phi, strict=True):
         if phi is not None:
             assert equal((sigma,), tangent((phi,), {system.symbols.t: 1}))
 
@@ -332,7 +334,7 @@ INNER = [c for c in CASES if c[0] in ("pin", "clamp", "link") and c[2].count(".P
 def test_a_tie_between_bodies_pushes_equally_on_both(kind, space, fields):
     """sum F = 0, and the moments about the ground's origin differ by gap x F: none when the points meet."""
     system = system_with(kind, space, fields)
-    for row in system.ties.rows:
+    for row in system.constraints.rows:
         F, M = ZERO, ZERO
         for body, wrench in row.wrenches:
             pose = system.motion.link(body).pose
@@ -352,7 +354,7 @@ ONE_PLACE = [c for c in CASES if (c[0] == "slider" and '"G"' not in c[2]) or (c[
 def test_a_contact_of_two_bodies_pushes_both_at_one_place(kind, space, fields):
     """sum F = 0 and sum M = 0 about any point, of every row and of the friction: also where the contact is open."""
     system = system_with(kind, space, fields)
-    for row in system.ties.rows:
+    for row in system.constraints.rows:
         pushed = [w for push in row.pushes if (w := body_wrench(system.motion, push)) is not None]
         assert equal(total(system, pushed), (0,) * 6)
         if kind == "rolling":
@@ -488,36 +490,36 @@ normal = [0, 1]
 at = [0, 0]
 """
     )
-    assert [row.identical for row in system.ties.rows] == [True, True]
-    assert all(row.wrenches for row in system.ties.rows)
-    assert system.ties.closing == () and system.ties.J == () and system.symbols.lam == ()
+    assert [row.identical for row in system.constraints.rows] == [True, True]
+    assert all(row.wrenches for row in system.constraints.rows)
+    assert system.constraints.closing == () and system.constraints.J == () and system.symbols.lam == ()
 
 
 def test_a_gap_that_stays_open_is_no_identical_row():
     """phi = const != 0 is not satisfied, though its rate is 0: the row must not be dropped in silence."""
     text = IDENTICAL + '[constraints.wall]\nkind = "support"\npoint = "ladder.start"\nnormal = [1, 0]\nat = [-1, 0]\n'
-    (row,) = written(text).ties.rows
+    (row,) = written(text).constraints.rows
     assert not row.identical
 
 
 def test_a_tie_of_coordinates_has_no_wrench():
     """An equation gives dphi/dq directly; its lam is a generalized force."""
     system = system_with("equation", PLANE, 'gap = "a*cos(b) - l"')
-    (row,) = system.ties.rows
+    (row,) = system.constraints.rows
     assert row.wrenches == ()
-    assert equal(system.ties.J[0], gradient(row.gap, system.symbols.q))
+    assert equal(system.constraints.J[0], gradient(row.gap, system.symbols.q))
 
 
 def test_a_rate_that_is_not_linear_in_the_rates_is_a_wrong_model():
     """J u + sigma = 0 has no place for a'^2."""
-    with pytest.raises(eomgen.ModelError, match="the rate of 'tie' is not linear in the rates"):
-        _ = system_with("equation", PLANE, "rate = \"a'^2 - b'\"").ties
+    with pytest.raises(eomgen.ModelError, match="the rate of 'constraint' is not linear in the rates"):
+        _ = system_with("equation", PLANE, "rate = \"a'^2 - b'\"").constraints
 
 
 def test_a_pin_of_n_bodies_is_n_minus_1_hinges():
     """2 (n - 1) rows in the plane, the first body in each of them."""
     system = system_with("pin", PLANE, EXAMPLES["pin"][PLANE][3])
-    assert [[body for body, _ in row.wrenches] for row in system.ties.rows] == [
+    assert [[body for body, _ in row.wrenches] for row in system.constraints.rows] == [
         ["first", "second"],
         ["first", "second"],
         ["first", "cart"],
@@ -533,4 +535,4 @@ def test_one_point_alone_is_held_where_it_stands_at_the_start():
     state = {q: fifty_digits().number(e.evaluate({})) for q, e in zip(system.symbols.q, starts, strict=True)}
     state |= {p: fifty_digits().number(3) for p in system.symbols.parameters.values()}
     state[system.symbols.t] = fifty_digits().number(0)
-    assert at(system.ties.phi, state) == pytest.approx([0, 0], abs=1e-15)
+    assert at(system.constraints.phi, state) == pytest.approx([0, 0], abs=1e-15)

@@ -134,7 +134,7 @@ def test_rotors_behind_gears_move_with_the_rate_of_their_joint(formulation):
 def test_an_assembly_has_the_shapes_that_it_promises(formulation, name):
     """N nq x nu; M nu x nu; c, Q, forcing nu; J k x nu; sigma, gamma, phi k."""
     system, equations = system_named(name), assembled(formulation, name)
-    nq, nu, k = len(system.symbols.q), len(system.symbols.u), len(system.ties.closing)
+    nq, nu, k = len(system.symbols.q), len(system.symbols.u), len(system.constraints.closing)
     assert [len(row) for row in equations.N] == [nu] * nq and len(equations.nu) == nq
     assert [len(row) for row in equations.M] == [nu] * nu
     assert [len(row) for row in (equations.c, equations.Q, equations.forcing)] == [nu] * 3
@@ -153,7 +153,7 @@ def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(name):
     """a by O(n) elimination = M^-1 (Q - c), where no row closes and every speed belongs to one joint."""
     system = system_named(name)
     branches = branches_of(system.motion)
-    if system.ties.closing or not articulated.is_articulated(system.motion, branches):
+    if system.constraints.closing or not articulated.is_articulated(system.motion, branches):
         return
     a = articulated.accelerations(system.loads, branches)
     state = state_of(system)
@@ -208,22 +208,22 @@ joint = { kind = "prismatic", axis = [1, 2], displacement = "b" }
 shape = { kind = "particle", mass = "2*m" }
 joint = { kind = "prismatic", on = "bar", axis = [1, 0], displacement = "s" }
 [constraints]
-tie = { KIND }
+constraint = { KIND }
 [forces.weight]
 kind = "gravity"
 acceleration = [0, -9.81]
 """
-TIES = [
+CONSTRAINTS = [
     'kind = "pin", points = ["bar.M", "cart.center"]',
     'kind = "support", point = "bar.M", normal = [1, 2]',
     'kind = "equation", gap = "a*b - s"',
 ]
 
 
-@pytest.mark.parametrize("tie", TIES)
-def test_free_bodies_move_alike_under_ties_at_points_that_slide_and_ties_without_bodies(tie):
-    """lam also does work on what no twist sees: the slide of a point in its body, a tie of coordinates."""
-    system = written(SLOTTED.replace("KIND", tie))
+@pytest.mark.parametrize("constraint", CONSTRAINTS)
+def test_free_bodies_move_alike_under_ties_at_points_that_slide_and_ties_without_bodies(constraint):
+    """lam also does work on what no twist sees: the slide of a point in its body, a constraint of coordinates."""
+    system = written(SLOTTED.replace("KIND", constraint))
     state = state_of(system)
     assert close(free_body_accelerations(system, state), accelerations_at(ALL[0].assemble(system), state))
 

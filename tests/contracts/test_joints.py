@@ -200,11 +200,11 @@ def test_the_subspace_is_the_difference_of_neighbouring_poses(kind, space, field
 
 @built
 def test_the_columns_of_the_subspace_are_as_many_freedoms_as_variables(kind, space, fields):
-    """rank S = f; a quaternion's four variables have three freedoms."""
+    """rank S = f; a quaternion's four variables have three degrees of freedom."""
     system, link = system_with(kind, space, fields)
     S = columns([(*w, *v) for w, v in link.S], state_of(system))
-    freedoms = len(link.s) - (1 if link.joint.spins else 0)
-    assert S.shape[1] == len(link.s_rate) == freedoms == (np.linalg.matrix_rank(S) if link.s else 0)
+    degrees_of_freedom = len(link.s) - (1 if link.joint.spins else 0)
+    assert S.shape[1] == len(link.s_rate) == degrees_of_freedom == (np.linalg.matrix_rank(S) if link.s else 0)
 
 
 @built

@@ -15,7 +15,7 @@ from slow_run import ALL
 from tools import marked, needs, tool
 
 import eomgen
-from eomgen.codegen.lowering import lowered
+from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, target_named
 from eomgen.codegen.targets.base import RHS
@@ -32,7 +32,7 @@ CUT = replace(JAVASCRIPT, longest=30)  # into parts, also what is short
 
 def javascript(program: Program) -> str:
     """A module that reads states from its input and writes the outputs, one line of JSON a state."""
-    made = lowered(program, CUT, "dx")
+    made = statements(program, CUT, "dx")
     lines = [JAVASCRIPT.defined[op] for op in sorted(made.ops & JAVASCRIPT.defined.keys())]
     lines += map(JAVASCRIPT.holds, made.tables)
     for function in (*made.kernels, *made.bodies):
@@ -57,8 +57,8 @@ PROGRAMS = {
     "pendulum": lambda: right_hand_side(pendulum()),
     "inputs": lambda: right_hand_side(cart_pole(F=0)),
     "a loop": lambda: right_hand_side(spring_row(20)),
-    "a tie": lambda: right_hand_side(tied_pendulum()),
-    "a tie said three times": lambda: right_hand_side(tied_pendulum(3)),
+    "a constraint": lambda: right_hand_side(tied_pendulum()),
+    "a constraint said three times": lambda: right_hand_side(tied_pendulum(3)),
     "closed loops": lambda: eomgen.derive(eomgen.load(MODELS / "four_bar.toml")).program,
     "samples": lambda: eomgen.derive(eomgen.loads(PUSHED)).program,
 }
@@ -85,7 +85,7 @@ def test_a_language_is_a_table_of_words(name, tmp_path):
 def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, longest):
     """Functions stand before those that call them, and every table is read, in parts or whole."""
     program = right_hand_side(tied_pendulum(3))
-    made = lowered(program, replace(language, longest=longest), "dx")
+    made = statements(program, replace(language, longest=longest), "dx")
     texts = ["\n".join(language.defines(f)) for f in (*made.kernels, *made.bodies)]
     names = [f.name for f in (*made.kernels, *made.bodies)]
     for k, text in enumerate(texts):
@@ -94,7 +94,7 @@ def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, 
 
 
 @marked(("cpp", "rust", "fortran", "matlab", "numba", "c"))
-@pytest.mark.parametrize("name", ["inputs", "a tie", "closed loops"])
+@pytest.mark.parametrize("name", ["inputs", "a constraint", "closed loops"])
 def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monkeypatch):
     """Functions of at most 12 operations, that leave what others read in an array: the same vectors."""
     if target == "numba" and name != "closed loops" and not ALL:
@@ -102,9 +102,9 @@ def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monk
     monkeypatch.setattr("eomgen.codegen.lowering.LENGTH", 12)
 
     def cut(program, language, *more):
-        return lowered(program, replace(language, longest=1), *more)
+        return statements(program, replace(language, longest=1), *more)
 
-    monkeypatch.setattr("eomgen.codegen.targets.base.lowered", cut)
+    monkeypatch.setattr("eomgen.codegen.targets.base.statements", cut)
     program = PROGRAMS[name]()
     assert name != "closed loops" or "part1(" in target_named(target).text(program, "eomgen", RHS)
     function = compiled(program, target)
@@ -127,7 +127,7 @@ def test_a_language_may_solve_in_its_own_way():
     """Where loops with pivots are not a language's way its own solve is called, and no kernel is written."""
     program = right_hand_side(tied_pendulum(3))
     language = replace(PYTHON, defined={"solve": OWN_SOLVE})
-    made = lowered(program, language, "dx")
+    made = statements(program, language, "dx")
     assert made.kernels == made.tables == () and "solve" in made.ops
     space = {"np": np}
     exec("\n".join([OWN_SOLVE, *(line for f in made.bodies for line in language.defines(f))]), space)

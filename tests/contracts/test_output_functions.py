@@ -322,11 +322,11 @@ def test_its_value_is_what_its_second_definition_says(name, call):
 @each("name, call", CASES, by="name")
 def test_its_unit_is_the_one_in_which_its_number_grows(name, call):
     """In units of length, mass and time that are 2, 3 and 5 times smaller its number is 2^a 3^b 5^c times larger."""
-    asked, model = parse(call, references=True).calls[0], system(name).scope.model
-    function = FUNCTIONS[asked.name]
+    requested, model = parse(call, references=True).calls[0], system(name).scope.model
+    function = FUNCTIONS[requested.name]
     factor = scaled(function.dimension)
     for k in function.per:
-        argument = asked.args[k].name
+        argument = requested.args[k].name
         unit = parse_unit(GAPS[argument]) if argument in GAPS else model.coordinates.get(argument).unit
         factor /= 1 if unit is None else scaled(unit)
         factor *= SIZES["time"] if "speed" in function.kinds[k] else 1
@@ -407,7 +407,7 @@ def test_the_multiplier_of_an_eliminated_row_is_that_of_the_free_bodies(monkeypa
     there, call = NumericState(equations, values, numbers), parse("multiplier(link)", references=True).calls[0]
     assert second_definition(there, call) == ""
     right = Quantities.value
-    monkeypatch.setattr(Quantities, "value", lambda self, asked: -right(self, asked))
+    monkeypatch.setattr(Quantities, "value", lambda self, requested: -right(self, requested))
     assert " for " in second_definition(there, call)
 
 

@@ -22,9 +22,9 @@ from tools import marked, tool
 import eomgen
 from eomgen import files
 from eomgen.codegen import build
-from eomgen.codegen.lowered import Language
 from eomgen.codegen.program import RESERVED, program_of
 from eomgen.codegen.rhs import target_named
+from eomgen.codegen.statements import Language
 from eomgen.codegen.targets import ALL, cpp, fortran, wasm
 from eomgen.codegen.targets.base import Description
 from eomgen.codegen.vectors import texts_of, vectors
@@ -32,7 +32,7 @@ from eomgen.codegen.vectors import texts_of, vectors
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
-# a tree; a loop with inverse dynamics; friction at rest and sliding; ties that depend on one another
+# a tree; a loop with inverse dynamics; friction at rest and sliding; constraints that depend on one another
 SAMPLE = {"cart_pole": (), "four_bar": ("alpha",), "rough_incline": None, "four_cranks": None, "bricard": None}
 SLOPES = ("cart_pole", "bricard" if ALL_MODELS else "four_bar")
 REGRESSORS = ("cart_pole", "four_bar")
@@ -132,8 +132,8 @@ def emitted(name: str):
     if name in ("roots", "words"):
         return roots() if name == "roots" else words()
     model = eomgen.loads(PUSHED) if name == "pushed" else eomgen.load(MODELS / f"{name}.toml")
-    told = {"actuated": SAMPLE.get(name), "jacobian": name in SLOPES, "regressor": name in REGRESSORS}
-    return eomgen.generate(model, ("c",), name=name, **told).emitted
+    reported = {"actuated": SAMPLE.get(name), "jacobian": name in SLOPES, "regressor": name in REGRESSORS}
+    return eomgen.generate(model, ("c",), name=name, **reported).emitted
 
 
 def roots():
@@ -168,9 +168,11 @@ def written(folder: Path, target: str, name: str, most: int | None = None) -> Pa
 @each_own_test
 def test_the_language_s_own_test_agrees_with_the_symbols(target, tmp_path):
     """Compiled without a warning, every vector of every function: samples of inputs and nan among them."""
-    vectors_told = [v for name in ("roots", "rough_incline") for _, told in emitted(name) for v in told.vectors]
-    assert any(math.isnan(value) for v in vectors_told for value in v.result)
-    assert any(not any(v.x[len(v.x) // 2 :]) for v in vectors_told)  # at rest
+    vectors_reported = [
+        v for name in ("roots", "rough_incline") for _, reported in emitted(name) for v in reported.vectors
+    ]
+    assert any(math.isnan(value) for v in vectors_reported for value in v.result)
+    assert any(not any(v.x[len(v.x) // 2 :]) for v in vectors_reported)  # at rest
     names = [name for name in (*SAMPLE, "pushed", "roots", "words") if name not in LEFT_OUT.get(target, ())]
     if "four_cranks" in names and not ALL_MODELS:  # of two with rows that depend on one another the smaller
         names.remove("bricard")
@@ -247,9 +249,9 @@ def test_single_precision_passes_its_own_test_by_measured_tolerances(target, tmp
         name = model.stem if isinstance(model, Path) else "pushed"
         made = eomgen.generate(model, (target,), name=name, float32=True)
         files.write_all(tmp_path / name, made.texts)
-        run, (program, told) = target_named(target).single.run, made.motion
-        called, far = run(made.texts, program, name, told.role), 0.0
-        for v in told.vectors:
+        run, (program, reported) = target_named(target).single.run, made.motion
+        called, far = run(made.texts, program, name, reported.role), 0.0
+        for v in reported.vectors:
             found = np.array(called(v.t, v.x, v.a, v.p, v.inputs))
             far = max(far, np.nanmax(np.abs(found - v.result)) / max(1.0, np.nanmax(np.abs(v.result))))
         assert (1e-9 < far or name == "pushed") and far < 1e-5
@@ -261,8 +263,8 @@ def test_thousands_of_names_and_results_pass_the_language_s_own_test(target, tmp
     """1200 results of 1200 parameters: more than a statement of Fortran holds, or a constant of Rust."""
     s = symbols("x", " ".join(f"k{i}" for i in range(1200)))
     program = program_of([k * s.q[0] for k in s.parameters.values()], s)
-    told = Description("Many", "by hand", {}, vectors(program, count=1))
-    files.write_all(tmp_path, texts_of("many", [(program, told)], targets=[target]))
+    reported = Description("Many", "by hand", {}, vectors(program, count=1))
+    files.write_all(tmp_path, texts_of("many", [(program, reported)], targets=[target]))
     assert OWN_TESTS[target](tmp_path) == ""
 
 
@@ -270,9 +272,9 @@ def test_thousands_of_names_and_results_pass_the_language_s_own_test(target, tmp
 def test_an_fmu_with_other_rates_than_its_vectors_is_noticed(target, tmp_path):
     """One digit of one rate in the vectors turned: its test fails."""
     path = written(tmp_path, target, "cart_pole") / "test_vectors.json"
-    told = json.loads(path.read_text())
-    told["vectors"][0]["dx"][2] += 1e-9
-    path.write_text(json.dumps(told))
+    reported = json.loads(path.read_text())
+    reported["vectors"][0]["dx"][2] += 1e-9
+    path.write_text(json.dumps(reported))
     assert "test_the_rates_and_outputs_are_those" in OWN_TESTS[target](path.parent)
 
 

@@ -13,7 +13,7 @@ import pytest
 from hand_made import cart_pole, pendulum
 
 import eomgen
-from eomgen import kept
+from eomgen import disk_cache
 from eomgen.codegen import build, rhs
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
@@ -46,7 +46,7 @@ LIES = {
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     """A cache of this test's own."""
-    monkeypatch.setattr(kept.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache"))
+    monkeypatch.setattr(disk_cache.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache"))
     return tmp_path / "cache"
 
 
@@ -129,9 +129,9 @@ def test_an_entry_of_which_one_bit_is_turned_is_never_loaded(cache, monkeypatch)
     whole = path.read_bytes()
     for at in range(0, len(whole), len(whole) // 200):
         path.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
-        assert kept.content_of(path) is None
+        assert disk_cache.content_of(path) is None
     path.write_bytes(whole + b"\0")
-    assert kept.content_of(path) is None
+    assert disk_cache.content_of(path) is None
     assert build.library(TEXT).twice is not None and path.read_bytes() == whole
 
 
@@ -172,7 +172,7 @@ def test_old_entries_go(cache, monkeypatch):
     for days, path in ((100, paths[0]), (2, paths[1]), (1, paths[2])):
         os.utime(path, (time.time() - 86_400 * days,) * 2)
     build.library(names[1])
-    monkeypatch.setattr(kept, "MOST_KEPT", 2)
+    monkeypatch.setattr(disk_cache, "MOST_KEPT", 2)
     build.library(names[3])
     left = set(cache.iterdir())
     assert len(left) == 2 and paths[1] in left

@@ -55,7 +55,7 @@ def of_call(what: str) -> str:
 
 @each("what", IN_FILES)
 def test_a_mistake_in_a_file_is_told_with_its_mend(what):
-    """The word that mends it stands in the message."""
+    """The word that fixes it stands in the message."""
     assert IN_FILES[what][2] in of_file(what)
 
 
@@ -76,18 +76,18 @@ def test_a_mistake_in_python_is_told_with_its_mend(what, tmp_path, monkeypatch):
 
 def rows() -> Iterator[str]:
     for what, (_, wrong, _) in IN_FILES.items():
-        yield f"| {what} | `{_cell(wrong)}` | {_told(of_file(what))} |"
+        yield f"| {what} | `{_cell(wrong)}` | {_reported(of_file(what))} |"
     for what, (words, _) in IN_COMMANDS.items():
-        yield f"| {what} | `{_cell(' '.join(words))}` | {_told(of_command(what))} |"
+        yield f"| {what} | `{_cell(' '.join(words))}` | {_reported(of_command(what))} |"
     for what in of_python():
-        yield f"| {what} | Python | {_told(of_call(what))} |"
+        yield f"| {what} | Python | {_reported(of_call(what))} |"
 
 
-def _told(text: str) -> str:
-    """First sentence and mend of a message."""
+def _reported(text: str) -> str:
+    """First sentence and fix of a message."""
     lines = [line for line in text.splitlines() if line and not line.startswith((" ", "Usage:", "Try "))]
-    mends = [line for line in lines if line.startswith("mend: ")]
-    return _cell("; ".join([lines[0], *mends[:1]]))
+    fixes = [line for line in lines if line.startswith("fix: ")]
+    return _cell("; ".join([lines[0], *fixes[:1]]))
 
 
 def _cell(text: str) -> str:

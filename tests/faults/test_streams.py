@@ -17,9 +17,9 @@ from forked import forked, needs_fork
 from slow_run import usual
 
 from eomgen import pipeline
-from eomgen.edge import IN_ASCII, in_ascii
+from eomgen.cli_errors import IN_ASCII, in_ascii
+from eomgen.disk_cache import _own_folder
 from eomgen.errors import visible
-from eomgen.kept import _own_folder
 from eomgen.simulation import integrator
 
 pytestmark = [pytest.mark.slow, needs_fork]
@@ -162,7 +162,7 @@ def test_too_little_memory_is_a_sentence():
     if not Path("/proc/self/statm").exists():
         pytest.skip("no /proc to learn the memory in use from")
     ended = forked((*RUN, "--samples", "5000000"), limited)
-    assert ended.code == 3 and ended.said.startswith("there is not enough memory for that\nmend: ")
+    assert ended.code == 3 and ended.said.startswith("there is not enough memory for that\nfix: ")
 
 
 def test_more_samples_than_there_can_be_are_refused():
@@ -218,12 +218,12 @@ def test_an_interrupted_run_keeps_what_it_has(number, tmp_path):
     def soon():
         """The signal comes at the 300th step, however fast the machine is, under nohup too."""
         signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
-        steps, asked = itertools.count(1), integrator.check_patience
+        steps, requested = itertools.count(1), integrator.check_patience
 
         def counted():
             if next(steps) == 300:
                 os.kill(os.getpid(), number)
-            asked()
+            requested()
 
         integrator.check_patience = counted
 
@@ -256,8 +256,8 @@ def test_an_interrupted_derivation_says_so(monkeypatch):
 @pytest.mark.parametrize("verb", ["report", "play"])
 def test_a_page_of_an_interrupted_run_is_not_written(verb, monkeypatch, tmp_path):
     """Who stops the motion stops the page too: exit 130, and no file"""
+    from eomgen.frozen import with_fields
     from eomgen.questions import run as runs
-    from eomgen.records import with_fields
 
     whole = runs.run
     monkeypatch.setattr(runs, "run", lambda *given, **how: with_fields(whole(*given, **how), ended="interrupted"))

@@ -56,18 +56,18 @@ STIFF = HEAD + "[parameters]\nm = 1\nk = 1e8\nc = 1e6\n[coordinates]\nx = 1\n"
 # -- the clock --------------------------------------------------------------------------------------
 
 
-def asks() -> None:
+def requests() -> None:
     while True:
         check_patience()
 
 
-def asks_never() -> None:
+def requests_never() -> None:
     while True:
         sum(range(1000))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("endless", [asks, asks_never])
+@pytest.mark.parametrize("endless", [requests, requests_never])
 def test_what_takes_too_long_ends_and_says_what_was_done_and_what_was_given_up(endless):
     """Loops that ask end at once; those of a library within a second more."""
     began = time.monotonic()
@@ -77,7 +77,7 @@ def test_what_takes_too_long_ends_and_says_what_was_done_and_what_was_given_up(e
         with doing("the second"):
             endless()
     assert caught.value.what == "given up after 0.1 s, nothing is kept: the second (done before: the first)"
-    assert "--patience" in caught.value.mend and caught.value.exit_code == 3
+    assert "--patience" in caught.value.fix and caught.value.exit_code == 3
     assert time.monotonic() - began < 30
 
 
@@ -102,7 +102,7 @@ def test_what_is_given_up_for_another_way_is_not_told_as_done():
         except EomgenError:
             pass
         with doing("the other way"):
-            asks()
+            requests()
     assert caught.value.what == "given up after 0.01 s, nothing is kept: all, the other way"
 
 
@@ -128,7 +128,7 @@ def test_nobody_is_stopped_in_the_middle_of_an_import(tmp_path, monkeypatch):
     with pytest.raises(OutOfPatience), patience(0.05):
         import slow_to_import
 
-        asks_never()
+        requests_never()
     assert slow_to_import.whole
 
 
@@ -378,19 +378,19 @@ v = {{ value = "x'", at = "x = 0" }}
 @pytest.mark.parametrize(("stop", "code"), [(KeyboardInterrupt, 130), (PatienceEnded, 3)])
 def test_answers_that_there_are_outlive_what_stops_the_search_for_the_others(stop, code, monkeypatch):
     """Of three the first is answered, the second stopped, the third not sought: JSON says so, and nothing is proven."""
-    answer, asked = answers._Solver.answer, []
+    answer, requested = answers._Solver.answer, []
 
     def stopped(self, output):
-        asked.append(output)
-        if len(asked) == 2:
+        requested.append(output)
+        if len(requested) == 2:
             raise stop
         return answer(self, output)
 
     monkeypatch.setattr(answers._Solver, "answer", stopped)
     found = CliRunner().invoke(main, ["solve", str(MODELS / "block_on_wedge.toml"), "--json"])
-    told = json.loads(found.stdout)
-    values = [each["value"] for each in told["outputs"].values()]
-    assert found.exit_code == code and told["certificate"] is None and len(asked) == 2
+    reported = json.loads(found.stdout)
+    values = [each["value"] for each in reported["outputs"].values()]
+    assert found.exit_code == code and reported["certificate"] is None and len(requested) == 2
     assert values[0] is not None and values[1:] == [None, None] and "Nothing of it is proven" in found.stderr
 
 

@@ -255,8 +255,8 @@ def judge(row: Disturbed, old: dict[str, bytes], new: dict[str, bytes]) -> None:
     if row.fault == "SIGKILL":
         assert row.left[0] <= 1
         return
-    told = {74: "cannot be written: No space left on device", 130: "interrupted"}
-    assert row.left[0] == 0 and row.code in (0, *told) and told.get(row.code, "") in row.said
+    reported = {74: "cannot be written: No space left on device", 130: "interrupted"}
+    assert row.left[0] == 0 and row.code in (0, *reported) and reported.get(row.code, "") in row.said
     goes_on = any(name in READS_AGAIN for name in map(os.path.basename, old))  # its tables are made again each time
     if row.fault != "full" and not goes_on:
         assert len({row.found.get(name) == new[name] for name in new if old.get(name) in (None, b"old")}) == 1

@@ -57,8 +57,8 @@ def searched(what: str, one: Try, count: int, seed: int, folder: Path) -> str:
             head = f"# law: {' '.join(law.split())}\n# run: {command}\n"
             (folder / f"{what}_{seed}_{k}.toml").write_bytes((head + text).encode("utf-8", "surrogatepass"))
     seconds = time.process_time() - begun
-    told = f"{sum(found.values())} of {len(found)} kinds" if found else "none"
-    return f"| {date.today()} | {count} {what} | {seed} | {seconds:.0f} s | {told} |"
+    reported = f"{sum(found.values())} of {len(found)} kinds" if found else "none"
+    return f"| {date.today()} | {count} {what} | {seed} | {seconds:.0f} s | {reported} |"
 
 
 def main() -> None:
@@ -68,12 +68,12 @@ def main() -> None:
         parser.add_argument(f"--{what}", type=int, default=0)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--finds", type=Path, default=Path(tempfile.gettempdir()) / "eomgen-finds")
-    asked = parser.parse_args()
-    asked.finds.mkdir(parents=True, exist_ok=True)
+    requested = parser.parse_args()
+    requested.finds.mkdir(parents=True, exist_ok=True)
     warnings.simplefilter("ignore")
     for what, one in tries.items():
-        if count := getattr(asked, what):
-            print(searched(what, one, count, asked.seed, asked.finds), flush=True)
+        if count := getattr(requested, what):
+            print(searched(what, one, count, requested.seed, requested.finds), flush=True)
 
 
 if __name__ == "__main__":

@@ -21,7 +21,7 @@ from slow_run import usual
 pytestmark = pytest.mark.slow
 
 REGRESSIONS = sorted((Path(__file__).parent / "regressions").iterdir())
-"""first line "# law: ..." (mended) or "# open: ..." (not yet), second "# run: ...", then what it is done with"""
+"""first line "# law: ..." (fixed) or "# open: ..." (not yet), second "# run: ...", then what it is done with"""
 SEED, EXPRESSIONS, LOADS, VERBS, SHARES = 12, 10_000, 5_000, 300, 10
 
 

@@ -1,4 +1,4 @@
-"""Systems of chapters 18, 20 and 22 as another user would write them: free bodies, closed by their ties.
+"""Systems of chapters 18, 20 and 22 as another user would write them: free bodies, closed by their constraints.
 
 Outputs carry the names of the seeds, so that their answers can be asked for.
 """
@@ -417,4 +417,4 @@ CLOSURES = {
     "ch20_p2": {"phi": "theta", "psi": "0*theta"},
     "ch20_p4": {"phi": "theta - pi/2"},
 }
-"""What the ties make of the other coordinates, on the branch that is meant."""
+"""What the constraints make of the other coordinates, on the branch that is meant."""

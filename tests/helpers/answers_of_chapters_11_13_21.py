@@ -1,6 +1,6 @@
 """Chapters 11, 13, 21 and the inertia of the notes: what `solve` must answer, as text of the model file's grammar.
 
-The answers of the solved exercises are the book's, its errata mended and with pi in the place of its 3; those of the
+The answers of the solved exercises are the book's, its errata fixed and with pi in the place of its 3; those of the
 others are by hand. tests/oracle_of_chapters_11_13_21.py finds all of them once more, in numbers.
 """
 

@@ -1,6 +1,6 @@
 """Chapters 16 and 17: what `eomgen solve` must answer, as text of the model file's grammar.
 
-The answers of the solved exercises are the book's, its errata mended, those of the unsolved ones by hand; all are
+The answers of the solved exercises are the book's, its errata fixed, those of the unsolved ones by hand; all are
 derived once more in oracle_of_chapters_16_17.py, and the tests compare the two. Where there is no closed form in the
 grammar (the landing against the air's resistance needs Lambert's W) the number at the file's parameters stands here.
 """

@@ -1,7 +1,7 @@
 """What chapters 18, 20 and 22 of the seeds answer, exactly: text of the model file's grammar.
 
 Checked by oracle_of_chapters_18_20_22.py (Newton and Euler); those of the solved systems are the book's, its errata
-mended.
+fixed.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Chapters 9 and 10 and the turntable: what `eomgen solve` must answer, as text of the model file's grammar, in SI.
 
-The answers of the solved exercises are the book's, its errata mended, those of the unsolved ones by hand; all are
+The answers of the solved exercises are the book's, its errata fixed, those of the unsolved ones by hand; all are
 derived once more, from positions alone, in oracle_of_chapters_9_10.py, and the tests compare. PRINTED holds the book's
 decimals, in the book's units.
 """
@@ -334,7 +334,7 @@ PRINTED: dict[str, dict[str, str]] = {
         "a": "326.04",
     },
 }
-"""What the book prints of its solved exercises, mended; right to half a unit of the last digit."""
+"""What the book prints of its solved exercises, fixed; right to half a unit of the last digit."""
 
 BOOK_SURDS = {
     ("ch9_p10", "v_B"): "sqrt(61 - 30*sqrt(2))/5",

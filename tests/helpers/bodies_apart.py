@@ -1,4 +1,5 @@
-"""Machines of rigid bodies in space, each body free, joints and ties as rows between them: an oracle in floating point.
+"""Machines of rigid bodies in space, each body free, joints and constraints as rows between them: an oracle in
+floating point.
 
     M a = F + C^T lam,   C a = -C' v       for a = (dv, dw) of every mass centre, ground axes
 
@@ -43,7 +44,7 @@ class Part:
     more: str = ""
 
     @property
-    def freedoms(self) -> int:
+    def degrees_of_freedom(self) -> int:
         return {"revolute": 1, "prismatic": 1, "spherical": 3, "free": 6}[self.kind]
 
 
@@ -130,8 +131,8 @@ class Machine:
     def _own(self, q: np.ndarray) -> list[np.ndarray]:
         found, first = [], 0
         for part in self.parts.values():
-            found.append(q[first : first + part.freedoms])
-            first += part.freedoms
+            found.append(q[first : first + part.degrees_of_freedom])
+            first += part.degrees_of_freedom
         return found
 
     def _velocity_of(self, frames: Frames, body: str, place: np.ndarray) -> np.ndarray:
@@ -189,7 +190,7 @@ class Machine:
         """The forces and moments of efforts along coordinates of joints of one."""
         frames, total, first = self.frames(q), np.zeros(6 * len(self.parts)), 0
         for name, part in self.parts.items():
-            if part.freedoms == 1:
+            if part.degrees_of_freedom == 1:
                 n = frames[part.on][0] @ unit(part.axis)
                 own = frames[name][1] + frames[name][0] @ np.array(part.point, float)
                 if part.kind == "revolute":
@@ -197,7 +198,7 @@ class Machine:
                 else:
                     row = n @ (self._velocity_of(frames, name, own) - self._velocity_of(frames, part.on, own))
                 total += efforts[first] * row
-            first += part.freedoms
+            first += part.degrees_of_freedom
         return total
 
 
@@ -238,7 +239,11 @@ def closed(machine: Machine, q: np.ndarray, kept: Sequence[int]) -> np.ndarray:
         if np.max(abs(gap)) < 1e-13:
             return q
         slopes = [(_open(machine, q + h) - _open(machine, q - h)) / 2e-6 for h in 1e-6 * np.eye(len(q))[moved]]
-        q[moved] -= np.linalg.lstsq(np.array(slopes).T, gap, rcond=1e-8)[0]
+        step = np.zeros(len(q))
+        step[moved] = np.linalg.lstsq(np.array(slopes).T, gap, rcond=1e-8)[0]
+        lengths = 0.5 ** np.arange(20)  # the longest of them that brings the ends nearer: a whole step may lose the way
+        nearer = (x for x in lengths if np.linalg.norm(_open(machine, q - x * step)) < np.linalg.norm(gap))
+        q -= next(nearer, 1.0) * step
     raise AssertionError("the loops do not close")
 
 
@@ -278,7 +283,7 @@ def text_of(machine: Machine, names: Sequence[str], start: np.ndarray, dependent
         )
     first = 0
     for body, part in machine.parts.items():
-        own, first = list(names[first : first + part.freedoms]), first + part.freedoms
+        own, first = list(names[first : first + part.degrees_of_freedom]), first + part.degrees_of_freedom
         on = "" if part.on == GROUND else f'on = "{part.on}", '
         angles = ", ".join(f'"{name}"' for name in own[-3:])
         fields = {

@@ -56,14 +56,14 @@ def visited(
 ) -> Visit:
     """The page opened, and a script (the body of an async function) run in it when it has loaded."""
     for _ in range(TRIES):
-        done, asked = _opened(page, script, width, fragment, flags)
-        if told := re.search(r'data-found="([^"]*)"', done.stdout):
+        done, requested = _opened(page, script, width, fragment, flags)
+        if reported := re.search(r'data-found="([^"]*)"', done.stdout):
             break
     else:
         raise AssertionError(f"the script did not end: {done.stdout[-2000:]} {done.stderr[-2000:]}")
-    inside = json.loads(html.unescape(told[1]))
+    inside = json.loads(html.unescape(reported[1]))
     console = tuple(line for line in done.stderr.splitlines() if "CONSOLE" in line and "GL Driver" not in line)
-    return Visit(done.stdout, inside["found"], console, (*inside["left"], *asked))
+    return Visit(done.stdout, inside["found"], console, (*inside["left"], *requested))
 
 
 def _opened(
@@ -78,5 +78,5 @@ def _opened(
         command += [f"--user-data-dir={folder}/profile"]
         command += [f"--window-size={width},900", f"--log-net-log={log}", "--dump-dom", f"{path.as_uri()}{fragment}"]
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
-        asked = re.findall(r'"url":"(https?://[^"]+)"', log.read_text(errors="replace")) if log.exists() else []
-    return done, [address for address in asked if not BROWSERS_OWN.match(address)]
+        requested = re.findall(r'"url":"(https?://[^"]+)"', log.read_text(errors="replace")) if log.exists() else []
+    return done, [address for address in requested if not BROWSERS_OWN.match(address)]

@@ -72,9 +72,9 @@ def covering(models: tuple[Path, ...], times: int = 2) -> tuple[Path, ...]:
     """
     has = {path: features(path) for path in models}
     held = Counter(feature for path in models for feature in has[path])
-    asked = {feature: min(times, n) for feature, n in held.items()}
+    requested = {feature: min(times, n) for feature, n in held.items()}
     order = sorted(models, key=lambda path: (cost(path), path.stem))
-    left, taken = dict(asked), []
+    left, taken = dict(requested), []
     while left:
         best = max(order, key=lambda p: len(has[p] & left.keys()))
         order.remove(best)
@@ -83,7 +83,7 @@ def covering(models: tuple[Path, ...], times: int = 2) -> tuple[Path, ...]:
         left = {f: n for f, n in left.items() if n}
     often = Counter(f for path in taken for f in has[path])
     for path in sorted(taken, key=lambda p: (-cost(p), p.stem)):
-        if all(often[f] > asked[f] for f in has[path]):
+        if all(often[f] > requested[f] for f in has[path]):
             taken.remove(path)
             often.subtract(has[path])
     return tuple(path for path in models if path in taken)

@@ -44,7 +44,8 @@ LARGE = (
     "whipple_bicycle",
 )
 
-# closing ties, a driven coordinate, inputs, springs, and names that look alike or are special in a markup language
+# closing constraints, a driven coordinate, inputs, springs, and names that look alike or are special in a markup
+# language
 LOOP = r"""
 eomgen = 1
 name = "Loop & 50% of_everything"
@@ -207,8 +208,8 @@ def by_every_method() -> tuple[tuple[str, str], ...]:
     What nothing holds has no kineto-statics. How a model reads by a method is proven with each derivation besides.
     """
     energies, *others = METHODS
-    asked = set(usual(derivable(), 4))
-    pairs = ((name, method) for name in derivable() for method in (energies, *(others if name in asked else ())))
+    requested = set(usual(derivable(), 4))
+    pairs = ((name, method) for name in derivable() for method in (energies, *(others if name in requested else ())))
     return tuple(pair for pair in pairs if pair[0] not in LOOSE or pair[1] != "kinetostatic")
 
 
@@ -218,7 +219,7 @@ def by_methods() -> tuple[tuple[str, str], ...]:
 
 
 def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = None) -> Scalar:
-    """A printed expression as a scalar of the equations' own graph; `lam(tie, row)` is a multiplier.
+    """A printed expression as a scalar of the equations' own graph; `lam(constraint, row)` is a multiplier.
 
     Cases are printed one after the other, a where x <= y; b otherwise, and by to_text as two functions more than the
     grammar has: select(less_equal(x, y), a, b).
@@ -251,7 +252,7 @@ def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = 
     return expression.evaluate(lookup, call=called)
 
 
-def on_spheres(equations: Equations, pairs: Sequence[tuple[Scalar, Scalar]]) -> list[tuple[Scalar, Scalar]]:
+def at_unit_norms(equations: Equations, pairs: Sequence[tuple[Scalar, Scalar]]) -> list[tuple[Scalar, Scalar]]:
     """The pairs where every quaternion has norm 1: its points by their stereographic image."""
     found: dict[Node, Scalar] = {}
     for e0, *others in equations.system.scope.quaternions:
@@ -278,8 +279,8 @@ def residuals(equations: Equations) -> list[Scalar]:
     rows = []
     for k in range(len(graph.symbols.u)):
         row = sum((m * a for m, a in zip(graph.M[k], graph.symbols.a, strict=True)), start=graph.c[k] - graph.Q[k])
-        ties = (J[k] * lam for J, lam in zip(graph.J, graph.symbols.lam, strict=True))
-        rows.append(row - sum(ties, start=0))
+        constraints = (J[k] * lam for J, lam in zip(graph.J, graph.symbols.lam, strict=True))
+        rows.append(row - sum(constraints, start=0))
     return rows
 
 

@@ -28,8 +28,8 @@ def each(names: str, cases: Iterable[Any], *, by: str = "") -> Callable[[Callabl
             which = others.get(by)
             failures: list[BaseException] = []
             skipped: list[BaseException] = []
-            asked = [case for case in given if not by or case[arguments.index(by)] == which]
-            for case in asked:
+            requested = [case for case in given if not by or case[arguments.index(by)] == which]
+            for case in requested:
                 try:
                     test(**{**others, **dict(zip(arguments, case, strict=True))})
                 except pytest.skip.Exception as reason:
@@ -38,8 +38,8 @@ def each(names: str, cases: Iterable[Any], *, by: str = "") -> Callable[[Callabl
                     failure.add_note(f"of {', '.join(f'{k}={x!r}' for k, x in zip(arguments, case, strict=True))}")
                     failures.append(failure)
             if failures:
-                raise BaseExceptionGroup(f"{len(failures)} of {len(asked)} cases", failures)
-            if skipped and len(skipped) == len(asked):
+                raise BaseExceptionGroup(f"{len(failures)} of {len(requested)} cases", failures)
+            if skipped and len(skipped) == len(requested):
                 raise skipped[0]
 
         signature = inspect.signature(test)

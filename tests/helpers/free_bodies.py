@@ -255,31 +255,31 @@ class Tree:
         torque -= self.number(joint.get("stiffness", 0)) * (s - self.number(joint.get("rest", 0)))
         return torque, self.number(joint.get("armature", 0))
 
-    # -- ties --------------------------------------------------------------------------------------
+    # -- constraints --------------------------------------------------------------------------------------
 
-    def ties(self) -> Iterator[tuple[str, list[Wrench], float]]:
-        """(tie, its pushes, the rate of the row's velocity where the free accelerations are 0) of every row."""
-        for name, tie in self.table.get("constraints", {}).items():
-            for pushes, bias in getattr(self, f"_{tie['kind']}")(tie):
+    def constraints(self) -> Iterator[tuple[str, list[Wrench], float]]:
+        """(constraint, its pushes, the rate of the row's velocity where the free accelerations are 0) of every row."""
+        for name, constraint in self.table.get("constraints", {}).items():
+            for pushes, bias in getattr(self, f"_{constraint['kind']}")(constraint):
                 yield name, pushes, bias
 
-    def _support(self, tie: dict[str, Any]) -> Iterator[tuple[list[Wrench], float]]:
-        n = self.vector(tie["normal"])
+    def _support(self, constraint: dict[str, Any]) -> Iterator[tuple[list[Wrench], float]]:
+        n = self.vector(constraint["normal"])
         n = n / np.linalg.norm(n)
-        spot = self.place(tie["point"])
+        spot = self.place(constraint["point"])
         p, _, a = self.at(spot)
         yield [(spot[0], n, np.zeros(3), p)], float(n @ a)
 
-    def _pin(self, tie: dict[str, Any]) -> Iterator[tuple[list[Wrench], float]]:
+    def _pin(self, constraint: dict[str, Any]) -> Iterator[tuple[list[Wrench], float]]:
         """Of one point."""
-        spot = self.place(tie["points"][0])
+        spot = self.place(constraint["points"][0])
         p, _, a = self.at(spot)
         for e in np.eye(3)[: 2 if self.plane else 3]:
             yield [(spot[0], e, np.zeros(3), p)], float(e @ a)
 
-    def _link(self, tie: dict[str, Any]) -> Iterator[tuple[list[Wrench], float]]:
+    def _link(self, constraint: dict[str, Any]) -> Iterator[tuple[list[Wrench], float]]:
         """n . (v2 - v) = 0 with n along the rod, which turns: n' . (v2 - v) = (v2 - v)^2 / l there."""
-        first, second = (self.place(point) for point in tie["points"])
+        first, second = (self.place(point) for point in constraint["points"])
         (p, v, a), (p2, v2, a2) = self.at(first), self.at(second)
         length = float(np.linalg.norm(p2 - p))
         n = (p2 - p) / length
@@ -287,24 +287,24 @@ class Tree:
         yield pushes, -float(n @ (a2 - a) + (v2 - v) @ (v2 - v) / length)
 
     @cached_property
-    def rows_of_ties(self) -> tuple[np.ndarray, np.ndarray]:
+    def rows_of_constraints(self) -> tuple[np.ndarray, np.ndarray]:
         """(J, J u + sigma)."""
         units = [self.moved({q: 1.0}, {}) for q in self.free]
-        J = [[self._velocity(pushes, places) for places in units] for _, pushes, _ in self.ties()]
-        open_ = [self._velocity(pushes, self.here) for _, pushes, _ in self.ties()]
+        J = [[self._velocity(pushes, places) for places in units] for _, pushes, _ in self.constraints()]
+        open_ = [self._velocity(pushes, self.here) for _, pushes, _ in self.constraints()]
         return np.array(J).reshape(-1, len(self.free)), np.array(open_)
 
-    def tied(self) -> Tree:
-        """The same with rates next to these that the ties allow."""
-        J, open_ = self.rows_of_ties
+    def constrained(self) -> Tree:
+        """The same with rates next to these that the constraints allow."""
+        J, open_ = self.rows_of_constraints
         du = np.linalg.lstsq(J, -open_, rcond=1e-11)[0] if len(J) else np.zeros(len(self.free))
         return replace(self, u=self.u | {q: self.u[q] + float(x) for q, x in zip(self.free, du, strict=True)})
 
     @property
     def holds(self) -> bool:
-        """Whether the ties hold, and something free moves each or nothing at all does."""
-        J, open_ = self.rows_of_ties
-        stuck = [rate for row, (_, _, rate) in zip(J, self.ties(), strict=True) if np.max(np.abs(row)) < 1e-9]
+        """Whether the constraints hold, and something free moves each or nothing at all does."""
+        J, open_ = self.rows_of_constraints
+        stuck = [rate for row, (_, _, rate) in zip(J, self.constraints(), strict=True) if np.max(np.abs(row)) < 1e-9]
         return bool(
             np.max(np.abs(open_), initial=0) < 1e-9
             and np.max(np.abs(stuck), initial=0) < 1e-9
@@ -417,7 +417,7 @@ class Tree:
                 owners.append((body, (force, couple)))
                 columns.append(self.column(self.on_both(body, force, couple)))
         J, bias = [], []
-        for name, pushes, rate in self.ties():
+        for name, pushes, rate in self.constraints():
             owners.append((name, (pushes[0][1], pushes[0][2])))
             columns.append(self.column(pushes))
             J.append([self._power(pushes, places) for places in units])
@@ -432,7 +432,7 @@ class Tree:
         return Balance(tuple(owners), A, right, found, n)
 
     def reaction(self, owner: str, what: str, k: int) -> float | None:
-        """Component k of the "force" or "couple" of a joint or tie; None where it is indeterminate."""
+        """Component k of the "force" or "couple" of a joint or constraint; None where it is indeterminate."""
         row = self.balance.weights(owner, ("force", "couple").index(what), k)
         given = 0.0
         if what == "couple" and owner in self.names:

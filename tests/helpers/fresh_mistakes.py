@@ -2,7 +2,7 @@
 
 Beside each model of `fresh_mistakes/` stands a file of lines: the kind of the mistake, or `right`; the equation; of a
 mistake the words of which one of each group (`a,b+c,d`) must be told; options of `verify`. Those of odd numbers were
-looked at when the judge was mended afterwards (2026-11-23), of those of even numbers hardly any.
+looked at when the judge was fixed afterwards (2026-11-23), of those of even numbers hardly any.
 
     python tests/helpers/fresh_mistakes.py                     # of all; or: odd, even
     python tests/helpers/fresh_mistakes.py all textbook_mistakes    # of another folder: 60 of textbooks, 2026-11-26
@@ -36,7 +36,7 @@ def lines(path: Path) -> Iterator[tuple[str, str, list[list[str]], dict[str, str
         yield kind, text, groups, dict(option.split(":", 1) for option in rest)
 
 
-def told(judge: Judge, text: str, options: dict[str, str]) -> tuple[str, str]:
+def reported(judge: Judge, text: str, options: dict[str, str]) -> tuple[str, str]:
     """(verdict, the causes that are named, and what would explain it as well); `refused` where there is no verdict."""
     if "from_rest" in options:
         judge = Judge(Case(judge.case.model, at_rest=True))
@@ -66,7 +66,7 @@ def main(part: str = "all", folder: str = "fresh_mistakes") -> int:
             continue
         judge = Judge(Case(eomgen.load(path)))
         for kind, text, groups, options in lines(path.with_suffix(".eq")):
-            verdict, causes = told(judge, text, options)
+            verdict, causes = reported(judge, text, options)
             named = kind != "right" and verdict == "wrong" and is_named(causes, groups)
             first = named and is_named(causes.partition("; or else: ")[0], groups)
             if kind == "right":

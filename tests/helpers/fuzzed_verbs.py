@@ -113,15 +113,15 @@ def _failing(text: str) -> str:
 
 def _broken_json(text: str, code: int) -> str:
     try:
-        told = json.loads(text, parse_constant=_constant)
+        reported = json.loads(text, parse_constant=_constant)
     except ValueError as error:
         return f"--json is JSON: {error}: {text[:80]!r}"
-    if not isinstance(told, dict) or "schema_version" not in told:
+    if not isinstance(reported, dict) or "schema_version" not in reported:
         return f"--json has its version: {text[:80]!r}"
-    if "error" in told:
-        error = told["error"]
+    if "error" in reported:
+        error = reported["error"]
         return "" if (error["exit_code"], bool(error["problems"])) == (code, True) else "the JSON tells the exit code"
-    certificate = told.get("certificate") or {}
+    certificate = reported.get("certificate") or {}
     if certificate.get("ok") is False:
         wrong = next(check for check in certificate["checks"] if check["status"] == "fails")
         return f"what derives has a proof that holds: {wrong['name']}: {wrong['detail']}"

@@ -45,7 +45,7 @@ class Golden:
     name: str
     source: str
     model: str
-    asks: str
+    requests: str
     author: str
     text: str
     above: str = ""
@@ -95,8 +95,8 @@ def compared(formulas: Sequence[Golden] = ()) -> tuple[Compared, ...]:
 
 def ours_of(golden: Golden) -> Ours:
     """What eomgen prints for what is asked."""
-    kind, _, name = golden.asks.partition(" ")
-    return ASKED[kind](golden.path, name)
+    kind, _, name = golden.requests.partition(" ")
+    return REQUESTED[kind](golden.path, name)
 
 
 def _equation(path: Path, name: str) -> Ours:
@@ -126,7 +126,7 @@ def _reaction(path: Path, name: str) -> Ours:
     return Ours(side_latex(setter_of(_derived(path).derivation), read(Graph(), text)[0]), text)
 
 
-ASKED: dict[str, Callable[[Path, str], Ours]] = {
+REQUESTED: dict[str, Callable[[Path, str], Ours]] = {
     "equation": _equation,
     "formula": _formula,
     "output": _output,
@@ -168,14 +168,14 @@ def agrees(golden: Golden, ours: Ours) -> bool:
     accelerations is compared with those of the motion in their place.
     """
     graph = Graph()
-    if not golden.asks.startswith("equation"):
+    if not golden.requests.startswith("equation"):
         texts = (golden.text, ours.text)
         if any("''" in text for text in texts):
             texts = _along_the_motion(golden, texts)
         his, mine = (read(graph, text)[0] for text in texts)
         return equal_at_random_states([(his, mine)]).equal
     (his, names), (mine, _) = _residual(graph, golden.text), _residual(graph, ours.text)
-    speed = golden.asks.split()[1]
+    speed = golden.requests.split()[1]
     acceleration = graph.symbol(next(n for n in (f"{speed}''", f"{speed}'") if n in names))
     a_1, a_2 = derivative(his, acceleration), derivative(mine, acceleration)
     assert not is_zero(a_1), golden.name
@@ -184,8 +184,8 @@ def agrees(golden: Golden, ours: Ours) -> bool:
 
 def _along_the_motion(golden: Golden, texts: tuple[str, str]) -> tuple[str, str]:
     """The texts, their accelerations replaced by the equations of motion."""
-    asked = {f"asked_{k}": Output(value=text) for k, text in enumerate(texts)}
-    his, mine = (found.exact for found in eomgen.solve(replace(eomgen.load(golden.path), outputs=asked)).values())
+    requested = {f"asked_{k}": Output(value=text) for k, text in enumerate(texts)}
+    his, mine = (found.exact for found in eomgen.solve(replace(eomgen.load(golden.path), outputs=requested)).values())
     assert his is not None and mine is not None, golden.name
     return his, mine
 
@@ -228,7 +228,7 @@ def table() -> str:
     for row in rows:
         mark = "" if agrees(row.golden, row.ours) else " **NOT EQUAL**"
         ours, his = row.lengths
-        where = f"{row.golden.name} ({row.golden.model}, {row.golden.asks}){mark}"
+        where = f"{row.golden.name} ({row.golden.model}, {row.golden.requests}){mark}"
         lines.append(f"| {row.ratio:.2f} | {ours} | {his} | {where} | `{row.ours.latex}` | `{row.golden.author}` |")
     return "\n".join(lines)
 

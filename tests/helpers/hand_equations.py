@@ -124,7 +124,7 @@ class ByHand:
         names = sorted(set().union(*(x.free_symbols for row in parts for x in row)), key=str)
         f = sympy.lambdify(names, sympy.Matrix(parts), "numpy", cse=True)
         for _ in range(2):
-            table = np.array(f(*self._tied(names, rng.uniform(0.4, 1.9, len(names)))), dtype=float)
+            table = np.array(f(*self._constrained(names, rng.uniform(0.4, 1.9, len(names)))), dtype=float)
             table /= np.linalg.norm(table, axis=1, keepdims=True) + 1e-300
             own, mine = table[1:], table[0]
             share, *_ = np.linalg.lstsq(own.T, mine, rcond=None)
@@ -132,8 +132,8 @@ class ByHand:
                 return False
         return True
 
-    def _tied(self, names: list[Symbol], values: np.ndarray) -> np.ndarray:
-        """The values with speeds that the ties allow."""
+    def _constrained(self, names: list[Symbol], values: np.ndarray) -> np.ndarray:
+        """The values with speeds that the constraints allow."""
         e = self.equations
         if not len(e.graph.J):
             return values
@@ -547,8 +547,8 @@ def named(case: Hand, verdict: eomgen.Verdict) -> bool:
     if len(verdict.causes) != 1 or verdict.causes[0].kind not in case.causes:
         return False
     cause = verdict.causes[0]
-    told = f"{cause.text} {cause.term} {cause.body} {cause.force}"
-    return not case.about or any(word in told for word in case.about)
+    reported = f"{cause.text} {cause.term} {cause.body} {cause.force}"
+    return not case.about or any(word in reported for word in case.about)
 
 
 def cases(seed: int = 1) -> tuple[list[Hand], list[Hand]]:

@@ -13,7 +13,7 @@ from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.traversal import Symbols
 
 
-def symbols(coordinates: str, parameters: str = "", inputs: str = "", ties: int = 0) -> Symbols:
+def symbols(coordinates: str, parameters: str = "", inputs: str = "", constraints: int = 0) -> Symbols:
     """Symbols of coordinates whose speeds are their rates."""
     graph = Graph()
     q = coordinates.split()
@@ -25,7 +25,7 @@ def symbols(coordinates: str, parameters: str = "", inputs: str = "", ties: int 
         tuple(graph.symbol(name) for name in q),
         tuple(graph.symbol(f"{name}'") for name in q),
         tuple(graph.symbol(f"{name}''") for name in q),
-        tuple(graph.symbol(f"lam(tie, {row + 1})") for row in range(ties)),
+        tuple(graph.symbol(f"lam(constraint, {row + 1})") for row in range(constraints)),
     )
 
 
@@ -92,8 +92,8 @@ def cart_pole(**inputs: Scalar) -> EquationsOfMotion:
 
 
 def tied_pendulum(copies: int = 1) -> EquationsOfMotion:
-    """The pendulum in x, y with its rod as a closing tie, said `copies` times: phi = (x^2 + y^2 - l^2)/2."""
-    s = symbols("x y", "m l g", ties=copies)
+    """The pendulum in x, y with its rod as a closing constraint, said `copies` times: phi = (x^2 + y^2 - l^2)/2."""
+    s = symbols("x y", "m l g", constraints=copies)
     m, l, g = s.parameters.values()
     (x, y), (vx, vy) = s.q, s.u
     T, V = Fraction(1, 2) * m * (vx**2 + vy**2), m * g * y

@@ -55,9 +55,9 @@ class Answer:
         """Whether one cause is told, and it is the mistake."""
         if verdict.verdict != "wrong" or len(verdict.causes) != (2 if self.kind == "two errors" else 1):
             return False
-        told = " ".join(f"{x.text} {x.term} {x.body} {x.force}" for x in verdict.causes)
+        reported = " ".join(f"{x.text} {x.term} {x.body} {x.force}" for x in verdict.causes)
         kinds = (*self.causes, *(OTHER if "other" in self.causes else ()))
-        return verdict.causes[0].kind in kinds and (not self.words or any(word in told for word in self.words))
+        return verdict.causes[0].kind in kinds and (not self.words or any(word in reported for word in self.words))
 
 
 @cache
@@ -114,14 +114,14 @@ def main(parts: Sequence[str]) -> None:
             row = table[each.part, each.kind]
             try:
                 found = each.verdict()
-                told = "; ".join(f"[{x.kind}] {x.text}" for x in found.causes)
+                reported = "; ".join(f"[{x.kind}] {x.text}" for x in found.causes)
                 row.update({"all": 1, found.verdict: 1, "named": each.is_named(found)})
             except EomgenError as error:
-                found, told = None, error.what
+                found, reported = None, error.what
                 row.update({"all": 1, "error": 1})
             if found is None or found.verdict != title or (each.causes and not each.is_named(found)):
                 label = " ".join((found.verdict if found else "error", each.part, each.kind, each.model))
-                print(f"{label}: {each.text}\n    {told}")
+                print(f"{label}: {each.text}\n    {reported}")
         for (_, kind), row in sorted(table.items()):
             print(f"    {kind:16} {dict(row)}")
         for part in dict.fromkeys(each.part for each in some):

@@ -63,7 +63,7 @@ class Book:
     Args:
         T, V, D: kinetic and potential energy [J], half the power that dampers take [W].
         Q: generalized forces of the rest.
-        phi: what the ties keep at zero.
+        phi: what the constraints keep at zero.
         outputs: the value of each output of the model.
     """
 

@@ -9,7 +9,8 @@ unknown wrench F_i from its joint; the joints say how A_i may differ from that o
     J a + gamma = 0
 
 One linear system in (A, F, a, lam); what depends on velocity is found by differences of numbers along
-the motion, not by derivatives of expressions. Dependent coordinates are free here, and every tie that closes them has
+the motion, not by derivatives of expressions. Dependent coordinates are free here, and every constraint that closes
+them has
 its lam: so the elimination is checked too.
 """
 
@@ -56,10 +57,10 @@ def free_speeds(system: System, free: System, state: State) -> State:
 
 
 def _accelerations(system: System, state: State) -> np.ndarray:
-    """a of a system in which every tie that closes has its multiplier."""
+    """a of a system in which every constraint that closes has its multiplier."""
     numbers = BodyNumbers(system, state)
     n, nu = len(system.motion.links), len(system.scope.symbols.u)
-    k = len(system.ties.closing) + len(system.scope.quaternions)
+    k = len(system.constraints.closing) + len(system.scope.quaternions)
     size = 12 * n + nu + k
     A, right = np.zeros((size, size)), np.zeros(size)
     speeds, multipliers = slice(12 * n, 12 * n + nu), slice(12 * n + nu, size)
@@ -152,7 +153,7 @@ def _close(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, multipliers: 
     """Columns of the closing rows' wrenches, and the rows W^T A + d/dt(W^T) xi ... = 0 as J a + gamma = 0."""
     system = numbers.system
     n = len(system.motion.links)
-    for j, row in enumerate(system.ties.closing):
+    for j, row in enumerate(system.constraints.closing):
         place = multipliers.start + j
         for body, wrench in row.wrenches:
             i = system.motion.index[body]
@@ -161,7 +162,7 @@ def _close(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, multipliers: 
         A[place, 12 * n : 12 * n + len(J)] = numbers.array(J)
         A[12 * n : 12 * n + len(J), place] = -numbers.array(gradient(row.direct, system.scope.symbols.u))
         right[place] = -float(numbers.rate((row.velocity,))[0])
-    _hold_norms(numbers, A, right, multipliers.start + len(system.ties.closing))
+    _hold_norms(numbers, A, right, multipliers.start + len(system.constraints.closing))
 
 
 def _hold_norms(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, place: int) -> None:

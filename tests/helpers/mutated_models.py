@@ -226,7 +226,7 @@ def broken_law(text: str) -> str:
     try:
         within_cpu(SECONDS, lambda: loads(_bytes(text), name="m"))
     except ModelError as error:
-        return _told(error, text)
+        return _reported(error, text)
     except TooLong:
         return f"a file is read in less than {SECONDS} s of CPU"
     except Exception as error:
@@ -238,7 +238,7 @@ def _bytes(text: str) -> bytes:
     return text.encode("utf-8", "surrogatepass")
 
 
-def _told(error: ModelError, text: str) -> str:
+def _reported(error: ModelError, text: str) -> str:
     """Each problem has a place in the file, a sentence, and stands there once."""
     problems = error.problems
     if not problems:

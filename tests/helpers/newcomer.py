@@ -1,4 +1,4 @@
-"""More than a hundred mistakes of a newcomer, none of them in the other tables, and the word that mends each."""
+"""More than a hundred mistakes of a newcomer, none of them in the other tables, and the word that fixes each."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Asked:
+class Requested:
     """An output: a function of q, q', q'' and the unknown forces; at which place, and with which rates.
 
     Args:
@@ -65,7 +65,7 @@ class System:
     q: tuple[Symbol, ...]
     bodies: tuple[Body, ...]
     unknowns: tuple[Symbol, ...]
-    asked: dict[str, Asked]
+    requested: dict[str, Requested]
     start: dict[Symbol, Any] = field(default_factory=dict)
     work: Any = 0
 
@@ -157,14 +157,14 @@ def speed_from_rest(system: System, values: dict[Symbol, Any]) -> Any:
 
 def answers(system: System, values: dict[Symbol, Any]) -> dict[str, Any]:
     """Every output at the values of parameters, coordinates and rates."""
-    return {name: _answer(system, asked, values) for name, asked in system.asked.items()}
+    return {name: _answer(system, requested, values) for name, requested in system.requested.items()}
 
 
-def _answer(system: System, asked: Asked, values: dict[Symbol, Any]) -> Any:
-    state = values | {c: number(value, values) for c, value in asked.place.items()}
-    if asked.from_rest:
+def _answer(system: System, requested: Requested, values: dict[Symbol, Any]) -> Any:
+    state = values | {c: number(value, values) for c, value in requested.place.items()}
+    if requested.from_rest:
         state[u(system.q[0])] = speed_from_rest(system, state)
-    return number(asked.value, solved(system, state))
+    return number(requested.value, solved(system, state))
 
 
 def energy_rate(system: System, values: dict[Symbol, Any]) -> Any:
@@ -174,14 +174,14 @@ def energy_rate(system: System, values: dict[Symbol, Any]) -> Any:
     return number(change, state) / (1 + abs(number(rate(system.potential_energy, system.q), state)))
 
 
-def at(value: Any, place: dict[Symbol, Any]) -> Asked:
+def at(value: Any, place: dict[Symbol, Any]) -> Requested:
     """Asked at a place that is reached from rest."""
-    return Asked(value, place, True)
+    return Requested(value, place, True)
 
 
-def law(value: Any) -> Asked:
+def law(value: Any) -> Requested:
     """Asked at every place that is reached from rest."""
-    return Asked(value, from_rest=True)
+    return Requested(value, from_rest=True)
 
 
 def rod(mass: Any, length: Any) -> Any:
@@ -210,14 +210,14 @@ def ch18_p1() -> System:
         ),
         (T1, T2, X, Y),
         {
-            "theta_dd": Asked(acc(theta)),
-            "a_P": Asked(a_P),
-            "v_P_2s": Asked(2 * a_P),  # a_P is constant
-            "y_P_2s": Asked(2 * a_P),  # a_P 2^2/2
-            "T1": Asked(T1),
-            "T2": Asked(T2),
-            "V_O": Asked(Y),
-            "H_O": Asked(X),
+            "theta_dd": Requested(acc(theta)),
+            "a_P": Requested(a_P),
+            "v_P_2s": Requested(2 * a_P),  # a_P is constant
+            "y_P_2s": Requested(2 * a_P),  # a_P 2^2/2
+            "T1": Requested(T1),
+            "T2": Requested(T2),
+            "V_O": Requested(Y),
+            "H_O": Requested(X),
         },
     )
 
@@ -260,7 +260,7 @@ def ch18_p3() -> System:
             Body(2 * M, disc(2 * M), C, s / (2 * R), ((_right(C, R), (0, T2)), (_right(C, -R), (0, T3)))),
         ),
         (T1, T2, T3, X, Y),
-        {"a_P": Asked(acc(s)), "T1": Asked(T1), "T2": Asked(T2), "T3": Asked(T3), "V_O": Asked(Y)},
+        {"a_P": Requested(acc(s)), "T1": Requested(T1), "T2": Requested(T2), "T3": Requested(T3), "V_O": Requested(Y)},
     )
 
 
@@ -273,12 +273,12 @@ def ch18_p4() -> System:
         Body(6 * M, rod(6 * M, 2 * l), centre, phi, ((P, (X1, Y1)),)),
     )
     plain = System((x, phi), bodies, (X1, Y1, N), {}, {}, -k * (x - l0) ** 2 / 2)
-    asked = {
-        "kinetic_energy": Asked(plain.kinetic_energy),
-        "x_dd": Asked(acc(x)),
-        "phi_dd": Asked(acc(phi)),
+    requested = {
+        "kinetic_energy": Requested(plain.kinetic_energy),
+        "x_dd": Requested(acc(x)),
+        "phi_dd": Requested(acc(phi)),
     }
-    return System(plain.q, bodies, plain.unknowns, asked, {}, plain.work)
+    return System(plain.q, bodies, plain.unknowns, requested, {}, plain.work)
 
 
 def ch18_p5() -> System:
@@ -310,7 +310,7 @@ def ch20_p1() -> System:
         (theta,),
         (Body(M, disc(M), C, theta, ((_right(C, R), (0, T)),)),),
         (T,),
-        {"theta_dd": Asked(acc(theta)), "a_C": Asked(R * acc(theta)), "T": Asked(T)},
+        {"theta_dd": Requested(acc(theta)), "a_C": Requested(R * acc(theta)), "T": Requested(T)},
     )
 
 
@@ -359,14 +359,14 @@ def ch20_p3() -> System:
         ),
         (T1, T2, X, Y),
         {
-            "theta_dd": Asked(acc(theta)),
-            "phi_dd": Asked(acc(phi)),
-            "a_P": Asked(a_P),
-            "D": Asked(2 * a_P),  # a_P 2^2/2
-            "a_C": Asked(a_C),
-            "T1": Asked(T1),
-            "T2": Asked(T2),
-            "V_O": Asked(Y),
+            "theta_dd": Requested(acc(theta)),
+            "phi_dd": Requested(acc(phi)),
+            "a_P": Requested(a_P),
+            "D": Requested(2 * a_P),  # a_P 2^2/2
+            "a_C": Requested(a_C),
+            "T1": Requested(T1),
+            "T2": Requested(T2),
+            "V_O": Requested(Y),
         },
     )
 
@@ -413,13 +413,13 @@ def ch20_p5() -> System:
         ),
         unknowns,
         {
-            "a_P": Asked(acc(s)),
-            "z_dd": Asked(acc(z)),
-            "T1": Asked(T1),
-            "T2": Asked(T2),
-            "T3": Asked(T3),
-            "T4": Asked(T4),
-            "V_O": Asked(Y),
+            "a_P": Requested(acc(s)),
+            "z_dd": Requested(acc(z)),
+            "T1": Requested(T1),
+            "T2": Requested(T2),
+            "T3": Requested(T3),
+            "T4": Requested(T4),
+            "V_O": Requested(Y),
         },
     )
 
@@ -435,7 +435,7 @@ def ch20_p6() -> System:
             Body(6 * M, rod(6 * M, 2 * l), centre, phi, ((P, (X1, Y1)),)),
         ),
         (N, X1, Y1),
-        {"y_dd": Asked(acc(y)), "phi_dd": Asked(acc(phi)), "N_P": Asked(N)},
+        {"y_dd": Requested(acc(y)), "phi_dd": Requested(acc(phi)), "N_P": Requested(N)},
     )
 
 
@@ -444,9 +444,9 @@ def ch20_p6() -> System:
 
 def lagrangian(system: System, *coordinates: Symbol) -> System:
     """The system, asked for its kinetic energy and its generalized forces Q = -dV/dq too."""
-    asked = {"kinetic_energy": Asked(system.kinetic_energy)}
-    asked |= {f"Q_{c.name}": Asked(-system.potential_energy.diff(c)) for c in coordinates}
-    return System(system.q, system.bodies, system.unknowns, asked | system.asked, system.start, system.work)
+    requested = {"kinetic_energy": Requested(system.kinetic_energy)}
+    requested |= {f"Q_{c.name}": Requested(-system.potential_energy.diff(c)) for c in coordinates}
+    return System(system.q, system.bodies, system.unknowns, requested | system.requested, system.start, system.work)
 
 
 def ch22_p1() -> System:
@@ -464,9 +464,9 @@ def ch22_p1() -> System:
             ),
             (N_A, F, N, X, Y),
             {
-                "theta_dd": Asked(acc(theta)),
-                "omega_disc": Asked(-rate(turned, (theta,))),
-                "N_A": Asked(N_A),
+                "theta_dd": Requested(acc(theta)),
+                "omega_disc": Requested(-rate(turned, (theta,))),
+                "N_A": Requested(N_A),
             },
         ),
         theta,
@@ -486,7 +486,7 @@ def ch22_p2() -> System:
                 Body(2 * M, 0, P, 0, ((P, push),)),
             ),
             (X, Y, N),
-            {"N_P": Asked(N)},
+            {"N_P": Requested(N)},
         ),
         theta,
         r,
@@ -514,7 +514,7 @@ def ch22_p3() -> System:
                 Body(3 * M, rod(3 * M, 2 * a), middle, phi, (((d, -a), (X2, Y2)), (D, (-F2, 0)))),
             ),
             (X1, Y1, X2, Y2),
-            {"theta_dd": Asked(acc(theta)), "phi_dd": Asked(acc(phi))},
+            {"theta_dd": Requested(acc(theta)), "phi_dd": Requested(acc(phi))},
             {},
             -k * A[0] ** 2 / 2 - k * (D[0] - B[0] - d) ** 2,
         ),
@@ -539,13 +539,13 @@ def ch22_p4() -> System:
             ),
             (T1, T2, T3, X, Y),
             {
-                "theta_dd": Asked(acc(theta)),
-                "a_P": Asked(a_P),
-                "v_P_of_h": Asked(sqrt(2 * a_P * h)),  # a_P is constant
-                "v_P_of_t": Asked(a_P * t1),
-                "T1": Asked(T1),
-                "T2": Asked(T2),
-                "T3": Asked(T3),
+                "theta_dd": Requested(acc(theta)),
+                "a_P": Requested(a_P),
+                "v_P_of_h": Requested(sqrt(2 * a_P * h)),  # a_P is constant
+                "v_P_of_t": Requested(a_P * t1),
+                "T1": Requested(T1),
+                "T2": Requested(T2),
+                "T3": Requested(T3),
             },
         ),
     )
@@ -564,10 +564,10 @@ def ch22_p5() -> System:
             ),
             (X, Y, F, N),
             {
-                "x_dd": Asked(acc(x)),
-                "theta_dd": Asked(acc(theta)),
-                "N_ground": Asked(N),
-                "F_friction": Asked(F),
+                "x_dd": Requested(acc(x)),
+                "theta_dd": Requested(acc(theta)),
+                "N_ground": Requested(N),
+                "F_friction": Requested(F),
             },
         ),
     )
@@ -582,7 +582,7 @@ def ch22_p6() -> System:
         (y, theta),
         (Body(6 * M, rod(6 * M, 2 * l), (0, y), theta, ((A, (0, FA)), (B, (0, FB)))),),
         (),
-        {"y_dd": Asked(acc(y)), "theta_dd": Asked(acc(theta))},
+        {"y_dd": Requested(acc(y)), "theta_dd": Requested(acc(theta))},
         {},
         work,
     )

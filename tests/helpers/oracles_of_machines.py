@@ -203,8 +203,8 @@ def mixed_units_and_long_names():
     return dict(a=1000 * (-(k * 0.002 + d * 0.1) / m - G * 0.8), f=math.sqrt(k / m - (d / 2 / m) ** 2) / 2 / math.pi)
 
 
-def springs_in_series_by_a_tie():
-    """k1 k2/(k1 + k2) by a tie of coordinates."""
+def springs_in_series_by_a_constraint():
+    """k1 k2/(k1 + k2) by a constraint of coordinates."""
     return dict(f=math.sqrt(75 / 2), x2=-75 * 0.2 / 2)
 
 

@@ -43,7 +43,7 @@ class RandomFrame:
         self.stations: list[list[Fraction]] = [[Fraction(0), Fraction(n)] for n in self.length]
         self.effects: list[list[Effect]] = [[] for _ in range(members)]
         self.lines: list[list[Line]] = [[] for _ in range(members)]
-        self.ties: list[str] = []
+        self.constraints: list[str] = []
         self.forces: list[str] = []
         for i in range(1, members):
             self._hinge(i)
@@ -74,7 +74,7 @@ class RandomFrame:
         other = self.rng.randrange(i)
         point, x = self._station(other)
         self.start.append(self.at(other, x))
-        self.ties.append(f'h{i} = {{ kind = "pin", points = ["m{i}.S0", "{point}"] }}')
+        self.constraints.append(f'h{i} = {{ kind = "pin", points = ["m{i}.S0", "{point}"] }}')
         for k, e in enumerate(np.eye(2)):
             self._unit(f"h{i}_{k}", i, Fraction(0), e)
             self._unit(f"h{i}_{k}", other, x, -e)
@@ -82,14 +82,14 @@ class RandomFrame:
     def _support(self, most: int) -> int:
         i = self.rng.randrange(len(self.length))
         point, x = self._station(i)
-        name = f"s{len(self.ties)}"
+        name = f"s{len(self.constraints)}"
         kind = self.rng.choice(("support", "support", "pin", "clamp")[: most + 1])
         if kind == "support":
             n = self.rng.choice(NORMALS)
-            self.ties.append(f'{name} = {{ kind = "support", point = "{point}", normal = {list(n)} }}')
+            self.constraints.append(f'{name} = {{ kind = "support", point = "{point}", normal = {list(n)} }}')
             self._unit(name, i, x, np.array(n) / np.hypot(*n))
             return 1
-        self.ties.append(f'{name} = {{ kind = "{kind}", points = ["{point}"] }}')
+        self.constraints.append(f'{name} = {{ kind = "{kind}", points = ["{point}"] }}')
         for k, e in enumerate(np.eye(2)):
             self._unit(f"{name}_{k}", i, x, e)
         if kind == "clamp":
@@ -188,7 +188,7 @@ class RandomFrame:
             points = ", ".join(f'S{k} = ["{station}*a", 0]' for k, station in enumerate(stations))
             joint = f'kind = "placed", at = ["({x})*a", "({y})*a"], angle = "atan2({s}, {c})"'
             lines += [f"[bodies.m{i}]", f"points = {{ {points} }}", 'line = ["S0", "S1"]', f"joint = {{ {joint} }}"]
-        return "\n".join([*lines, "[constraints]", *self.ties, "[forces]", *self.forces]) + "\n"
+        return "\n".join([*lines, "[constraints]", *self.constraints, "[forces]", *self.forces]) + "\n"
 
 
 def _gauss(a: float, b: float) -> list[tuple[float, float]]:

@@ -30,7 +30,7 @@ class RandomStructure:
         self.floats = Structure(space)
         self.points: list[list[Place]] = [[] for _ in range(bodies)]
         self.frames = [self._place() if rng.random() < 0.5 else (Fraction(0),) * self.size for _ in range(bodies)]
-        self.ties: list[str] = []
+        self.constraints: list[str] = []
         self.forces: list[str] = []
         for i in range(1, bodies):
             self._hinge(i)
@@ -51,7 +51,7 @@ class RandomStructure:
             named = ", ".join(f"P{k} = {_vector(_minus(p, frame))}" for k, p in enumerate(points))
             joint = f'joint = {{ kind = "placed", at = {_vector(frame)} }}'
             lines += [f"[bodies.b{i}]", joint, f"points = {{ {named} }}"]
-        return "\n".join([*lines, "[constraints]", *self.ties, "[forces]", *self.forces]) + "\n"
+        return "\n".join([*lines, "[constraints]", *self.constraints, "[forces]", *self.forces]) + "\n"
 
     def _point(self, body: int, at: Place) -> str:
         self.points[body].append(at)
@@ -64,9 +64,9 @@ class RandomStructure:
 
     def _hinge(self, body: int) -> None:
         other, at = self.rng.randrange(body), self._place()
-        name = f"h{len(self.ties)}"
+        name = f"h{len(self.constraints)}"
         points = f'"{self._point(body, at)}", "{self._point(other, at)}"'
-        self.ties.append(f'{name} = {{ kind = "pin", points = [{points}] }}')
+        self.constraints.append(f'{name} = {{ kind = "pin", points = [{points}] }}')
         self.floats.pin(name, _numbers(at), f"b{body}", f"b{other}")
 
     def _support(self, most: int) -> int:
@@ -74,21 +74,23 @@ class RandomStructure:
         kinds = [self._roller, self._bar]
         kinds += [self._pin] if most >= self.size else []
         kinds += [self._clamp] if most >= 3 and self.size == 2 else []
-        return self.rng.choice(kinds)(f"s{len(self.ties)}", self.rng.randrange(self.n), self._place())
+        return self.rng.choice(kinds)(f"s{len(self.constraints)}", self.rng.randrange(self.n), self._place())
 
     def _clamp(self, name: str, body: int, at: Place) -> int:
-        self.ties.append(f'{name} = {{ kind = "clamp", point = "{self._point(body, at)}" }}')
+        self.constraints.append(f'{name} = {{ kind = "clamp", point = "{self._point(body, at)}" }}')
         self.floats.clamp(name, _numbers(at), f"b{body}")
         return 3
 
     def _pin(self, name: str, body: int, at: Place) -> int:
-        self.ties.append(f'{name} = {{ kind = "pin", points = ["{self._point(body, at)}"] }}')
+        self.constraints.append(f'{name} = {{ kind = "pin", points = ["{self._point(body, at)}"] }}')
         self.floats.pin(name, _numbers(at), f"b{body}")
         return self.size
 
     def _roller(self, name: str, body: int, at: Place) -> int:
         normal = self.rng.choice(NORMALS[self.size])
-        self.ties.append(f'{name} = {{ kind = "support", point = "{self._point(body, at)}", normal = {list(normal)} }}')
+        self.constraints.append(
+            f'{name} = {{ kind = "support", point = "{self._point(body, at)}", normal = {list(normal)} }}'
+        )
         n = np.array(normal, dtype=float)
         self.floats.put(name, f"b{body}", _numbers(at), n / np.linalg.norm(n))
         return 1
@@ -102,7 +104,7 @@ class RandomStructure:
         while far == at:
             far = self._place()
         points = f'"{self._point(body, at)}", "{self._point(other, far)}"'
-        self.ties.append(f'{name} = {{ kind = "link", points = [{points}] }}')
+        self.constraints.append(f'{name} = {{ kind = "link", points = [{points}] }}')
         self.floats.bar(name, (f"b{body}", _numbers(at)), (f"b{other}", _numbers(far)))
         return 1
 

@@ -1,4 +1,4 @@
-"""Random trees of bodies under random forces, with ties that close: the text of a model."""
+"""Random trees of bodies under random forces, with constraints that close: the text of a model."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Writer:
         self.bodies: list[str] = []
         self.forces: list[str] = []
         self.names: list[str] = []
-        self.ties: list[str] = []
+        self.constraints: list[str] = []
 
     def vector(self) -> str:
         return "[" + ", ".join(f'"{self.rng.choice(["l", "h", "-l", "0", "2*h"])}"' for _ in range(self.size)) + "]"
@@ -111,8 +111,8 @@ class Writer:
             ]
         self.forces.append(f"f{k} = {{ {rng.choice(kinds)} }}")
 
-    def tie(self, k: int) -> None:
-        """A tie that closes at the start: a support where the body stands, or an equation."""
+    def constraint(self, k: int) -> None:
+        """A constraint that closes at the start: a support where the body stands, or an equation."""
         rng = self.rng
         body = rng.choice(self.names)
         free = dict(line.split(" = ") for line in self.coordinates if "{" not in line)
@@ -123,7 +123,7 @@ class Writer:
             f'kind = "equation", gap = "{q} - {free[q]} + l*sin({r} - {free[r]}) - A*t"',
             f'kind = "equation", rate = "cos({q})*{q}\' + l*{r}\' - A*t"',
         ]
-        self.ties.append(f"tie{k} = {{ {rng.choice(kinds)} }}")
+        self.constraints.append(f"constraint{k} = {{ {rng.choice(kinds)} }}")
 
     def text(self) -> str:
         gravity = ", ".join(['"0"', '"-g"', '"g/5"'][: self.size])
@@ -139,7 +139,7 @@ class Writer:
                 f"G = {self.vector()}",
                 *self.bodies,
                 "[constraints]",
-                *self.ties,
+                *self.constraints,
                 "[forces]",
                 f'weight = {{ kind = "gravity", acceleration = [{gravity}] }}',
                 *self.forces,
@@ -151,13 +151,13 @@ def free_coordinates(writer: Writer) -> int:
     return sum("{" not in line for line in writer.coordinates)
 
 
-def random_model(space: str, seed: int, ties: int = 0) -> str:
+def random_model(space: str, seed: int, constraints: int = 0) -> str:
     rng = Random(seed)
     writer = Writer(space, rng)
-    while len(writer.names) < 4 or free_coordinates(writer) < 1 + 4 * ties:
+    while len(writer.names) < 4 or free_coordinates(writer) < 1 + 4 * constraints:
         writer.body()
-    for k in range(ties):
-        writer.tie(k)
+    for k in range(constraints):
+        writer.constraint(k)
     for k in range(3):
         writer.force(k)
     if "tau" not in "".join(writer.bodies + writer.forces):

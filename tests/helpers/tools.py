@@ -15,8 +15,8 @@ import pytest
 from eomgen.codegen import build
 from eomgen.codegen.targets import ALL, cpp, fortran, rust, wasm
 
-ASKED = "all" if os.environ.get("CI") else os.environ.get("EOMGEN_REQUIRE", "")
-REQUIRED = None if ASKED in ("1", "all") else frozenset(ASKED.replace(",", " ").split())  # None: all
+REQUESTED = "all" if os.environ.get("CI") else os.environ.get("EOMGEN_REQUIRE", "")
+REQUIRED = None if REQUESTED in ("1", "all") else frozenset(REQUESTED.replace(",", " ").split())  # None: all
 NAMES = {"chromium": ("chromium", "chromium-browser", "google-chrome")}
 COMPILERS = {"c": build.C, "cpp": cpp.COMPILER, "rust": rust.COMPILER, "fortran": fortran.COMPILER}
 COMPILERS |= {"wasm": wasm.COMPILER}

@@ -69,29 +69,29 @@ def on_ground(tables: Tables, place: Change, direction: Change) -> Tables:
     """
     new = deepcopy(tables)
     new["points"] = {name: place(at) for name, at in new.get("points", {}).items()}
-    for tie in new.get("constraints", {}).values():
-        _change_tie(tie, place, direction, new["space"])
+    for constraint in new.get("constraints", {}).values():
+        _change_constraint(constraint, place, direction, new["space"])
     for force in new.get("forces", {}).values():
         _change_force(force, direction)
     return new
 
 
-def _change_tie(tie: dict[str, Any], place: Change, direction: Change, space: str) -> None:
-    if tie["kind"] in ("equation", "clamp") or "strands" in tie:
-        raise Unfit(f"a tie of kind {tie['kind']} speaks of the ground")
-    if tie["kind"] == "skate" and space == "space" and "normal" not in tie:
-        tie["normal"] = [0, 0, 1]
-    for key in ("normal", "axis") if tie["kind"] != "rolling" else ():
-        if key in tie:
-            tie[key] = direction(tie[key])
-    if tie["kind"] == "guide":
-        tie["along"] = direction(tie["along"])
-    if "at" in tie and isinstance(tie["at"], list):
-        tie["at"] = place(tie["at"])
-    for track in (tie.get("line"), tie.get("plane"), tie.get("circle")):
-        if isinstance(track, dict) and "on" not in tie:
+def _change_constraint(constraint: dict[str, Any], place: Change, direction: Change, space: str) -> None:
+    if constraint["kind"] in ("equation", "clamp") or "strands" in constraint:
+        raise Unfit(f"a constraint of kind {constraint['kind']} speaks of the ground")
+    if constraint["kind"] == "skate" and space == "space" and "normal" not in constraint:
+        constraint["normal"] = [0, 0, 1]
+    for key in ("normal", "axis") if constraint["kind"] != "rolling" else ():
+        if key in constraint:
+            constraint[key] = direction(constraint[key])
+    if constraint["kind"] == "guide":
+        constraint["along"] = direction(constraint["along"])
+    if "at" in constraint and isinstance(constraint["at"], list):
+        constraint["at"] = place(constraint["at"])
+    for track in (constraint.get("line"), constraint.get("plane"), constraint.get("circle")):
+        if isinstance(track, dict) and "on" not in constraint:
             _change_track(track, place, direction)
-    for stop in tie.get("path", ()):
+    for stop in constraint.get("path", ()):
         if isinstance(stop, dict) and "at" in stop:
             stop["at"] = place(stop["at"])
 
@@ -173,8 +173,10 @@ def other_origins(tables: Tables) -> Tables:
     new = deepcopy(tables)
     size = 2 if new["space"] == "plane" else 3
     chosen = [n for n, b in new["bodies"].items() if "mass" in b and not {"shape", "parts", "line"} & b.keys()]
-    told = json.dumps([new.get("constraints", {}), new.get("forces", {})])
-    chosen = [n for n in chosen if f'"{n}.origin' not in told and f'"{n}"' not in told and "joint" in new["bodies"][n]]
+    reported = json.dumps([new.get("constraints", {}), new.get("forces", {})])
+    chosen = [
+        n for n in chosen if f'"{n}.origin' not in reported and f'"{n}"' not in reported and "joint" in new["bodies"][n]
+    ]
     if not chosen:
         raise Unfit("every body is a shape, or named by its origin")
 

@@ -151,7 +151,7 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
 
 
 @pytest.mark.parametrize(
-    ("text", "asked", "told"),
+    ("text", "requested", "reported"),
     [
         (BEAM, {"reaction": "nonsense"}, "there is no reaction 'nonsense'"),
         (BEAM, {"reaction": "nonsense"}, "there are reaction_x(A), reaction_y(A), reaction_n(B)"),
@@ -174,16 +174,16 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
         (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
     ],
 )
-def test_it_is_said_what_is_wrong(text, asked, told):
+def test_it_is_said_what_is_wrong(text, requested, reported):
     with pytest.raises(EomgenError) as error:
-        eomgen.statics(eomgen.loads(text), **asked)
-    assert told in str(error.value)
+        eomgen.statics(eomgen.loads(text), **requested)
+    assert reported in str(error.value)
 
 
 def test_a_member_is_named_from_either_end():
     """tension(T, n1-n2) = tension(T, n2-n1), spaces or not."""
-    for asked in ("tension(T, B-C)", "tension(T,C-B)", "tension(T, C, B)"):
-        found = eomgen.statics(eomgen.loads(TRUSS), reaction=asked).found
+    for requested in ("tension(T, B-C)", "tension(T,C-B)", "tension(T, C, B)"):
+        found = eomgen.statics(eomgen.loads(TRUSS), reaction=requested).found
         assert [r.name for r in found.reactions if r.work is not None] == ["tension(T, B-C)"]
 
 

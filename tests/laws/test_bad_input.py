@@ -125,7 +125,7 @@ MISTAKES = {
 
 @pytest.mark.parametrize("what", MISTAKES)
 def test_a_mistake_is_named_at_its_place(what, tmp_path):
-    """file:line:column: what is wrong / the source line / a caret under the culprit / mend, and exit code 1."""
+    """file:line:column: what is wrong / the source line / a caret under the culprit / fix, and exit code 1."""
     old, new, culprit, word = MISTAKES[what]
     text = GOOD.replace(old, new, 1)
     assert text != GOOD

@@ -14,7 +14,7 @@ import eomgen
 from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints import rows as ties
+from eomgen.mechanics.constraints import rows as constraints
 from eomgen.mechanics.dynamics import formulations
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
@@ -167,7 +167,7 @@ BALANCED = ("double_pendulum", "parallelogram_reactions", "ch22_p1", "ch18_p5", 
 
 
 def in_motion(equations: Equations):
-    """A state on the ties, the accelerations those of the equations."""
+    """A state on the constraints, the accelerations those of the equations."""
     state, _ = closed_state(equations.system, Random(7))
     a = accelerations_at(equations.graph, state)
     return state | {s: fifty_digits().number(1) * float(x) for s, x in zip(equations.graph.symbols.a, a, strict=True)}
@@ -235,7 +235,7 @@ def to_the_other_side(axes, i, place):
 friction_factor, friction_contacts = contacts.friction_factor, friction.friction_contacts
 joint_effects, arm = effects.effects_at_joint, effects.Axes.arm
 REACTION_ERRORS = [
-    ("ch16_p6", ties, "friction_factor", pushing),
+    ("ch16_p6", constraints, "friction_factor", pushing),
     ("ch16_p6", friction, "friction_contacts", other_way),
     ("double_pendulum", components, "effects_at_joint", without_parent),
     ("arm3", components, "effects_at_joint", without_parent),
@@ -323,8 +323,8 @@ def test_the_certificate_holds_where_a_closing_tie_has_friction(name):
     """N is its multiplier, solved together with the accelerations; friction is in Q, the balance and the energy."""
     certificate = eomgen.derive(eomgen.loads(ROUGH + WITH_FRICTION[name])).certify()
     assert certificate.ok, str(certificate)
-    told = {check.name for check in certificate.checks}
-    assert {"friction takes power from what slides", "every body is in balance with its reactions"} <= told
+    reported = {check.name for check in certificate.checks}
+    assert {"friction takes power from what slides", "every body is in balance with its reactions"} <= reported
 
 
 @pytest.mark.parametrize("law", ['motion = "w*t^2"', 'rate = "w*t^2"', 'acceleration = "w*t^2", speed = "w"'])

@@ -24,7 +24,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
-ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+REQUESTED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 UNITS = (  # (system and output, as a pattern): the unit that is asked for
     (r"ch11_p\d (c\d\d_[xy]|[xy]\d)", "m"),
     (r"ch11_p\d omega\d", "rad/s"),
@@ -93,7 +93,7 @@ def test_the_answers_by_hand_are_those_of_the_oracle(system, other):
         assert by_hand == pytest.approx(found[output], rel=1e-10, abs=1e-10), output
 
 
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output):
     """The text that solve gives, read back, at two sets of numbers to 30 digits."""
     answer = answers(system)[output]
@@ -106,7 +106,7 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
 
 
 @each("other", [False, True])
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_number_is_the_oracles(system, output, other):
     """At the file's parameters and at others."""
     answer, expected = answers(system, other)[output], found_by_the_oracle(system, other)[output]
@@ -120,7 +120,7 @@ def test_an_exact_answer_is_as_short_as_the_books(system, output):
     assert answers(system)[output].exact == AS_PRINTED[system, output]
 
 
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_an_answer_is_in_the_unit_that_is_asked_for(system, output):
     """Each output has one: declared, or that of its quantity."""
     (expected,) = (unit for pattern, unit in UNITS if re.fullmatch(pattern, f"{system} {output}"))

@@ -26,8 +26,8 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
-ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
-EXACT = [asked for asked in ASKED if asked not in NUMBERS_ONLY]
+REQUESTED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+EXACT = [requested for requested in REQUESTED if requested not in NUMBERS_ONLY]
 STATES = 3  # random states of a comparison
 
 
@@ -117,7 +117,7 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
 
 
 @each("other", [False, True])
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_number_is_the_one_of_newton_and_euler(system, output, other):
     """At the file's parameters and at others; a function of the place at the start."""
     model, answer = model_of(system, other), answers(system, other)[output]

@@ -26,7 +26,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
-ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+REQUESTED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 STATES = 3  # random states of a comparison
 
 
@@ -118,7 +118,7 @@ def test_newton_and_euler_keep_the_energy(system):
 # -- the model files ---------------------------------------------------------------------------------------------
 
 
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output):
     """The text that solve gives, read back, at random states to 30 digits."""
     answer = answers(system)[output]
@@ -129,7 +129,7 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
 
 
 @each("other", [False, True])
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_number_is_the_one_of_newton_and_euler(system, output, other):
     """At the file's parameters and at others; a function of the place at the start."""
     model, answer = model_of(system, other), answers(system, other)[output]
@@ -181,7 +181,7 @@ def alternative_answers(name: str) -> dict[str, Any]:
 
 
 def closed_states(name: str) -> list[dict[str, Fraction]]:
-    """Random states at which the ties hold, to 50 digits."""
+    """Random states at which the constraints hold, to 50 digits."""
     states = random_states(alternative(name))
     for state in states:
         for coordinate, text in CLOSURES.get(ALTERNATIVES[name][0], {}).items():
@@ -205,6 +205,6 @@ def test_a_system_answers_the_same_however_it_is_written(name, output):
 
 @pytest.mark.parametrize("name", ALTERNATIVES)
 def test_however_it_is_written_it_certifies_itself(name):
-    """Eliminated and closing ties too: two routes agree."""
+    """Eliminated and closing constraints too: two routes agree."""
     certificate = eomgen.derive(alternative(name)).certify()
     assert certificate.ok, certificate

@@ -24,7 +24,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
-ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+REQUESTED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 SETS = ("statement", "other")
 FIFTY = fifty_digits()
 STATE = {"x": "0.23", "y": "-0.41", "x'": "0.37", "y'": "-0.19", "xi": "0.53", "eta": "0.29"}
@@ -109,7 +109,7 @@ def test_the_file_names_what_is_asked_in_its_unit(system):
 
 
 @each("numbers", SETS)
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output, numbers):
     """The text that solve gives for the statement, read back at both sets, to 30 digits."""
     answer = answers(system)[output]
@@ -119,7 +119,7 @@ def test_the_exact_answer_is_the_one_by_hand(system, output, numbers):
 
 
 @each("numbers", SETS)
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_number_is_the_one_of_the_positions(system, output, numbers):
     """A function of the state at the start."""
     model, answer = model_of(system, numbers), answers(system, numbers)[output]
@@ -148,7 +148,7 @@ def test_exact_answers_are_the_books_at_its_numbers(system, output):
     assert close(in_unit(system, output, found), value_of(BOOK_SURDS[system, output], {}))
 
 
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_exact_answers_are_short(system, output):
     """No longer than a reader's own: at most three times the formula by hand, and 60 characters."""
     exact = answers(system)[output].exact

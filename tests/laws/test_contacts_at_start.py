@@ -11,11 +11,11 @@ import pytest
 
 import eomgen
 from eomgen.codegen.rhs import RightHandSide
-from eomgen.errors import OpenTies
+from eomgen.errors import OpenConstraints
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.kinematics.scene import ContactMode
-from eomgen.mechanics.start import state as open_ties
+from eomgen.mechanics.start import state as open_constraints
 from eomgen.mechanics.start.state import start_of_motion
 from eomgen.model.contacts import contacts_of
 from eomgen.proof.contact_phases import leaving_at_start
@@ -183,20 +183,20 @@ def test_friction_of_what_does_not_slide_at_the_start_is_that_of_its_first_phase
     """F = -P while |P| <= mu N, N = m g + P/10; else mu N against the motion that begins; `solve` says the same."""
     text = ROUGH.replace("PUSH", str(push)).replace("SPEED", str(speed))
     model = eomgen.loads(text)
-    found, told = eomgen.reactions(model), " ".join(reactions_document(model, certify=False).notes)
-    asked = eomgen.solve(eomgen.loads(text + '[outputs]\nF = "reaction_t(floor)"'))["F"]
-    assert found["reaction_t(floor)"].value == pytest.approx(friction) == asked.value
+    found, reported = eomgen.reactions(model), " ".join(reactions_document(model, certify=False).notes)
+    requested = eomgen.solve(eomgen.loads(text + '[outputs]\nF = "reaction_t(floor)"'))["F"]
+    assert found["reaction_t(floor)"].value == pytest.approx(friction) == requested.value
     assert found.certify().ok
     words = "do not slide at the start: floor; the reactions are those there"
-    assert (words in told) == (speed == 0)
+    assert (words in reported) == (speed == 0)
 
 
 def test_a_contact_that_is_taken_as_closed_and_opens_with_the_speeds_is_contradicted():
     """Thrown up from the floor, y' = 1.2: closed at the start is wrong; let go from rest it is right."""
     thrown = BALL.replace("HEIGHT", "0").replace('{ start = "START" }', "{ start = 0, speed = 1.2 }")
     resting = BALL.replace("HEIGHT", "0").replace('"START"', "0")
-    told = [leaving_at_start(equations_of_motion(system_of(eomgen.loads(text)))) for text in (thrown, resting)]
-    assert told == ["'floor' is closed, and opens with 1.2 m/s where the motion starts", ""]
+    reported = [leaving_at_start(equations_of_motion(system_of(eomgen.loads(text)))) for text in (thrown, resting)]
+    assert reported == ["'floor' is closed, and opens with 1.2 m/s where the motion starts", ""]
 
 
 def test_places_of_rest_have_no_speeds_of_the_start():
@@ -212,11 +212,11 @@ def test_how_near_ties_come_to_closing_is_sought_for_a_reader_alone(monkeypatch)
     """That a contact is open at the start is found by its gap; the search, of seconds beside a loop, is for words."""
     model = eomgen.loads(BALL.replace("HEIGHT", "0.5").replace('{ start = "START" }', "0.5"))
     sought = []
-    monkeypatch.setattr(open_ties, "nearest_miss", lambda *_: sought.append(1))
+    monkeypatch.setattr(open_constraints, "nearest_miss", lambda *_: sought.append(1))
     assert eomgen.derive(model).graph.system.modes["floor"].closed is False
     assert eomgen.simulate(model, time=0.1, target="numpy").ok
     assert not sought
-    with pytest.raises(OpenTies) as refused:
+    with pytest.raises(OpenConstraints) as refused:
         start_of_motion(system_of(model))
     assert "open by 0.5" in str(pickle.loads(pickle.dumps(refused.value)))
     assert sought == [1]

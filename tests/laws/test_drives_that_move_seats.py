@@ -1,4 +1,4 @@
-"""What drives a coordinate that moves the seat of another body too, or a place at which a tie holds."""
+"""What drives a coordinate that moves the seat of another body too, or a place at which a constraint holds."""
 
 from __future__ import annotations
 
@@ -70,7 +70,8 @@ def test_a_drive_moves_what_it_seats():
 
 
 def test_code_and_answers_name_one_drive():
-    """F_k of the freed equations of motion is what all reactions do on the bodies per change of b, ties left out."""
+    """F_k of the freed equations of motion is what all reactions do on the bodies per change of b, constraints left
+    out."""
     model = eomgen.loads(SEAT_AND_TABLE)
     equations = eomgen.derive(model)
     rhs, function = equations.rhs("numpy"), equations.reaction_rhs("numpy")

@@ -28,8 +28,8 @@ def test_where_nothing_slides_dry_friction_gives_no_number():
     for name in ("qdd", "Rx"):
         assert found[name].value is None and "tanh(w/eps)" in found[name].message
     assert found["x"].value is not None
-    told = eomgen.reactions(hinge(0))["reaction_x(arm)"]
-    assert told.value is None and "tanh(w/eps)" in told.message
+    reported = eomgen.reactions(hinge(0))["reaction_x(arm)"]
+    assert reported.value is None and "tanh(w/eps)" in reported.message
 
 
 @pytest.mark.parametrize("speed", [0.5, -0.5])

@@ -1,4 +1,4 @@
-"""Dependent coordinates: the rates that ties give, equations in the independent speeds, and starts that close.
+"""Dependent coordinates: the rates that constraints give, equations in the independent speeds, and starts that close.
 
 q' = N u + nu,  N = [1; A],  nu = [0; b]
 """
@@ -176,7 +176,7 @@ def model(name: str):
 
 @cases
 def test_the_certificate_holds(name):
-    """Reduced Lagrange, projection, recursion, and the free bodies with every tie's multiplier agree."""
+    """Reduced Lagrange, projection, recursion, and the free bodies with every constraint's multiplier agree."""
     certificate = eomgen.derive(model(name)).certify()
     assert certificate.ok, str(certificate)
 
@@ -184,7 +184,7 @@ def test_the_certificate_holds(name):
 @cases
 def test_rates_of_dependent_coordinates_keep_the_ties(name):
     """W^T xi + s_t = 0 for each eliminated row that determines a coordinate, whatever u."""
-    rows = [row for row in system_of(model(name)).ties.rows if row.eliminates]
+    rows = [row for row in system_of(model(name)).constraints.rows if row.eliminates]
     assert len(rows) == CASES[name].count("dependent = true")
     assert equal_at_random_states([(row.velocity, 0) for row in rows]).equal
 
@@ -223,8 +223,8 @@ def test_speeds_are_the_independent_ones_and_eliminated_rows_leave_J():
 def test_redundant_loops_leave_nothing_to_multipliers():
     """Rows that follow from those used up are eliminated too: on phi = 0 their J would be nothing but rounding."""
     system = system_of(model("three cranks"))
-    assert [row.status for row in system.ties.rows] == ["eliminated"] * 4
-    assert [row.eliminates == "" for row in system.ties.rows].count(True) == 1
+    assert [row.status for row in system.constraints.rows] == ["eliminated"] * 4
+    assert [row.eliminates == "" for row in system.constraints.rows].count(True) == 1
 
 
 def test_a_four_bar_follows_in_closed_form():
@@ -259,7 +259,7 @@ def test_a_wrong_rate_turns_the_certificate_red(monkeypatch, name):
 
 
 def test_ties_that_move_by_themselves_and_do_not_commute_carry_power(monkeypatch):
-    """d/dt (u . dT/du - T + V) has p . [nu, N u] in addition, where rolling ties are carried along."""
+    """d/dt (u . dT/du - T + V) has p . [nu, N u] in addition, where rolling constraints are carried along."""
     monkeypatch.setattr(identities, "_carried_power", lambda system: 0)
     equations = eomgen.derive(model("skate"))
     checks = certificate.certify(equations.graph).checks
@@ -270,12 +270,12 @@ def test_ties_that_move_by_themselves_and_do_not_commute_carry_power(monkeypatch
 
 
 def test_a_dependent_coordinate_without_a_tie_is_named():
-    """What is wrong, where, and how to mend it."""
+    """What is wrong, where, and how to fix it."""
     with pytest.raises(DerivationError) as caught:
         eomgen.derive(eomgen.loads(HEAD + cranks("a", "b") + "[coordinates]\na = 1\nb = { dependent = true }\n"))
     assert str(caught.value) == (
         "coordinates.b: 'b' is dependent, but there is no constraint\n"
-        "mend: add the constraint that moves it, or leave out `dependent`"
+        "fix: add the constraint that moves it, or leave out `dependent`"
     )
 
 
@@ -325,15 +325,15 @@ WIDE = OPEN.replace("at = [1, 0]", "at = [9, 0]")
     usual(
         [
             (OUT_OF_REACH, "'P' (row 1) does not close at the start: it is open by "),
-            (OUT_OF_REACH, "mend: give start values at which it can close, or another guess: `near` of 'b', 'd'"),
+            (OUT_OF_REACH, "fix: give start values at which it can close, or another guess: `near` of 'b', 'd'"),
             (WIDE, "'P' (row 1) does not close at the start: it is open by 7.94"),
-            (WIDE, "mend: give start values that close it, or mark a coordinate as `dependent`: 'a', 'b', 'd'"),
+            (WIDE, "fix: give start values that close it, or mark a coordinate as `dependent`: 'a', 'b', 'd'"),
         ],
         2,
     ),
 )
 def test_a_loop_that_does_not_close_at_the_start_is_refused(text, message):
-    """From the run, not from the derivation: which tie, by how much, and the mend."""
+    """From the run, not from the derivation: which constraint, by how much, and the fix."""
     equations = eomgen.derive(eomgen.loads(text))
     assert equations.rhs("numpy").x0 is None
     for run in (equations.start, lambda: eomgen.simulate(eomgen.loads(text), time=1)):
@@ -400,4 +400,4 @@ def test_a_start_in_a_change_point_is_an_outcome_that_names_it():
 def test_the_free_system_has_every_coordinate():
     """Before the elimination nothing is dependent."""
     free = free_system_of(model("three cranks"))
-    assert len(free.symbols.u) == 4 and {row.status for row in free.ties.rows} == {"closing"}
+    assert len(free.symbols.u) == 4 and {row.status for row in free.constraints.rows} == {"closing"}

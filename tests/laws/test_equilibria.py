@@ -227,7 +227,7 @@ couple = "0.2{terms}"
     assert sum(e.stability.kind == "stable" for e in found.found) == len(crossings) / 2
 
 
-# -- several freedoms --------------------------------------------------------------------------------
+# -- several degrees of freedom --------------------------------------------------------------------------------
 
 
 def chain(n: int) -> str:
@@ -308,7 +308,7 @@ def test_what_no_force_holds_is_left_where_it_starts():
     assert {exact(e)["theta"]: e.stability.kind for e in found.found} == {"0": "unstable", "pi": "stable"}
 
 
-# -- ties --------------------------------------------------------------------------------------------
+# -- constraints --------------------------------------------------------------------------------------------
 
 
 def four_bar_energy(alpha: float, near: np.ndarray) -> tuple[float, np.ndarray]:
@@ -353,7 +353,7 @@ def test_a_four_bar_rests_where_its_energy_is_stationary():
     ],
 )
 def test_at_rest_the_equations_of_motion_have_no_acceleration(path):
-    """u = 0 and a = 0 solve them, each place, dependent coordinates and closing ties included."""
+    """u = 0 and a = 0 solve them, each place, dependent coordinates and closing constraints included."""
     model = eomgen.load(f"models/{path}.toml")
     found = found_in(model)
     assert found.found
@@ -472,7 +472,7 @@ def test_a_ladder_on_a_smooth_wall_held_by_a_string():
 
 def test_more_unknowns_than_freedoms_are_refused():
     text = LADDER.replace("[coordinates]", 'T = "another"\n[coordinates]').replace('["-S", 0]', '["-S - T", 0]')
-    with pytest.raises(DerivationError, match="more unknowns than freedoms"):
+    with pytest.raises(DerivationError, match="more unknowns than degrees of freedom"):
         holding_of(system_of(model_of(text + WEIGHT, m=10, l=4, g=10, b=1)))
 
 
@@ -506,7 +506,7 @@ def test_the_verb_of_statics_gives_the_places_of_rest():
     assert payload["complete"] and payload["reactions"]["reaction_y(rod)"]["exact"] == "m*g"
     document = eomgen.statics(model).document
     text = rendered(document)
-    assert "There are 2 places of rest" in text and "stable" in text
+    assert "There are 2 equilibria" in text and "stable" in text
     assert r"\frac{\partial^{2} V}{\partial q^{2}}" in rendered(document, "latex")
     with pytest.raises(UsageError, match="structures that stand"):
         eomgen.statics(model, reaction="reaction_x(rod)")
@@ -590,7 +590,7 @@ along = [1, 0]
     assert found.statics.held == ("y",) and exact(found.found[0]) == {"y": "3/10", "x": "3/10"}
 
 
-# -- places of rest at which V'' vanishes, known in numbers only --------------------------------------
+# -- equilibria at which V'' vanishes, known in numbers only --------------------------------------
 
 FLAT = """
 [coordinates]

@@ -90,7 +90,7 @@ ARMS_3 = ARMS.replace("AXIS", ", axis = [1, 1, 0]").replace("ZERO", ", 0")
 ARMS_2 = ARMS.replace("AXIS", "").replace("ZERO", "")
 
 
-def tie(text: str, body: str) -> str:
+def constraint(text: str, body: str) -> str:
     return f"[constraints.B]\n{text}\n" + body
 
 
@@ -192,43 +192,47 @@ acceleration = [0, -9.81]
         water="kind = 'kinetic'\nenergy = \"m*l^2*(a'^2 + cos(b)*a'*b'/2)\"",
         push="kind = 'generalized'\ncoordinate = 'a'\nvalue = \"u - c*a'\"",
     ),
-    "pin": tie("kind = 'pin'\npoints = ['plate.P']", free()),
-    "support": tie(
+    "pin": constraint("kind = 'pin'\npoints = ['plate.P']", free()),
+    "support": constraint(
         "kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2]\nat = [0.7, 1]\nfriction = 'mu'", free(", speed = 1")
     ),
-    "unilateral": tie("kind = 'support'\npoint = 'plate.P'\nnormal = [0, 1]\nunilateral = true", free()),
-    "clamp": tie("kind = 'clamp'\npoint = 'plate.P'", free()),
-    "welded": tie("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", free() + DRUM),
-    "guide": tie("kind = 'guide'\npoint = 'plate.P'\nalong = [1, 2]", free()),
-    "slider": tie("kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nfriction = { viscous = 'c' }", free() + DRUM),
-    "pushing slider": tie("kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nunilateral = true", free() + DRUM),
-    "link": tie("kind = 'link'\npoints = ['plate.P', 'drum.M']\nlength = 1.26\nunilateral = true", free() + DRUM),
-    "rolling": tie("kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }", free()),
-    "slipping": tie(
+    "unilateral": constraint("kind = 'support'\npoint = 'plate.P'\nnormal = [0, 1]\nunilateral = true", free()),
+    "clamp": constraint("kind = 'clamp'\npoint = 'plate.P'", free()),
+    "welded": constraint("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", free() + DRUM),
+    "guide": constraint("kind = 'guide'\npoint = 'plate.P'\nalong = [1, 2]", free()),
+    "slider": constraint(
+        "kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nfriction = { viscous = 'c' }", free() + DRUM
+    ),
+    "pushing slider": constraint("kind = 'slider'\npoint = 'drum.M'\non = 'plate'\nunilateral = true", free() + DRUM),
+    "link": constraint(
+        "kind = 'link'\npoints = ['plate.P', 'drum.M']\nlength = 1.26\nunilateral = true", free() + DRUM
+    ),
+    "rolling": constraint("kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }", free()),
+    "slipping": constraint(
         "kind = 'rolling'\nbody = 'plate'\nline = { at = [0, 0], normal = [-1, 3] }\nslip = true\n"
         "friction = 'mu'\nradius = 0.3\ncenter = 'P'",
         free(", speed = 1"),
     ),
-    "in a circle": tie(
+    "in a circle": constraint(
         "kind = 'rolling'\nbody = 'plate'\nunilateral = true\n"
         "circle = { at = [0, 1.5], radius = 0.765, inside = true }",
         free(),
     ),
-    "on a body": tie("kind = 'rolling'\nbody = 'plate'\non = 'drum'\nslip = true", free() + DRUM),
-    "skate": tie("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.2]", free()),
-    "string": tie(
+    "on a body": constraint("kind = 'rolling'\nbody = 'plate'\non = 'drum'\nslip = true", free() + DRUM),
+    "skate": constraint("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.2]", free()),
+    "string": constraint(
         "kind = 'string'\npath = ['plate.P', { at = [0.5, 2], radius = 0.1, turn = 'cw', slip = true }, "
         "{ body = 'drum', turn = 'cw' }]\nunilateral = true",
         free() + DRUM,
     ),
-    "straight strands": tie(
+    "straight strands": constraint(
         "kind = 'string'\npath = ['plate.P', { body = 'drum', turn = 'ccw' }]\nstrands = ['down']",
         free().replace("x = { start = 0.4 }", "x = 0.4").replace("d = 0.3", "d = 0") + DRUM,
     ),
-    "gear": tie("kind = 'gear'\nbodies = ['plate', 'drum']\nratio = -3.5", free() + DRUM),
-    "equation": tie("kind = 'equation'\ngap = 'y(plate.P, drum) - x(plate.P)^2 - 0.7'", free() + DRUM),
-    "rate": tie("kind = 'equation'\nrate = \"x' - r*d' - 0.3*omega(plate)\"", free()),
-    "motion": tie("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", free(", speed = 1")),
+    "gear": constraint("kind = 'gear'\nbodies = ['plate', 'drum']\nratio = -3.5", free() + DRUM),
+    "equation": constraint("kind = 'equation'\ngap = 'y(plate.P, drum) - x(plate.P)^2 - 0.7'", free() + DRUM),
+    "rate": constraint("kind = 'equation'\nrate = \"x' - r*d' - 0.3*omega(plate)\"", free()),
+    "motion": constraint("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", free(", speed = 1")),
 }
 DRUM_3 = """
 [coordinates.e]
@@ -282,15 +286,17 @@ SPACE = {
     "spherical by a quaternion": QUATERNION + f'joint = {{ kind = "spherical", {BY_QUATERNION} }}\n',
     "free by a quaternion": QUATERNION.replace("[speeds]", "x = 1\ny = 0\nz = { speed = 1 }\n[speeds]")
     + f'joint = {{ kind = "free", position = ["x", "y", "z"], {BY_QUATERNION} }}\n',
-    "pin": tie("kind = 'pin'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
-    "hinge_in_a_body": tie(
+    "pin": constraint("kind = 'pin'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
+    "hinge_in_a_body": constraint(
         "kind = 'pin'\npoints = ['plate.P', 'drum.M']\naxis = [1, 1, 0]\naxes = 'drum'", loose() + DRUM_3
     ),
-    "hinge": tie("kind = 'pin'\npoints = ['plate.P']\naxis = [1, 1, 0]", loose()),
-    "support": tie("kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2, 2]\nfriction = 'mu'", loose(", speed = 1")),
-    "clamp": tie("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
-    "guide": tie("kind = 'guide'\npoint = 'plate.P'\nalong = [1, 1, 0.3]", loose()),
-    "slider": tie(
+    "hinge": constraint("kind = 'pin'\npoints = ['plate.P']\naxis = [1, 1, 0]", loose()),
+    "support": constraint(
+        "kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2, 2]\nfriction = 'mu'", loose(", speed = 1")
+    ),
+    "clamp": constraint("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
+    "guide": constraint("kind = 'guide'\npoint = 'plate.P'\nalong = [1, 1, 0.3]", loose()),
+    "slider": constraint(
         "kind = 'slider'\npoint = 'plate.P'\non = 'rail'\nfriction = 'mu'",
         """
 [coordinates]
@@ -306,34 +312,34 @@ points = { P = [0, 0, 0] }
 joint = { kind = "placed", on = "rail", at = ["s", 0, 0] }
 """,
     ),
-    "link": tie("kind = 'link'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
-    "ball": tie(f"kind = 'rolling'\nbody = 'plate'\nradius = 0.3\n{FLOOR}", loose()),
-    "slipping ball on a body": tie(
+    "link": constraint("kind = 'link'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
+    "ball": constraint(f"kind = 'rolling'\nbody = 'plate'\nradius = 0.3\n{FLOOR}", loose()),
+    "slipping ball on a body": constraint(
         "kind = 'rolling'\nbody = 'plate'\nradius = 0.1\non = 'drum'\nslip = true\n"
         "friction = 'mu'\nplane = { at = [0, 0, 0.1], normal = [0, 0, 1] }",
         loose(", speed = 1") + DRUM_3,
     ),
-    "ball in a pipe": tie(
+    "ball in a pipe": constraint(
         "kind = 'rolling'\nbody = 'plate'\nradius = 0.1\n"
         "circle = { at = [0, 0, 0.1], radius = 0.7, axis = [1, 0, 0], inside = true }",
         loose(),
     ),
-    "tyre": tie(
+    "tyre": constraint(
         f"kind = 'rolling'\nbody = 'plate'\nradius = 0.3\ntube = 0.05\naxis = [0, 1, 0]\ncenter = 'P'\n{FLOOR}", loose()
     ),
-    "wheel in a bowl": tie(
+    "wheel in a bowl": constraint(
         "kind = 'rolling'\nbody = 'plate'\nradius = 0.1\naxis = [0, 0, 1]\n"
         "circle = { at = [0, 0, 0.1], radius = 0.7, inside = true }",
         loose(),
     ),
-    "ellipsoid": tie(f"kind = 'rolling'\nbody = 'plate'\nellipsoid = [0.2, 0.3, 0.4]\n{FLOOR}", loose()),
-    "skate": tie("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.3, 0.2]\nnormal = [0, 1, 3]", loose()),
-    "string": tie(
+    "ellipsoid": constraint(f"kind = 'rolling'\nbody = 'plate'\nellipsoid = [0.2, 0.3, 0.4]\n{FLOOR}", loose()),
+    "skate": constraint("kind = 'skate'\npoint = 'plate.P'\nalong = [1, 0.3, 0.2]\nnormal = [0, 1, 3]", loose()),
+    "string": constraint(
         "kind = 'string'\npath = ['plate.P', 'drum.M', "
         "{ at = [2, 0, 0], radius = 0.1, turn = 'cw', axis = [0, 1, 0] }]",
         loose() + DRUM_3.replace("axis = [1, 2, 2]", "axis = [0, 1, 0]"),
     ),
-    "gear": tie(
+    "gear": constraint(
         "kind = 'gear'\nbodies = ['drum', 'wheel']\nratio = -3",
         DRUM_3
         + """
@@ -344,11 +350,11 @@ inertia = [1, 1, 1]
 joint = { kind = "revolute", at = [1, 0, 0], angle = "f" }
 """,
     ),
-    "equation": tie("kind = 'equation'\ngap = 'z(plate.P, drum) - x(plate.P)^2 - 0.3'", loose() + DRUM_3),
-    "rate": tie(
+    "equation": constraint("kind = 'equation'\ngap = 'z(plate.P, drum) - x(plate.P)^2 - 0.3'", loose() + DRUM_3),
+    "rate": constraint(
         "kind = 'equation'\nrate = 'vx(plate.P) - 0.2*omega_z(plate) - 0.1*vy(plate.Q, drum)'", loose() + DRUM_3
     ),
-    "motion": tie("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", loose(", speed = 1")),
+    "motion": constraint("kind = 'motion'\ncoordinate = 'x'\nvalue = '0.4 + sin(t)'", loose(", speed = 1")),
     "forces": ARMS_3
     + all_forces(
         weight="kind = 'gravity'\nacceleration = ['sin(t)', 0, -9.81]\nbodies = ['two']",

@@ -1,4 +1,5 @@
-"""Laws of what lies between two others: rest beside velocity ties, runs measured at their steps, drives, branches."""
+"""Laws of what lies between two others: rest beside velocity constraints, runs measured at their steps, drives,
+branches."""
 
 from __future__ import annotations
 
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
 
-# -- rest beside velocity ties ---------------------------------------------------------------------------
+# -- rest beside velocity constraints ---------------------------------------------------------------------------
 
 SLEIGH = """eomgen = 1
 space = "plane"
@@ -246,10 +247,10 @@ DRIVE = '{ kind = "motion", coordinate = "th", value = "0.5*sin(3*t) + 0.2" }'
 @pytest.mark.parametrize("text", [DRIVEN_ARM, DRIVEN_CRANK])
 def test_a_tie_that_drives_has_the_columns_of_a_driven_coordinate(text):
     """drive(th) in both, and E(t) - E(0) = integral of drive th' dt, which knows nothing of reactions."""
-    own = eomgen.loads(text.format(th=SAME_MOTION[0], tie=""))
-    tie = f"[constraints.motor]\n{DRIVE[1:-1].replace(', ', chr(10)).strip()}"
-    tied = eomgen.loads(text.format(th=SAME_MOTION[1], tie=tie))
-    runs = [eomgen.simulate(model, time=1, samples=2001) for model in (own, tied)]
+    own = eomgen.loads(text.format(th=SAME_MOTION[0], constraint=""))
+    constraint = f"[constraints.motor]\n{DRIVE[1:-1].replace(', ', chr(10)).strip()}"
+    constrained = eomgen.loads(text.format(th=SAME_MOTION[1], constraint=constraint))
+    runs = [eomgen.simulate(model, time=1, samples=2001) for model in (own, constrained)]
     for name, column in runs[0].reactions.items():
         assert runs[1][name] == pytest.approx(column, rel=1e-6, abs=1e-6, nan_ok=True), name
     run = runs[1]
@@ -268,8 +269,8 @@ def test_a_tie_that_drives_has_the_columns_of_a_driven_coordinate(text):
 def test_drive_reaction_and_multiplier_of_a_tie_are_one_number():
     """lam of q - f(t) = 0 is the force along q, whatever asks for it."""
     outputs = '[outputs]\na = "drive(th)"\nb = "multiplier(motor)"\nc = "-2*reaction_couple(arm)"\n'
-    tie = f"[constraints]\nmotor = {DRIVE}\n{outputs}"
-    found = eomgen.solve(eomgen.loads(DRIVEN_ARM.format(th=SAME_MOTION[1], tie=tie)))
+    constraint = f"[constraints]\nmotor = {DRIVE}\n{outputs}"
+    found = eomgen.solve(eomgen.loads(DRIVEN_ARM.format(th=SAME_MOTION[1], constraint=constraint)))
     assert found["a"].value == pytest.approx(found["b"].value, rel=1e-12)
     assert found["a"].value == pytest.approx(found["c"].value, rel=1e-12)
 
@@ -304,7 +305,7 @@ def test_a_loop_that_never_closes_says_how_near_it_comes():
 
 def test_a_loop_that_closes_elsewhere_says_where():
     """The crank stands away from the base at 179 degrees, and links of 2 and 2 reach 4 < 5: other crank angles do."""
-    with pytest.raises(eomgen.DerivationError, match="all ties close at a = ") as refused:
+    with pytest.raises(eomgen.DerivationError, match="all constraints close at a = ") as refused:
         eomgen.simulate(eomgen.loads(OPEN_FOUR_BAR.format(a=179, l=2)), time=1)
     a, b, c = (math.radians(float(x)) for x in re.findall(r"= (-?[\d.]+) deg", str(refused.value)))
     left = np.exp(1j * a) + 2 * np.exp(1j * (a + b)) - 4 - 2 * np.exp(1j * c)
@@ -323,7 +324,7 @@ def test_what_assembly_moved_is_told_in_the_units_of_the_user():
 
 @pytest.mark.parametrize("name", ["four_bar", "slider_crank", "spatial_four_bar", "andrews_squeezer"])
 def test_each_branch_that_check_lists_is_chosen_by_a_start_near_it(name):
-    """From 0.01 beside each of the ways the loops close on that way, whose ties hold; no two are the same."""
+    """From 0.01 beside each of the ways the loops close on that way, whose constraints hold; no two are the same."""
     model = eomgen.load(MODELS / f"{name}.toml")
     system = eomgen.derive(model).system
     found = branches_of_loops(system, start_of_motion(system).values)
@@ -432,7 +433,7 @@ def test_a_body_on_a_ball_joint_rests_only_below_and_above(sequence):
     assert min(heights) == pytest.approx(-1) and max(heights) == pytest.approx(1)
 
 
-TWO_TIES = """eomgen = 1
+TWO_CONSTRAINTS = """eomgen = 1
 space = "plane"
 [coordinates]
 a = {{ start = 40, speed = 100, unit = "deg" }}
@@ -461,7 +462,7 @@ roll = {{ kind = "rolling", body = "wheel", line = {{ at = [0, 0], normal = [0, 
 @pytest.mark.parametrize("how", ["", "dependent = true,"])
 def test_a_given_speed_moves_only_for_the_ties_that_need_it(how):
     """x' = 1 and ph' = 3 contradict x' + ph'/5 = 0, and move; a' of the linkage, whose b' and c' are free, stays."""
-    system = eomgen.derive(eomgen.loads(TWO_TIES.format(how=how))).system
+    system = eomgen.derive(eomgen.loads(TWO_CONSTRAINTS.format(how=how))).system
     found = start_of_motion(system).values
     assert found["a'"] == math.radians(100) and found["x'"] + found["ph'"] / 5 == pytest.approx(0, abs=1e-15)
 
@@ -515,7 +516,7 @@ points = ["q.end", "W"]
     [
         ("2.0000000001", "'c' stays open: by 1"),
         ("2.00000001", "'c' stays open: by 1"),
-        ("2", "all ties close at"),
+        ("2", "all constraints close at"),
         ("3", "'c' stays open: by 1"),
     ],
 )

@@ -16,7 +16,7 @@ from eomgen.mechanics.equilibrium.equations import static_equations
 from eomgen.mechanics.linearization.first_order import FirstOrder, first_order_of
 from eomgen.mechanics.rigidity import velocity_plan as blocks
 from eomgen.mechanics.rigidity.structure import structure_of
-from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_work
+from eomgen.mechanics.statics.virtual_work import by_virtual_work, requested_reactions
 from eomgen.symbolic.exact.equality import real_values
 from eomgen.symbolic.exact.normal_form import simple_constants
 from eomgen.symbolic.expression.derivative import substituted
@@ -66,16 +66,16 @@ def test_derivatives_at_rest_are_those_of_motions_without_speeds(name: str) -> N
 
 def test_members_have_closed_forms_only_where_they_are_told(monkeypatch: pytest.MonkeyPatch) -> None:
     """A released truss moves as a few blocks: one closed form for each, and one for its scale, not one a member."""
-    asked: list[tuple[str, str]] = []
+    requested: list[tuple[str, str]] = []
     right = blocks._of_ends
-    monkeypatch.setattr(blocks, "_of_ends", lambda plan, ends: asked.append(ends) or right(plan, ends))
+    monkeypatch.setattr(blocks, "_of_ends", lambda plan, ends: requested.append(ends) or right(plan, ends))
     structure = structure_of(system_of(eomgen.load(MODELS / "k_truss.toml")))
-    for named in asked_reactions(structure).values():
-        asked.clear()
+    for named in requested_reactions(structure).values():
+        requested.clear()
         work = by_virtual_work(structure, named)
-        assert work is not None and len(asked) <= 1, named.name
-        told = blocks.blocks_of(work.plan)
-        assert len(asked) <= len(told) + 1 < len(blocks.members_of(structure.system)) / 2
+        assert work is not None and len(requested) <= 1, named.name
+        reported = blocks.blocks_of(work.plan)
+        assert len(requested) <= len(reported) + 1 < len(blocks.members_of(structure.system)) / 2
 
 
 def test_constants_are_made_of_parameters_alone() -> None:

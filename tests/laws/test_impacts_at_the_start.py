@@ -55,10 +55,10 @@ def test_a_rod_thrown_on_its_end_begins_after_the_impact_in_every_verb(rod):
 
 
 def test_what_was_changed_at_the_start_is_told(rod):
-    """An impact without rebound, the tie, the speeds before and after."""
-    told = str(eomgen.documents.rendered(check_document(rod)))
-    assert "changed by an impact without rebound on 'floor': y' = -2.25 (not -3), theta' = -7.5 (not 0)" in told
-    assert "no problems found" in told
+    """An impact without rebound, the constraint, the speeds before and after."""
+    reported = str(eomgen.documents.rendered(check_document(rod)))
+    assert "changed by an impact without rebound on 'floor': y' = -2.25 (not -3), theta' = -7.5 (not 0)" in reported
+    assert "no problems found" in reported
 
 
 def test_a_rope_that_tautens_at_the_start_takes_the_speed_along_it():

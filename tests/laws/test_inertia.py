@@ -462,9 +462,9 @@ def test_a_body_of_parts_swings_like_the_same_body_by_its_numbers():
     made = eomgen.derive(eomgen.Model(**common, bodies={"b": {"parts": parts, "joint": joint}}))
     I = "1/3*m*l^2 + 4*m*(l^2/32 + l^2) - m*(l^2/128 + l^2) - 4*m*(7/8*l)^2"
     given = {"mass": "4*m", "center": ["7/8*l", 0], "inertia": I, "joint": joint}
-    told = eomgen.derive(eomgen.Model(**common, bodies={"b": given}))
+    reported = eomgen.derive(eomgen.Model(**common, bodies={"b": given}))
     assert made.certify().ok
-    assert (made.M - told.M).expand().is_zero_matrix and (made.forcing - told.forcing).expand().is_zero_matrix
+    assert (made.M - reported.M).expand().is_zero_matrix and (made.forcing - reported.forcing).expand().is_zero_matrix
 
 
 # -- the report -------------------------------------------------------------------------------------

@@ -64,26 +64,26 @@ B = { kind = "support", point = "T.b3", normal = [0, 1] }
 )
 
 
-def line(text: str, asked: str) -> InfluenceLine:
-    return influence_line(structure_of(system_of(eomgen.loads(text))), asked)
+def line(text: str, requested: str) -> InfluenceLine:
+    return influence_line(structure_of(system_of(eomgen.loads(text))), requested)
 
 
 def numbers(*scalars) -> list[float]:
     return [float(x) for x in evaluate(scalars, {}, FLOAT)]
 
 
-def by_balance(text: str, asked: str, body: str, place: tuple[str, str]) -> float:
+def by_balance(text: str, requested: str, body: str, place: tuple[str, str]) -> float:
     """The same force, solved for a unit load at the place."""
     head, _, tail = text.partition(f"[bodies.{body}]\n")
     points, _, rest = tail.partition(" }\n")
     text = f'{head}[bodies.{body}]\n{points}, load = ["{place[0]}", "{place[1]}"] }}\n{rest}'
-    text += f'[forces.unit]\nkind = "force"\nforce = [0, -1]\npoint = "{body}.load"\n[outputs]\no = "{asked}"\n'
+    text += f'[forces.unit]\nkind = "force"\nforce = [0, -1]\npoint = "{body}.load"\n[outputs]\no = "{requested}"\n'
     (answer,) = eomgen.solve(eomgen.loads(text)).values()
     assert answer.value is not None, answer.message
     return answer.value
 
 
-GERBER_ASKED = [
+GERBER_REQUESTED = [
     "reaction_n(A)",
     "reaction_n(B)",
     "reaction_y(E)",
@@ -99,7 +99,7 @@ GERBER_ASKED = [
     "shear_force(I, 4, before)",
     "shear_force(I, 4, after)",
 ]
-FRAME_ASKED = [
+FRAME_REQUESTED = [
     "reaction_x(A)",
     "reaction_y(B)",
     "reaction_x(C)",
@@ -112,15 +112,15 @@ FRAME_ASKED = [
 ]
 
 
-@each("text, asked", [*((GERBER, a) for a in GERBER_ASKED), *((FRAME, a) for a in FRAME_ASKED)])
-def test_it_is_the_balance_with_a_unit_load_at_any_place(text, asked):
+@each("text, requested", [*((GERBER, a) for a in GERBER_REQUESTED), *((FRAME, a) for a in FRAME_REQUESTED)])
+def test_it_is_the_balance_with_a_unit_load_at_any_place(text, requested):
     """At a random place of every straight part, of the body that is cut on both sides of the section."""
-    rng = Random(asked)
-    for span in line(text, asked).spans:
+    rng = Random(requested)
+    for span in line(text, requested).spans:
         share = Fraction(rng.randint(1, 9), 10)
         x, y = (to_text(a + share * (b - a)) for a, b in zip(span.start[:2], span.end[:2], strict=True))
         (value,) = numbers(span.at_start + share * (span.at_end - span.at_start))
-        assert value == pytest.approx(by_balance(text, asked, span.name, (x, y)), abs=1e-9), (span.name, x, y)
+        assert value == pytest.approx(by_balance(text, requested, span.name, (x, y)), abs=1e-9), (span.name, x, y)
 
 
 @each("member", ["b0-b1", "t1-t2", "b1-t2", "b2-t2", "t2-b1"])
@@ -172,11 +172,11 @@ WRONG = {
 }
 
 
-@each("asked, error, told", [(a, *rest) for a, rest in WRONG.items()])
-def test_what_has_no_influence_line_is_said(asked, error, told):
+@each("requested, error, reported", [(a, *rest) for a, rest in WRONG.items()])
+def test_what_has_no_influence_line_is_said(requested, error, reported):
     """By name."""
-    with pytest.raises(error, match=told):
-        line(GERBER, asked)
+    with pytest.raises(error, match=reported):
+        line(GERBER, requested)
 
 
 def test_an_indeterminate_reaction_has_none():

@@ -168,7 +168,7 @@ def bar(start: str, speed: str = "0") -> str:
     return HEAD + BAR.replace("START", start).replace("SPEED", speed)
 
 
-def asked(text: str, condition: str) -> tuple[PhaseEquations, StateAtInstant]:
+def requested(text: str, condition: str) -> tuple[PhaseEquations, StateAtInstant]:
     """The instant at which the condition (= 0) holds."""
     each = phase_equations_of(eomgen.loads(text))
     symbols = each.system.symbols
@@ -319,7 +319,7 @@ KNOWN: dict[str, tuple[str, str, dict[str, str], str]] = {
 def test_the_instant_in_closed_form_is_the_textbook_s(name):
     """What is known of the state, as functions of the parameters."""
     text, condition, expected, method = KNOWN[name]
-    each, instant = asked(text, condition)
+    each, instant = requested(text, condition)
     by_name = {node.name: x for node, x in instant.exact.items()}
     for quantity, value in expected.items():
         assert quantity in by_name and is_exactly(each, by_name[quantity], value), quantity
@@ -330,7 +330,7 @@ def test_the_instant_in_closed_form_is_the_textbook_s(name):
 def test_the_instant_in_closed_form_is_the_one_located(name):
     """exact = number, of every coordinate and speed."""
     text, condition, _, _ = KNOWN[name]
-    each, instant = asked(text, condition)
+    each, instant = requested(text, condition)
     values = {each.system.symbols.parameters[n]: x for n, x in numeric_parameters(each.model).items()}
     for node, x in instant.exact.items():
         number = instant.numbers[node]
@@ -341,7 +341,7 @@ def test_the_instant_in_closed_form_is_the_one_located(name):
 def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     """The state of scipy's integration at the same time; E = E(start) also where the time is not known."""
     text, condition, _, _ = KNOWN[name]
-    each, instant = asked(text, condition)
+    each, instant = requested(text, condition)
     symbols = each.system.symbols
     nodes = (*symbols.q, *symbols.u)
     values = {symbols.parameters[n]: x for n, x in numeric_parameters(each.model).items()}
@@ -367,7 +367,7 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
 
 def test_an_instant_without_closed_form_stays_a_number():
     """The landing of a throw with drag is transcendental: y = 0 is known exactly, t, x and the speeds are numbers."""
-    each, instant = asked(HEAD + THROW + DRAG, "y")
+    each, instant = requested(HEAD + THROW + DRAG, "y")
     assert {node.name for node in instant.exact} == {"y"}
     assert instant.method == "integration in time"
     t, y = each.system.symbols.t, each.system.symbols.q[1]
@@ -380,7 +380,9 @@ def test_an_instant_without_closed_form_stays_a_number():
 def test_closed_forms_need_no_values():
     """Without values of the parameters the instant is exact and has no numbers."""
     text = bar("pi/2").replace("m = 1.3", "m = {}").replace("g = 9.81", "g = {}").replace("l = 0.7", "l = {}")
-    each, instant = asked(text.replace("[parameters]", "[parameters]").replace("{}", "{ positive = true }"), "theta")
+    each, instant = requested(
+        text.replace("[parameters]", "[parameters]").replace("{}", "{ positive = true }"), "theta"
+    )
     (u,) = each.system.symbols.u
     assert instant.numbers == {} and is_exactly(each, instant.exact[u], "-sqrt(3*g/l)")
 
@@ -389,7 +391,7 @@ def test_closed_forms_need_no_values():
 def test_what_never_holds_is_refused(condition):
     """A pendulum from the horizontal does not come to 3 rad."""
     with pytest.raises(eomgen.EomgenError):
-        asked(bar("pi/2"), condition)
+        requested(bar("pi/2"), condition)
 
 
 def test_two_freedoms_at_rest_are_refused():

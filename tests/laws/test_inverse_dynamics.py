@@ -132,10 +132,10 @@ def test_computed_torques_give_back_the_accelerations(name):
     for _ in range(5):
         x = rhs.x0 + rng.uniform(-0.3, 0.3, len(rhs.x0))
         free = rhs(0, x, rhs.p0)[len(equations.coordinates) :]
-        asked = [u in {f"{q}'" for q in rated} for u in equations.speeds]
+        requested = [u in {f"{q}'" for q in rated} for u in equations.speeds]
         tau_free = function(0, x, free, rhs.p0)
         assert np.abs(tau_free).max() < 1e-8 * max(1, np.abs(free).max())
-        if all(asked):
+        if all(requested):
             a = rng.uniform(-3, 3, len(free))
             tau = function(0, x, a, rhs.p0, own)
             found = rhs(0, x, rhs.p0, [*own, *tau])[len(equations.coordinates) :]
@@ -173,7 +173,7 @@ LOOPS = {
     "eliminated, moved by what depends": ((MODELS / "four_bar.toml").read_text(), ["gamma"]),
     "multipliers": (FOUR_BAR, ["alpha"]),
     "multipliers, moved at the rocker": (FOUR_BAR, ["gamma"]),
-    "a tie said twice": (TWICE, ["beta"]),
+    "a constraint said twice": (TWICE, ["beta"]),
     "slider-crank": ((MODELS / "slider_crank.toml").read_text(), ["x"]),
 }
 
@@ -183,7 +183,7 @@ LOOPS = {
 )
 @pytest.mark.parametrize("name", LOOPS)
 def test_torques_come_back_from_the_accelerations_that_they_give(name, target):
-    """tau -> a = rhs(tau) -> inverse(a) = tau, where ties close and follow from one another."""
+    """tau -> a = rhs(tau) -> inverse(a) = tau, where constraints close and follow from one another."""
     text, actuated = LOOPS[name]
     model = eomgen.loads(text)
     rhs = eomgen.derive(pushed(model, actuated)).rhs("numpy")
@@ -277,7 +277,7 @@ acceleration = [0, -9.81]
 @pytest.mark.parametrize(
     ("text", "actuated", "what"),
     [
-        (FOUR_BAR, [], "ties close loops, and nothing says which coordinates are actuated"),
+        (FOUR_BAR, [], "constraints close loops, and nothing says which coordinates are actuated"),
         (FOUR_BAR, ["alpha", "beta"], "2 actuated, and 1 degrees of freedom: how the actuators share"),
         (FOUR_BAR, ["alpha", "alpha"], "how the actuators share"),
         (FOUR_BAR, ["alhpa"], "there is no coordinate, speed, input or hinged body 'alhpa'"),
@@ -318,16 +318,16 @@ def test_emitted_inverse_dynamics_compiles_as_it_is_and_agrees(tmp_path, name, o
     subprocess.run([str(tmp_path / "a")], check=True)
     both = [str(tmp_path / f"{name}_{kind}.c") for kind in ("rhs", "reactions", "inverse")]
     subprocess.run([*cc, "-shared", "-fPIC", "-o", str(tmp_path / "all.so"), *both, "-lm"], check=True)
-    told = json.loads((tmp_path / "test_vectors.json").read_text())["inverse"]
+    reported = json.loads((tmp_path / "test_vectors.json").read_text())["inverse"]
     spec = importlib.util.spec_from_file_location("emitted", tmp_path / f"{name}_inverse.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     function = getattr(module, f"{name}_inverse")
-    assert len(told["vectors"]) >= 4
-    for v in told["vectors"]:
+    assert len(reported["vectors"]) >= 4
+    for v in reported["vectors"]:
         found = function(v["t"], v["x"], v["a"], v["p"], v["inputs"])
         assert np.abs(np.array(found) - v["tau"]).max() <= v["tolerance"] * max(1, *map(abs, v["tau"]))
-        assert len(v["a"]) == len(told["accelerations"])
+        assert len(v["a"]) == len(reported["accelerations"])
 
 
 def test_names_of_parameters_do_not_meet_those_of_the_arrays(tmp_path):
@@ -355,9 +355,9 @@ def test_along_a_given_motion_it_gives_what_drives_that_motion(name):
     laws = {q: f"0.{k}*sin({k}*t) + 0.1*t" for k, q in enumerate(model.coordinates, start=1)}
     moved = {q: eomgen.Coordinate(motion=law) for q, law in laws.items()}
     still = {each: replace(part, value=0) for each, part in model.inputs.items()}
-    asked = {f"d{k}": eomgen.Output(value=f"drive({q})") for k, q in enumerate(laws)}
+    requested = {f"d{k}": eomgen.Output(value=f"drive({q})") for k, q in enumerate(laws)}
     changed = {"inputs": Table(still)} if still else {}
-    driven = replace(model, coordinates=Table(moved), outputs=Table(asked), linearize=None, **changed)
+    driven = replace(model, coordinates=Table(moved), outputs=Table(requested), linearize=None, **changed)
     t = np.linspace(0, 2, 201)
     run = eomgen.simulate(driven, time=2, samples=t)
     inverse = eomgen.inverse_dynamics(replace(model, **changed))

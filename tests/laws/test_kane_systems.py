@@ -1,4 +1,5 @@
-"""Systems of sympy.physics.mechanics, PyDy and of Kane & Levinson: speeds, velocity ties, what their forces are."""
+"""Systems of sympy.physics.mechanics, PyDy and of Kane & Levinson: speeds, velocity constraints, what their forces
+are."""
 
 from __future__ import annotations
 
@@ -220,7 +221,7 @@ def test_a_snakeboard_whose_board_follows_moves_as_by_lagrange_with_multipliers(
     M = np.diag([3 * mass, 3 * mass, mass * length**2 / 2 + 3 * inertia, inertia, inertia])
     M[2, 3:] = M[3:, 2] = inertia
 
-    def ties(q: np.ndarray) -> np.ndarray:
+    def constraints(q: np.ndarray) -> np.ndarray:
         left = [(-math.sin(q[2] + q[k]), math.cos(q[2] + q[k])) for k in (3, 4)]
         sides = (length / 2, -length / 2)
         return np.array(
@@ -231,9 +232,9 @@ def test_a_snakeboard_whose_board_follows_moves_as_by_lagrange_with_multipliers(
         )
 
     q = np.array([0.1, -0.2, q3, q4, q5])
-    J, spins = ties(q), np.array([2 * 0.9 / length, 0.3, -0.7])
+    J, spins = constraints(q), np.array([2 * 0.9 / length, 0.3, -0.7])
     rates = np.concatenate([np.linalg.solve(J[:, :2], -J[:, 2] * spins[0]), spins])
-    bent = (ties(q + 1e-6 * rates) - ties(q - 1e-6 * rates)) @ rates / 2e-6
+    bent = (constraints(q + 1e-6 * rates) - constraints(q - 1e-6 * rates)) @ rates / 2e-6
     system = np.block([[M, -J.T], [J, np.zeros((2, 2))]])
     solved = np.linalg.solve(system, np.concatenate([np.zeros(5), -bent]))
     found = {name: answer.value for name, answer in eomgen.solve(eomgen.loads(SNAKEBOARD)).items()}
@@ -381,7 +382,7 @@ def test_ties_that_are_eliminated_together_have_their_multipliers():
     answers = eomgen.solve(eomgen.loads(DRIVE))
     found = [answers[name].value for name in ("left", "right", "lam_l", "lam_r")]
     assert found == pytest.approx([*spins, *((T - J * spins) / r)], rel=1e-12)
-    assert "the tie 'l' acts on coordinates and at no place" in answers["N"].message
+    assert "the constraint 'l' acts on coordinates and at no place" in answers["N"].message
 
 
 def test_the_centre_of_a_body_is_not_drawn_from_ties_in_which_other_rates_stand():
@@ -472,7 +473,7 @@ def test_a_tendon_runs_over_a_radius_that_is_less_than_a_length_in_numbers():
 
 
 def test_accelerations_do_not_stand_in_a_velocity_tie():
-    """A tie of velocities is linear in rates and speeds; their derivatives are named for what they are."""
+    """A constraint of velocities is linear in rates and speeds; their derivatives are named for what they are."""
     with pytest.raises(ModelError, match=r"\"?'v'' \(an acceleration\) cannot stand in the rate of constraint 'edge'"):
         eomgen.loads(SLEIGH.replace("RATE", "v' - 1"))
 
@@ -502,7 +503,7 @@ fast = "phi'"
 
 
 def test_declared_speeds_beside_dependent_coordinates_move_as_rates_do():
-    """u = 2 x' and phi by a tie, through two dead centres: the motion of x' alone."""
+    """u = 2 x' and phi by a constraint, through two dead centres: the motion of x' alone."""
     speeds = eomgen.loads(SLIDING.replace("SPEEDS", """speeds.u = { rate = "2*x'", start = 3 }""").replace("SPEED", ""))
     rates = eomgen.loads(SLIDING.replace("SPEEDS", "").replace("SPEED", ", speed = 1.5"))
     one, other = (eomgen.simulate(model, time=1.5) for model in (speeds, rates))

@@ -1,4 +1,4 @@
-"""Runs with ties: they stay closed, energy stays, by every method and for long; published motions are met."""
+"""Runs with constraints: they stay closed, energy stays, by every method and for long; published motions are met."""
 
 from __future__ import annotations
 
@@ -146,7 +146,7 @@ def test_a_knife_edge_keeps_its_direction():
 
 @pytest.mark.parametrize("method", usual(["RK45", "Radau", "BDF", "LSODA"], 2, 1))
 def test_every_method_keeps_the_loop_closed(method):
-    """Against DOP853 at a much finer tolerance; samples between the steps lie on the ties as well."""
+    """Against DOP853 at a much finer tolerance; samples between the steps lie on the constraints as well."""
     fine = motion(FOUR_BAR, 1, rtol=1e-12, atol=1e-12)
     found = motion(FOUR_BAR, 1, method=method, rtol=1e-7, atol=1e-7)
     assert found.gap <= 1e-7 and found.gap_rate <= 1e-7

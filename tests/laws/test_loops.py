@@ -95,7 +95,7 @@ def test_a_hinge_that_is_there_twice_changes_nothing():
     assert two.x == pytest.approx(one.x, abs=1e-7)
 
 
-# -- starts at which the ties do not hold yet -----------------------------------------------------------
+# -- starts at which the constraints do not hold yet -----------------------------------------------------------
 
 
 CRANKS = """

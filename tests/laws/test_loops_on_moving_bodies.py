@@ -186,7 +186,7 @@ SUMS = (
     "reaction_z(boom)",
     "reaction_couple_y(rod)",
 )
-ASKED = "[outputs]\nqdd = \"q''\"\n" + "".join(f'r{k} = "{name}"\n' for k, name in enumerate(SUMS))
+REQUESTED = "[outputs]\nqdd = \"q''\"\n" + "".join(f'r{k} = "{name}"\n' for k, name in enumerate(SUMS))
 
 
 @pytest.mark.parametrize(
@@ -204,7 +204,7 @@ def test_a_slewing_base_with_a_dependent_loop_keeps_its_angular_momentum(text):
 @pytest.mark.parametrize("text", usual([SLEWING, IN_GROUND_AXES], 2))
 def test_determinate_reactions_do_not_hang_on_redundant_rows(text):
     """The same machine without the row that follows has the same accelerations and determinate reactions."""
-    found, right = (eomgen.solve(eomgen.loads(x + ASKED)) for x in (text, REGULAR))
+    found, right = (eomgen.solve(eomgen.loads(x + REQUESTED)) for x in (text, REGULAR))
     for name in ("qdd", *(f"r{k}" for k in range(len(SUMS)))):
         assert found[name].value == pytest.approx(right[name].value, rel=1e-10, abs=1e-8)
     derived = eomgen.derive(eomgen.loads(text))
@@ -223,7 +223,7 @@ def test_a_run_passes_the_place_at_which_a_redundant_row_vanishes_in_ground_axes
 def test_a_closing_row_that_joints_hold_alone_is_named():
     """2 = 1 + 1: the count by formula is short of the rank by the rows that follow."""
     freedom = eomgen.freedom_of(eomgen.loads(SLEWING))
-    assert [(row.tie, row.number, row.by_joints) for row in freedom.redundant] == [("C", 2, True)]
+    assert [(row.constraint, row.number, row.by_joints) for row in freedom.redundant] == [("C", 2, True)]
     assert freedom.by_rank == freedom.by_formula + len(freedom.redundant) == 2
 
 
@@ -248,13 +248,15 @@ points = ["door.high"]
 axis = [0, 0, 1]
 """
     freedom = eomgen.freedom_of(eomgen.loads(door))
-    assert [(row.tie, row.number, row.others) for row in freedom.redundant] == [("H", k, ("L",)) for k in range(1, 6)]
+    assert [(row.constraint, row.number, row.others) for row in freedom.redundant] == [
+        ("H", k, ("L",)) for k in range(1, 6)
+    ]
     assert freedom.by_rank == freedom.by_formula + len(freedom.redundant) == 1
 
 
 @pytest.mark.parametrize("text", [SLEWING, IN_GROUND_AXES], ids=["pin", "ground"])
 def test_inverse_dynamics_counts_freedoms_where_the_loops_are_closed(text):
-    """Two freedoms take two actuators: an entry that only vanishes where the others hold is no row of J."""
+    """Two degrees of freedom take two actuators: an entry that only vanishes where the others hold is no row of J."""
     found = eomgen.derive(eomgen.loads(text)).inverse_dynamics(actuated=("q", "s"))
     assert found.names == ("q", "s")
 
@@ -262,14 +264,14 @@ def test_inverse_dynamics_counts_freedoms_where_the_loops_are_closed(text):
 def test_accelerations_by_a_row_that_vanishes_where_the_others_hold_are_contradicted(monkeypatch):
     """The error: d_y, whose J vanishes where d_x and d_z hold, taken for independent: q'' = -2 tan q q'^2."""
 
-    def as_found(ties, state):
-        values = floats_of(evaluate([x for row in ties.J for x in row], state, fifty_digits()))
-        return np.array(values).reshape(len(ties.closing), -1)
+    def as_found(constraints, state):
+        values = floats_of(evaluate([x for row in constraints.J for x in row], state, fifty_digits()))
+        return np.array(values).reshape(len(constraints.closing), -1)
 
     monkeypatch.setattr(elimination, "rows_where_closed", as_found)
-    model = eomgen.loads(IN_GROUND_AXES.replace(*FOLLOWING) + ASKED)
+    model = eomgen.loads(IN_GROUND_AXES.replace(*FOLLOWING) + REQUESTED)
     derived = eomgen.derive(model)
-    assert "accelerations are those of the free bodies, all ties holding at once" in _failing(derived.certify())
+    assert "accelerations are those of the free bodies, all constraints holding at once" in _failing(derived.certify())
     assert _failing(eomgen.solve(model).certify())
     code = eomgen.generate(model, targets=("numpy",)).certify()
     assert any("numpy" in name for name in _failing(code))

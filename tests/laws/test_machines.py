@@ -1,7 +1,8 @@
 """Machines as their engineers write them, each of features that rarely meet, against the oracle of the combinations.
 
 Accelerations, determinate reactions and energies of every machine are those of maximal coordinates, at its start and at
-states near it that keep every tie; what `solve`, `reactions`, runs, small motions and code say of one quantity is one
+states near it that keep every constraint; what `solve`, `reactions`, runs, small motions and code say of one quantity
+is one
 number, the oracle's.
 """
 
@@ -26,8 +27,8 @@ QUICK = (  # of every kind of feature one
     "geneva_drive", "governor_on_turntable", "quarter_car", "road_train", "screw_press", "stewart_on_ship",
     "washing_machine",
 )  # fmt: skip
-ASKED = [*MACHINES] if ALL else sorted({*QUICK, *[*MACHINES][::6]})
-EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in ASKED]
+REQUESTED = [*MACHINES] if ALL else sorted({*QUICK, *[*MACHINES][::6]})
+EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in REQUESTED]
 
 
 def test_there_are_thirty_machines_and_each_says_what_it_is():

@@ -1,4 +1,4 @@
-"""Laws of mechanisms at one configuration: velocities under ties, centres of rotation, what is left open."""
+"""Laws of mechanisms at one configuration: velocities under constraints, centres of rotation, what is left open."""
 
 from __future__ import annotations
 
@@ -60,10 +60,10 @@ def test_linkages_move_as_their_ties_allow(kind, seed):
     rng = Random(seed)
     linkage: Linkage = kind(rng)
     points = [f"{body}.{point}" for body, own in linkage.bodies.items() for point in own]
-    asked = {f"w_{b}": f"omega({b})" for b in linkage.bodies} | {f"e_{b}": f"epsilon({b})" for b in linkage.bodies}
+    requested = {f"w_{b}": f"omega({b})" for b in linkage.bodies} | {f"e_{b}": f"epsilon({b})" for b in linkage.bodies}
     for k, point in enumerate(points):
-        asked |= {f"{f}_{k}": f"{f}({point})" for f in ("vx", "vy", "ax", "ay")}
-    outputs = "[outputs]\n" + "".join(f'{name} = "{value}"\n' for name, value in asked.items())
+        requested |= {f"{f}_{k}": f"{f}({point})" for f in ("vx", "vy", "ax", "ay")}
+    outputs = "[outputs]\n" + "".join(f'{name} = "{value}"\n' for name, value in requested.items())
     w, e = 2.0, -0.75
     answers = solved(linkage.text(given("2", "-3/4") + outputs, rng))
     assert all(answer.exact is not None for answer in answers.values())
@@ -186,7 +186,7 @@ def test_a_slider_crank_at_its_dead_centre():
 
 
 def test_bodies_that_move_as_one_are_one_block():
-    """A bar welded to the crank by a clamp turns with it; a tripod of ties holds a third body still."""
+    """A bar welded to the crank by a clamp turns with it; a tripod of constraints holds a third body still."""
     text = (
         HEAD
         + BODIES
@@ -271,7 +271,7 @@ def test_a_rod_between_two_balls_in_space_may_spin_and_its_ends_move_all_the_sam
     )
     found = solved(text)
     assert found["v"].exact == "-6"  # the parts of both velocities along the rod agree
-    assert "2 freedoms, 1 rate given" in (found["w"].message or "")
+    assert "2 degrees of freedom, 1 rate given" in (found["w"].message or "")
 
 
 @each(
@@ -280,7 +280,7 @@ def test_a_rod_between_two_balls_in_space_may_spin_and_its_ends_move_all_the_sam
         ('"vx(plate.A) = 1", "vx(plate.B) = 2"', "'vx(plate.B) = 2' contradicts 'vx(plate.A) = 1'"),
         ('"speed(plate.A) = 1"', "'speed(plate.A) = 1' is not linear in what it gives"),
         ('"ax(plate.A) = 1"', "'ax(plate.A) = 1' holds an acceleration"),
-        ('"vx(plate.A) = 1"', "3 freedoms, 1 rate given"),
+        ('"vx(plate.A) = 1"', "3 degrees of freedom, 1 rate given"),
     ],
 )
 def test_what_is_given_too_much_too_little_or_wrongly_is_named(equations, words):
@@ -296,7 +296,7 @@ def test_a_given_velocity_that_the_ties_forbid_names_them():
             '[given]\nvelocity = "vy(I.A) = 1"\n[outputs]\nw = "omega(I)"\n'
         )
     )
-    assert "'vy(I.A) = 1' contradicts the tie 'O'" in message(text)
+    assert "'vy(I.A) = 1' contradicts the constraint 'O'" in message(text)
 
 
 def test_points_that_do_not_meet_are_an_error():
@@ -333,7 +333,7 @@ def test_one_freedom_needs_no_rate_and_two_need_one_each(tmp_path):
     assert result.exit_code == 0
     assert json.loads(result.stdout)["rate"]["of"] == "omega(II)"
     result = run(file, ring)
-    assert result.exit_code == 3 and "2 freedoms, 0 rates given" in result.stderr
+    assert result.exit_code == 3 and "2 degrees of freedom, 0 rates given" in result.stderr
     result = run(file, ring, "--given", "omega(I) = 1", "--given", "omega(IV) = -1")
     assert result.exit_code == 0 and "Given: omega(I) = 1, omega(IV) = -1." in result.stdout
 

@@ -71,7 +71,7 @@ KNOWN = {
         "v_out": f"sqrt(2*g*{HEIGHT})",
     },
 }
-ASKED = [(name, output) for name, outputs in KNOWN.items() for output in outputs]
+REQUESTED = [(name, output) for name, outputs in KNOWN.items() for output in outputs]
 
 
 @cache
@@ -101,7 +101,7 @@ def states(model: eomgen.Model) -> list[dict[str, Any]]:
     ]
 
 
-@pytest.mark.parametrize(("name", "output"), ASKED)
+@pytest.mark.parametrize(("name", "output"), REQUESTED)
 def test_an_answer_is_the_textbooks(name, output):
     """exact = known at random states, 30 digits."""
     model, answers = loaded(name)
@@ -134,8 +134,8 @@ def test_the_outputs_of_every_classic_are_answered(path):
 def test_a_four_bar_keeps_its_energy_to_another_position():
     """T + V at alpha = pi is that of the start, though its loop closes in no short formula there."""
     energy = "kinetic_energy() + potential_energy()"
-    asked = {"before": {"value": energy, "at": "t = 0"}, "there": {"value": energy, "at": "alpha = pi"}}
-    answers = eomgen.solve(replace(loaded("four_bar")[0], outputs=asked))
+    requested = {"before": {"value": energy, "at": "t = 0"}, "there": {"value": energy, "at": "alpha = pi"}}
+    answers = eomgen.solve(replace(loaded("four_bar")[0], outputs=requested))
     assert answers["there"].method == "energy theorem", answers["there"].message
     assert answers["there"].value == pytest.approx(answers["before"].value, rel=1e-12)
 

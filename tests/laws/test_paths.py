@@ -6,8 +6,8 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
+from constrained import GIVEN, R, l, system_with
 from moving import at
-from tied import GIVEN, R, l, system_with
 
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 

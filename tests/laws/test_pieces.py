@@ -125,7 +125,7 @@ def where(text: str, tmp_path: Path) -> str:
 
 
 @pytest.mark.parametrize(
-    ("system", "told"),
+    ("system", "reported"),
     [
         (BALL, "everywhere"),
         (BALL + FLOOR, "y >= 0"),
@@ -139,9 +139,9 @@ def where(text: str, tmp_path: Path) -> str:
         (STEP, "x >= 0"),
     ],
 )
-def test_energy_stays_in_the_pieces_in_which_nothing_without_a_potential_acts(system, told, tmp_path):
+def test_energy_stays_in_the_pieces_in_which_nothing_without_a_potential_acts(system, reported, tmp_path):
     """d(T + V)/dt = Q_nc . u, and Q_nc = max(0, -k y) is 0 while y >= 0 alone."""
-    assert set(where(system, tmp_path).split(" and ")) == set(told.split(" and "))
+    assert set(where(system, tmp_path).split(" and ")) == set(reported.split(" and "))
 
 
 def test_energy_in_a_loop_stays_while_its_stop_is_free(tmp_path):
@@ -224,15 +224,15 @@ def test_an_answer_by_the_energy_of_one_piece_is_given_where_the_motion_stays_th
     assert found.method == "energy theorem, while theta <= 1" and found.exact is not None
 
 
-@pytest.mark.parametrize("asked", [BALL + FLOOR + '[outputs]\nv2 = { value = "y\'^2", from = "rest" }\n', BUNGEE])
-def test_the_proof_of_answers_sees_an_energy_that_stays_in_one_piece_alone(asked, tmp_path, monkeypatch):
+@pytest.mark.parametrize("requested", [BALL + FLOOR + '[outputs]\nv2 = { value = "y\'^2", from = "rest" }\n', BUNGEE])
+def test_the_proof_of_answers_sees_an_energy_that_stays_in_one_piece_alone(requested, tmp_path, monkeypatch):
     """Planted: conservation is decided at random states; y'^2 = 2 g (1 - y) fails where the floor is touched."""
 
     def at_random(equations, scalars, decide):
         return pieces.EVERYWHERE if decide(tuple(scalars)) else pieces.NOWHERE
 
     monkeypatch.setattr(wellposed, "where_holds", at_random)
-    found = eomgen.solve(at(asked, tmp_path))
+    found = eomgen.solve(at(requested, tmp_path))
     assert found["v2"].exact is not None and found.certify().ok is False
 
 
@@ -256,11 +256,11 @@ def test_what_fails_where_the_motion_starts_is_asked_in_no_other_piece(tmp_path)
     (F,) = equations.forcing
     division = pieces.division_of(equations, (F,))
     assert division is pieces.division_of(equations, (2 * F + 1,))
-    asked = []
-    assert division.where(lambda piece: asked.append(piece) is not None) == pieces.NOWHERE
-    assert asked == [division.start]
-    assert division.where(lambda piece: asked.append(piece) is None) == pieces.EVERYWHERE
-    assert set(asked) == set(division.found) and len(division.found) == 2
+    requested = []
+    assert division.where(lambda piece: requested.append(piece) is not None) == pieces.NOWHERE
+    assert requested == [division.start]
+    assert division.where(lambda piece: requested.append(piece) is None) == pieces.EVERYWHERE
+    assert set(requested) == set(division.found) and len(division.found) == 2
 
 
 def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
@@ -396,7 +396,7 @@ def test_states_in_which_ties_close_do_so_to_their_last_digits(tmp_path):
     T = { kind = "support", point = "b.Q", normal = [0, 0, 1] }
     """
     graph = eomgen.derive(at(text, tmp_path)).graph
-    norms = norms_of(graph.system.ties)
+    norms = norms_of(graph.system.constraints)
     for _, supply in Trials(graph).states.supplies:
         for place, _ in zip(supply, range(2), strict=False):
             assert all(abs(x) < CERTAIN_AT_50**1.2 for x in evaluate(norms, place.state, fifty_digits()))
@@ -431,5 +431,5 @@ def test_a_line_load_on_a_rod_that_moves_is_q_times_its_length(tmp_path):
     forces.wind = { kind = "distributed", body = "rod", between = ["start", "end"], intensity = [0, "-w0"] }
     """
     for length in ("0.5", "{}"):  # without a value it is a length all the same
-        told = printed(text.replace("l = 0.5", f"l = {length}"), tmp_path)
-        assert "abs(l)" not in told and "sqrt(l^2)" not in told and "Fy(wind 1) = -1/2*l*w0" in told
+        reported = printed(text.replace("l = 0.5", f"l = {length}"), tmp_path)
+        assert "abs(l)" not in reported and "sqrt(l^2)" not in reported and "Fy(wind 1) = -1/2*l*w0" in reported

@@ -18,7 +18,7 @@ from eomgen.documents.proven import proven, proven_for_machines
 from eomgen.errors import EomgenError
 
 MODELS = sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))
-ASKED = usual(MODELS, 12, 5)
+REQUESTED = usual(MODELS, 12, 5)
 VERBS = ("inertia", "kinematics", "linearize", "statics")
 
 
@@ -32,7 +32,7 @@ def document(verb: str, path: Path) -> Document | None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("path", ASKED, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", REQUESTED, ids=lambda path: path.stem)
 def test_nothing_that_leaves_is_contradicted(path: Path):
     found = {verb: document(verb, path) for verb in VERBS}
     assert any(found.values()), "every model is a question to one of them"
@@ -40,6 +40,7 @@ def test_nothing_that_leaves_is_contradicted(path: Path):
 
 
 def test_small_motions_about_a_change_point_are_refused():
-    """Bricard's loop comes to rest folded, where its ties leave two freedoms to first order and no motion has both."""
+    """Bricard's loop comes to rest folded, where its constraints leave two degrees of freedom to first order and no
+    motion has both."""
     with pytest.raises(EomgenError, match="the place is a change point"):
         eomgen.linearize(MODELS[0].parent / "bricard.toml")

@@ -85,8 +85,8 @@ def test_code_that_is_wrong_is_not_written(monkeypatch, tmp_path):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     words = ["codegen", str(MODELS / "simple_pendulum.toml"), "-o", str(tmp_path / "out"), "--json"]
     found = CliRunner().invoke(main, words)
-    told = json.loads(found.stdout)
-    assert found.exit_code == 3 and told["files"] == [] and told["certificate"]["ok"] is False
+    reported = json.loads(found.stdout)
+    assert found.exit_code == 3 and reported["files"] == [] and reported["certificate"]["ok"] is False
     assert not (tmp_path / "out").exists()
     free = CliRunner().invoke(main, [*words, "--no-certify"])
     assert free.exit_code == 0 and len(json.loads(free.stdout)["files"]) == 10

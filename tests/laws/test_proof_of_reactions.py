@@ -18,8 +18,8 @@ START = "formulas, read back, give the numbers at the start"
 STATE = "numbers are those of the formulas at the state"
 
 
-def reactions(name: str, **asked):
-    return eomgen.reactions(eomgen.load(MODELS / f"{name}.toml"), **asked)
+def reactions(name: str, **requested):
+    return eomgen.reactions(eomgen.load(MODELS / f"{name}.toml"), **requested)
 
 
 def failing(found) -> set[str]:

@@ -19,7 +19,7 @@ from eomgen.symbolic.expression.formula import over
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
-HELD = "the multipliers at every place of rest hold the free bodies"
+HELD = "the multipliers at every equilibrium hold the free bodies"
 BEHIND = "N, V and M are the same from the other end"
 EXTREME = "where M has an extreme V is 0, within a part"
 BLOCKS = "blocks of released structures move as one each, and differ"

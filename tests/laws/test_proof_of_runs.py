@@ -24,8 +24,8 @@ MODELS = Path(__file__).parent.parent.parent / "models"
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 
 
-def run_of(name: str, **asked):
-    return eomgen.simulate(eomgen.load(MODELS / f"{name}.toml"), time=1, target="numpy", **asked)
+def run_of(name: str, **requested):
+    return eomgen.simulate(eomgen.load(MODELS / f"{name}.toml"), time=1, target="numpy", **requested)
 
 
 def bent(run, phase: int, change):
@@ -131,7 +131,7 @@ def test_a_loop_that_opens_is_seen():
         x[-1, 1] += 1e-5
         return x
 
-    assert "the ties stay closed" in failing(bent(run_of("four_bar"), 0, aside))
+    assert "the constraints stay closed" in failing(bent(run_of("four_bar"), 0, aside))
 
 
 def test_a_quaternion_that_loses_its_norm_is_seen():
@@ -195,7 +195,8 @@ def test_a_column_of_reactions_that_is_wrong_is_seen(name):
 
 
 def test_rows_that_pull_are_proven_with_their_power():
-    """Baumgarte's rows take power lam . (J u + sigma) where ties are open; the equations themselves hold as derived."""
+    """Baumgarte's rows take power lam . (J u + sigma) where constraints are open; the equations themselves hold as
+    derived."""
     certificate = run_of("bricard", stabilization="baumgarte").certify()
     assert certificate.ok, str(certificate)
 

@@ -222,4 +222,4 @@ def test_gears_that_do_not_mesh_where_they_start_are_told(monkeypatch):
         return replace(row, gap=row.gap - Fraction(1, 10))
 
     monkeypatch.setattr(gear, "same_turn", off)
-    assert "ties that keep what is at the start are closed there" in failing(GEARS)
+    assert "constraints that keep what is at the start are closed there" in failing(GEARS)

@@ -64,7 +64,8 @@ def test_a_printed_reaction_is_worth_what_the_balance_of_all_bodies_gives(monkey
 
 @pytest.mark.parametrize("name", ["ch18_p5", "car_axis"])
 def test_a_side_of_a_joint_hangs_on_the_ground_by_what_presses_there_too(name):
-    """A string over a peg, a tie between coordinates: what they do to the ground is not balanced among the bodies."""
+    """A string over a peg, a constraint between coordinates: what they do to the ground is not balanced among the
+    bodies."""
     assert statuses(name)[PRINTED] == "holds"
 
 

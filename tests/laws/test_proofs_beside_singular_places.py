@@ -41,7 +41,7 @@ def test_equations_are_not_called_wrong_at_a_dead_centre(start, near):
 
 @pytest.mark.parametrize(("x", "near"), [("0.4", "0"), ("0.2", "3.14")])
 def test_a_dead_centre_is_named_where_velocities_and_small_motions_are_asked(x, near):
-    """0/0 of rates has a name: the tie, the coordinates, the place."""
+    """0/0 of rates has a name: the constraint, the coordinates, the place."""
     model = eomgen.loads(PLANE + ENGINE.replace("START", x).replace("NEAR", near))
     words = "'pin' does not determine 'p', 'b' at the .*dead centre"
     with pytest.raises(eomgen.DerivationError, match=words):
@@ -117,7 +117,7 @@ def test_a_guess_of_a_dependent_coordinate_is_no_place():
 
 
 def test_small_motions_about_the_cusp_of_a_cycloid_are_refused_by_name():
-    """M = 2 m R^2 (1 + cos u) = 0 at u = pi, the nearest place of rest of a start at 2."""
+    """M = 2 m R^2 (1 + cos u) = 0 at u = pi, the nearest equilibrium of a start at 2."""
     text = """
     parameters = { R = 0.5 }
     coordinates = { u = 2.0 }
@@ -152,7 +152,7 @@ def test_a_string_is_not_proven_where_it_would_be_too_long():
 
 @pytest.mark.parametrize(("k", "kind"), [("m*9.81*b/(a*h)", "indifferent"), ("1.01*m*9.81*b/(a*h)", "stable")])
 def test_a_spring_of_zero_length_may_hold_an_arm_in_every_place(k: str, kind: str) -> None:
-    """LaCoste 1934: k a h = m g b; one per cent more, and two places of rest are left, as the formula says."""
+    """LaCoste 1934: k a h = m g b; one per cent more, and two equilibria are left, as the formula says."""
     found = eomgen.statics(eomgen.loads(LACOSTE.replace("K", k)))
     assert found.certify().ok
     places = found.found.found

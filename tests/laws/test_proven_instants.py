@@ -15,7 +15,7 @@ from eomgen.mechanics.instant import kinematic_state as body_motion
 from eomgen.mechanics.instant import kinematic_state as relative_motion
 from eomgen.questions import velocities
 from eomgen.symbolic.expression.spatial import times
-from eomgen.verbs.kinematics import kinematics_asked as verb
+from eomgen.verbs.kinematics import kinematics_requested as verb
 from eomgen.verbs.outcome import shown
 
 pytestmark = pytest.mark.slow
@@ -24,9 +24,9 @@ CRANK = MODELS / "slider_crank.toml"
 HOOP = MODELS / "bead_on_turning_hoop.toml"
 
 
-def wrong_checks(path: Any, **asked: Any) -> str:
+def wrong_checks(path: Any, **requested: Any) -> str:
     """The names of the checks that fail."""
-    certificate = eomgen.kinematics(eomgen.load(path), **asked).certify()
+    certificate = eomgen.kinematics(eomgen.load(path), **requested).certify()
     return "; ".join(check.name for check in certificate.checks if check.ok is False)
 
 

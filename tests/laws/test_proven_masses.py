@@ -25,9 +25,11 @@ PLATE = MODELS / "seeds" / "ch13_p1.toml"
 FRAME = MODELS / "seeds" / "ch18_p2.toml"
 
 
-def wrong_checks(path: Any, **asked: Any) -> list[str]:
+def wrong_checks(path: Any, **requested: Any) -> list[str]:
     """The checks that fail."""
-    return [check.name for check in eomgen.inertia(eomgen.load(path), **asked).certify().checks if check.ok is False]
+    return [
+        check.name for check in eomgen.inertia(eomgen.load(path), **requested).certify().checks if check.ok is False
+    ]
 
 
 @pytest.fixture

@@ -65,8 +65,8 @@ def test_a_place_that_is_no_reference_is_seen() -> None:
 def test_coordinates_asked_alone_move_as_in_the_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     """Routh's reduction of the cart under a pendulum: K = K_cc, M = M_cc - M_co M_oo^-1 M_oc."""
     model = eomgen.load(MODELS / "cart_pole.toml")
-    asked = next(name for name in model.coordinates if name not in ("x", "s"))
-    assert eomgen.linearize(model, coordinates=(asked,)).certify()
+    requested = next(name for name in model.coordinates if name not in ("x", "s"))
+    assert eomgen.linearize(model, coordinates=(requested,)).certify()
     right = linearization.restricted
 
     def planted(*given: Any) -> Any:
@@ -74,7 +74,7 @@ def test_coordinates_asked_alone_move_as_in_the_whole(monkeypatch: pytest.Monkey
         return replace(found, M=scaled(found.M))
 
     monkeypatch.setattr(linearization, "restricted", planted)
-    assert not eomgen.linearize(model, coordinates=(asked,)).certify()
+    assert not eomgen.linearize(model, coordinates=(requested,)).certify()
 
 
 def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,4 +1,4 @@
-"""The proof of `statics` sees errors that are planted in reactions, section forces, influence lines, places of rest."""
+"""The proof of `statics` sees errors that are planted in reactions, section forces, influence lines, equilibria."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ BEAM = MODELS / "gerber_beam.toml"
 PENDULUM = MODELS / "simple_pendulum.toml"
 
 
-def wrong_checks(path: Any, **asked: Any) -> str:
+def wrong_checks(path: Any, **requested: Any) -> str:
     """The names of the checks that fail."""
-    certificate = eomgen.statics(eomgen.load(path), **asked).certify()
+    certificate = eomgen.statics(eomgen.load(path), **requested).certify()
     return "; ".join(check.name for check in certificate.checks if check.ok is False)
 
 
 def test_a_beam_an_influence_line_and_places_of_rest_hold() -> None:
     """Each with its own checks."""
     body = next(iter(eomgen.load(BEAM).bodies))
-    for asked in (None, "reaction_y(E)", f"bending_moment({body}, 1)", f"shear_force({body}, 1)"):
-        assert eomgen.statics(eomgen.load(BEAM), influence=asked).certify()
+    for requested in (None, "reaction_y(E)", f"bending_moment({body}, 1)", f"shear_force({body}, 1)"):
+        assert eomgen.statics(eomgen.load(BEAM), influence=requested).certify()
     assert eomgen.statics(eomgen.load(PENDULUM)).certify()
 
 
@@ -63,8 +63,8 @@ def test_wrong_section_forces_are_seen(monkeypatch: pytest.MonkeyPatch, series: 
 @pytest.mark.parametrize("name", ["gerber_beam", "shear_legs", "a_frame"])
 def test_a_reaction_that_is_not_told_is_seen(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """Each component of what holds the bodies is in one of the reactions."""
-    right = two_ways.asked_reactions
-    monkeypatch.setattr(two_ways, "asked_reactions", lambda structure: dict(list(right(structure).items())[1:]))
+    right = two_ways.requested_reactions
+    monkeypatch.setattr(two_ways, "requested_reactions", lambda structure: dict(list(right(structure).items())[1:]))
     assert "every reaction is told" in wrong_checks(MODELS / f"{name}.toml")
 
 
@@ -90,8 +90,8 @@ def test_a_place_that_is_none_of_rest_is_seen(monkeypatch: pytest.MonkeyPatch) -
     moved = replace(first, exact={**first.exact, q: first.exact[q] + 1})
     wrong = replace(found, found=replace(found.found, found=(moved, *others))).certify()
     failing = [check.name for check in wrong.checks if check.ok is False]
-    assert "nothing is accelerated at the places of rest" in failing
-    assert "the forces balance and the ties close at every place of rest" in failing
+    assert "nothing is accelerated at the equilibria" in failing
+    assert "the forces balance and the constraints close at every equilibrium" in failing
 
 
 def test_a_wrong_word_of_stability_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -75,8 +75,8 @@ def test_the_hinge_of_andrews_squeezer_carries_what_the_test_set_says():
     """Its multipliers are forces of the hinge at E, whatever the rows that close the loops."""
     sides = [(body, axis) for body in HINGE_E for axis in "xy"]
     lines = (f'{body}_{axis} = {{ value = "reaction_{axis}(E.{body})", at = "t = 0.03" }}\n' for body, axis in sides)
-    asked = "".join(lines)
-    found = eomgen.solve(eomgen.loads((MODELS / "andrews_squeezer.toml").read_text() + "[outputs]\n" + asked))
+    requested = "".join(lines)
+    found = eomgen.solve(eomgen.loads((MODELS / "andrews_squeezer.toml").read_text() + "[outputs]\n" + requested))
     for body, force in HINGE_E.items():
         assert [found[f"{body}_{axis}"].value for axis in "xy"] == pytest.approx(force, abs=3e-5), body
 

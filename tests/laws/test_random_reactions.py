@@ -27,7 +27,7 @@ AT_COORDINATES = ('kind = "potential"', 'kind = "generalized"')  # at no place: 
 
 
 class HeldWriter(Writer):
-    """Writes models in which joints and ties carry everything."""
+    """Writes models in which joints and constraints carry everything."""
 
     def body(self) -> None:
         kept = len(self.coordinates)
@@ -44,7 +44,7 @@ class HeldWriter(Writer):
                 return
             del self.forces[-1]
 
-    def tie(self, k: int) -> None:
+    def constraint(self, k: int) -> None:
         rng, body, other = self.rng, self.rng.choice(self.names), self.rng.choice(self.names)
         far = '"G"' if other == body else f'"{other}.P"'
         normal = '[1, "-2"]' if self.space == "plane" else '[2, 1, "-2"]'
@@ -53,16 +53,16 @@ class HeldWriter(Writer):
             f'kind = "link", points = ["{body}.Z", {far}]',
             f'kind = "pin", points = ["{body}.P"]',
         ]
-        self.ties.append(f"tie{k} = {{ {rng.choice(kinds)} }}")
+        self.constraints.append(f"constraint{k} = {{ {rng.choice(kinds)} }}")
 
 
-def held_model(space: str, seed: int, ties: int = 0, spare: int = 3) -> str:
-    """A model of at least four bodies, with `spare` more free coordinates for each tie."""
+def held_model(space: str, seed: int, constraints: int = 0, spare: int = 3) -> str:
+    """A model of at least four bodies, with `spare` more free coordinates for each constraint."""
     writer = HeldWriter(space, Random(seed))
-    while len(writer.names) < 4 or sum("{" not in line for line in writer.coordinates) < 1 + spare * ties:
+    while len(writer.names) < 4 or sum("{" not in line for line in writer.coordinates) < 1 + spare * constraints:
         writer.body()
-    for k in range(ties):
-        writer.tie(k)
+    for k in range(constraints):
+        writer.constraint(k)
     for k in range(4):
         writer.force(k)
     couple = '"tau"' if space == "plane" else '["tau", 0, 0]'
@@ -70,15 +70,15 @@ def held_model(space: str, seed: int, ties: int = 0, spare: int = 3) -> str:
     return writer.text()
 
 
-def closed_model(space: str, seed: int, ties: int, spare: int) -> str:
-    """The first such model from a seed on whose ties can hold beside what is given."""
-    while not state(text := held_model(space, seed, ties, spare), seed).holds:
+def closed_model(space: str, seed: int, constraints: int, spare: int) -> str:
+    """The first such model from a seed on whose constraints can hold beside what is given."""
+    while not state(text := held_model(space, seed, constraints, spare), seed).holds:
         seed += 1000
     return text
 
 
 def state(text: str, seed: int, t: float = 0.0) -> Tree:
-    """The start of the model, with random rates that the ties allow; given motions are where they are at t."""
+    """The start of the model, with random rates that the constraints allow; given motions are where they are at t."""
     rng, table = Random(seed), read(text)
     A, w = (float(table["parameters"][name]) for name in ("A", "w"))
     laws = {
@@ -90,7 +90,7 @@ def state(text: str, seed: int, t: float = 0.0) -> Tree:
     free = {q: float(value) for q, value in table["coordinates"].items() if q not in given}
     places = {q: given[q][0] if q in given else free[q] for q in table["coordinates"]}
     rates = {q: given[q][1] if q in given else rng.uniform(-1, 1) for q in table["coordinates"]}
-    return Tree(table, places, rates, t).tied()
+    return Tree(table, places, rates, t).constrained()
 
 
 def values(tree: Tree, system: System, scalars: tuple[Scalar, ...]) -> tuple[float, ...]:
@@ -194,12 +194,13 @@ def test_reactions_hold_for_other_parameters_than_those_of_the_file(space, seed)
 @pytest.mark.parametrize("seed", usual(range(12), 4))
 @pytest.mark.parametrize("space", ["plane", "space"])
 def test_joints_and_ties_of_random_loops_carry_what_newton_says(space, seed):
-    """The same with a tie that closes a loop or only reacts."""
-    compared(closed_model(space, 500 + seed, ties=1, spare=3), seed)
+    """The same with a constraint that closes a loop or only reacts."""
+    compared(closed_model(space, 500 + seed, constraints=1, spare=3), seed)
 
 
 @pytest.mark.parametrize("seed", usual(range(12), 4))
 @pytest.mark.parametrize("space", ["plane", "space"])
 def test_what_redundant_ties_leave_open_is_what_the_null_space_touches(space, seed):
-    """Three ties on few freedoms: what the balance determines agrees, the rest is reported indeterminate."""
-    compared(closed_model(space, 900 + seed, ties=3, spare=0), seed)
+    """Three constraints on few degrees of freedom: what the balance determines agrees, the rest is reported
+    indeterminate."""
+    compared(closed_model(space, 900 + seed, constraints=3, spare=0), seed)

@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 @pytest.mark.parametrize("space", ["plane", "space"])
 def test_the_certificate_holds_for_random_trees_with_ties(space, seed):
     """The same with a support or an equation that closes a loop."""
-    text = random_model(space, 1000 + seed, ties=1)
+    text = random_model(space, 1000 + seed, constraints=1)
     certificate = certificate_of(text)
     assert certificate.ok, f"{certificate}\n{text}"
 

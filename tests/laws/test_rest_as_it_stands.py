@@ -89,7 +89,7 @@ def test_multipliers_are_proven_where_what_may_be_chosen_stands():
     """Q + J^T lam = 0 at theta = 0.4, which no force holds"""
     found = eomgen.statics(eomgen.loads(SKATE), start={"theta": 0.4})
     checks = {check.name: check.status for check in found.certify().checks}
-    assert checks["the multipliers at every place of rest hold the free bodies"] == "holds"
+    assert checks["the multipliers at every equilibrium hold the free bodies"] == "holds"
 
 
 def test_velocities_are_put_together_where_a_parameter_without_a_value_does_not_matter():

@@ -300,7 +300,7 @@ def test_a_coin_that_falls_flat_ends_the_run():
     ],
 )
 def test_a_rolling_contact_that_makes_no_sense_is_named(contact, what):
-    """One error, at the tie."""
+    """One error, at the constraint."""
     with pytest.raises(ModelError, match=what):
         eomgen.loads(text(contact))
 

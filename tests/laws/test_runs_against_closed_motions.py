@@ -523,17 +523,17 @@ class _Once(dict):
 
 
 @pytest.mark.parametrize(
-    ("words", "told"),
+    ("words", "reported"),
     [
         (("simulate", "--project-every", "5", "--stabilize", "none"), "--project-every goes with"),
         (("simulate", "--baumgarte", "5", "5"), "--baumgarte goes with --stabilize baumgarte"),
         (("simulate", "--follow", "e0=FILE"), "'e0' is driven, but it is part of the quaternion"),
     ],
 )
-def test_options_that_would_be_ignored_are_refused(tmp_path, words, told):
+def test_options_that_would_be_ignored_are_refused(tmp_path, words, reported):
     model, file = tmp_path / "top.toml", tmp_path / "e0.csv"
     model.write_text(TOP)
     file.write_text("t,e0\n0,1\n1,0.9\n")
     verb, *options = (word.replace("FILE", str(file)) for word in words)
     done = CliRunner().invoke(main, [verb, str(model), *options])
-    assert done.exit_code == 2 and told in done.output + (done.stderr or "")
+    assert done.exit_code == 2 and reported in done.output + (done.stderr or "")

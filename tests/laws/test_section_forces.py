@@ -47,8 +47,8 @@ def along(text: str, body: str) -> SectionForces:
     return section_forces(reactions_of(system_of(eomgen.loads(text))), body)
 
 
-def exact(text: str, *asked: str) -> list[str | None]:
-    outputs = "[outputs]\n" + "".join(f'o{k} = "{each}"\n' for k, each in enumerate(asked))
+def exact(text: str, *requested: str) -> list[str | None]:
+    outputs = "[outputs]\n" + "".join(f'o{k} = "{each}"\n' for k, each in enumerate(requested))
     return [answer.exact for answer in eomgen.solve(eomgen.loads(text + outputs)).values()]
 
 
@@ -217,12 +217,12 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("old", "new", "asked", "told"), WRONG.values(), ids=WRONG)
-def test_what_cannot_be_said_is_not_said(old, new, asked, told):
+@pytest.mark.parametrize(("old", "new", "requested", "reported"), WRONG.values(), ids=WRONG)
+def test_what_cannot_be_said_is_not_said(old, new, requested, reported):
     """A message instead of a diagram of another beam."""
-    text = OVERHANG.replace(old, new, 1) + f'[outputs]\no = "{asked}"\n'
+    text = OVERHANG.replace(old, new, 1) + f'[outputs]\no = "{requested}"\n'
     (answer,) = eomgen.solve(eomgen.loads(text)).values()
-    assert answer.exact is None and told in answer.message
+    assert answer.exact is None and reported in answer.message
 
 
 def test_a_body_of_unknown_build_has_no_section_forces():
@@ -267,6 +267,6 @@ def test_an_eye_pushes_its_rail_where_it_is():
     system = system_of(eomgen.loads(RESTS_BY_AN_EYE))
     before, behind = section_forces(reactions_of(system), "wall").pieces
     values = {x: 6 if x.name == "P" else 1.5 if x.name == "c" else 4 for x in system.symbols.parameters.values()}
-    told = [[piece.value(kind, x) for kind in KINDS] for piece, x in ((before, Fraction(1, 2)), (behind, 3))]
-    assert evaluate(tuple(told[0]), values, FLOAT) == pytest.approx([0, 6, 6 * (0.5 - 1.5)])
-    assert evaluate(tuple(told[1]), values, FLOAT) == pytest.approx([0, 0, 0])
+    reported = [[piece.value(kind, x) for kind in KINDS] for piece, x in ((before, Fraction(1, 2)), (behind, 3))]
+    assert evaluate(tuple(reported[0]), values, FLOAT) == pytest.approx([0, 6, 6 * (0.5 - 1.5)])
+    assert evaluate(tuple(reported[1]), values, FLOAT) == pytest.approx([0, 0, 0])

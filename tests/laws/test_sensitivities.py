@@ -11,7 +11,7 @@ import pytest
 from slow_run import beside, in_slow_run
 
 import eomgen
-from eomgen.sensitivities.sensitivity import slope_asked
+from eomgen.sensitivities.sensitivity import slope_requested
 
 MODELS = Path(__file__).parents[2] / "models"
 DIGITS = 50
@@ -159,7 +159,7 @@ def test_derivatives_are_those_of_the_whole_computation(name, of, to):
     ],
 )
 def test_derivatives_along_a_run_are_those_of_neighbouring_runs(name, to, time):
-    """The variational equations against differences of runs, where ties close too, at every instant."""
+    """The variational equations against differences of runs, where constraints close too, at every instant."""
     certificate = eomgen.sensitivity(MODELS / f"{name}.toml", to=to, time=time, samples=11).certify()
     assert certificate.ok, str(certificate)
 
@@ -278,15 +278,15 @@ def test_a_place_of_rest_among_others_has_no_slope_by_the_start():
 @pytest.mark.slow
 def test_a_sweep_asks_for_derivatives():
     """ "d(frequency(1))/d(k)" and "d(last(x))/d(k)" at every run: dw/dk = w/2k, and that of a single call."""
-    assert slope_asked("d(last(x))/d(k)") == ("last(x)", "k") and slope_asked("x/k") is None
+    assert slope_requested("d(last(x))/d(k)") == ("last(x)", "k") and slope_requested("x/k") is None
     model = eomgen.loads(UNDAMPED)
-    asked = ("frequency(1)", "d(frequency(1))/d(k)", "d(last(x))/d(k)")
-    swept = eomgen.sweep(model, over={"k": [40.0, 50.0]}, ask=asked, time=1.0)
+    requested = ("frequency(1)", "d(frequency(1))/d(k)", "d(last(x))/d(k)")
+    swept = eomgen.sweep(model, over={"k": [40.0, 50.0]}, ask=requested, time=1.0)
     table = swept.table
-    assert table[asked[1]] == pytest.approx(table[asked[0]] / (2 * table["k"]), rel=1e-12)
+    assert table[requested[1]] == pytest.approx(table[requested[0]] / (2 * table["k"]), rel=1e-12)
     alone = eomgen.sensitivity(model, "x", "k", time=1.0).matrix[0, 0]
-    assert table[asked[2]][1] == pytest.approx(alone, rel=1e-9)
-    assert swept.in_units()[1][asked[2]] == "d(last(x))/d(k) [m/(N/m)]"
+    assert table[requested[2]][1] == pytest.approx(alone, rel=1e-9)
+    assert swept.in_units()[1][requested[2]] == "d(last(x))/d(k) [m/(N/m)]"
     with pytest.raises(eomgen.UsageError, match="no parameter"):
         eomgen.sweep(model, over={"k": [1.0]}, ask="d(x)/d(q)", time=1.0)
 

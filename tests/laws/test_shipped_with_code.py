@@ -12,7 +12,7 @@ import eomgen
 from eomgen.codegen import vectors
 from eomgen.codegen.targets.fmu import description
 from eomgen.generated import generate
-from eomgen.proof.emitted_code import fmu_told
+from eomgen.proof.emitted_code import fmu_reported
 
 PENDULUM = """
 eomgen = 1
@@ -60,7 +60,7 @@ def test_the_variables_of_an_fmu_are_what_their_names_say():
     """der(x) is the derivative of x, which starts at x0."""
     text = description("pendulum", generate(eomgen.loads(PENDULUM), ["numpy"]).emitted)
     states, parameters = {"a": 0.4, "b": 0.1, "a'": 0.6, "b'": 0.0}, {"m": 2.0, "g": 9.81, "l": 0.6}
-    assert fmu_told(packed(text), states, parameters).ok
+    assert fmu_reported(packed(text), states, parameters).ok
     turned = text.replace('derivative="1"', 'derivative="9"').replace('derivative="2"', 'derivative="1"')
     for other in (
         turned.replace('derivative="9"', 'derivative="2"'),
@@ -70,4 +70,4 @@ def test_the_variables_of_an_fmu_are_what_their_names_say():
             '<ContinuousStateDerivative valueReference="5"/>', '<ContinuousStateDerivative valueReference="1"/>'
         ),
     ):
-        assert other != text and fmu_told(packed(other), states, parameters).ok is False
+        assert other != text and fmu_reported(packed(other), states, parameters).ok is False

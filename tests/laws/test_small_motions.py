@@ -1,4 +1,4 @@
-"""Small motions: the equations to first order about a place of rest or a steady motion, against what is known."""
+"""Small motions: the equations to first order about an equilibrium or a steady motion, against what is known."""
 
 from __future__ import annotations
 
@@ -92,7 +92,7 @@ def is_formula(found: Any, text: str, small: SmallMotions) -> bool:
     return abs(a - b) < 1e-30 * (1 + abs(b)) and abs(c - d) < 1e-30 * (1 + abs(d))
 
 
-# -- places of rest --------------------------------------------------------------------------------------------
+# -- equilibria --------------------------------------------------------------------------------------------
 
 
 def pendulums(n: int) -> str:
@@ -256,7 +256,7 @@ def test_a_column_under_a_follower_force_flutters_beyond_its_critical_load(load,
     assert_same_eigenvalues(found.small)
 
 
-# -- ties ------------------------------------------------------------------------------------------------------
+# -- constraints ------------------------------------------------------------------------------------------------------
 
 FOUR_BAR = """[parameters]
 m = 1.1
@@ -288,7 +288,7 @@ damping = 0.4
 
 
 def test_a_four_bar_moves_alike_with_multipliers_and_with_dependent_coordinates():
-    """M, C and K along the ties do not depend on how these are taken out; nor do the shapes."""
+    """M, C and K along the constraints do not depend on how these are taken out; nor do the shapes."""
     free, bound = (linearized(FOUR_BAR.format(x)) for x in ("", ", dependent = true"))
     assert free.coordinates == bound.coordinates == ("alpha",)
     for letter in "MCK":
@@ -448,7 +448,7 @@ def test_a_start_that_is_no_steady_motion_is_refused_far_from_one():
         linearized(text, "start")
 
 
-# -- velocity ties ---------------------------------------------------------------------------------------------
+# -- velocity constraints ---------------------------------------------------------------------------------------------
 
 SLEIGH = """[parameters]
 m = 2
@@ -587,7 +587,7 @@ def test_the_period_of_a_small_motion_is_that_of_the_simulation():
 
 
 def test_matrices_are_the_derivatives_of_the_equations():
-    """K = -d(forcing)/dq, C = -d(forcing)/du at rest, and M there: entry by entry, of a system without ties"""
+    """K = -d(forcing)/dq, C = -d(forcing)/du at rest, and M there: entry by entry, of a system without constraints"""
     found = linearized(INVERTED)
     equations = eomgen.derive(found.model)
     x = equations.graph.symbols

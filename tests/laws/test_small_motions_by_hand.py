@@ -362,7 +362,8 @@ force = ["-k*x - c_e*x' - c_i*(x' + W*y)", "-k*y - c_e*y' - c_i*(y' - W*x)"]
     assert found.as_dict()["circulatory"]["value"] == [[0, W], [-W, 0]]
 
 
-# -- ties of velocity ------------------------------------------------------------------------------------------------
+# -- constraints of velocity
+# ------------------------------------------------------------------------------------------------
 
 
 def test_a_trailing_wheel_shimmies_and_answers_a_force():
@@ -793,7 +794,7 @@ acceleration = [0, 0, "-g"]
 
 
 def test_a_wheel_with_a_tyre_rolls_upright_by_a_formula():
-    """(A + m R^2) w^2 = (J + m R^2) J W^2/A - m g r, R = r + a, W = V/R: what the ties say of speeds is exact"""
+    """(A + m R^2) w^2 = (J + m R^2) J W^2/A - m g r, R = r + a, W = V/R: what the constraints say of speeds is exact"""
     found = small(ROLLING_TORUS, "space", "start")
     book = "sqrt(((J + m*(r + a)**2)*J*V**2/(A*(r + a)**2) - m*g*r)/(A + m*(r + a)**2))"
     assert formula(book, found.frequencies[0].exact)

@@ -67,13 +67,13 @@ def test_angular_momentum_stays_where_it_is_in_space():
 
 
 QUANTITIES = ("x(body.center)", "y(body.center)", "z(body.center)", "omega_x(body)")
-ASKED = "".join(f'a{k} = {{ value = "{value}", at = "t = 2" }}\n' for k, value in enumerate(QUANTITIES))
+REQUESTED = "".join(f'a{k} = {{ value = "{value}", at = "t = 2" }}\n' for k, value in enumerate(QUANTITIES))
 
 
 def heavy(text: str) -> list[float | None]:
     """Where the mass centre of a heavy body about a fixed point is after 2 s, and omega_x."""
     off_center = text.replace("inertia", 'center = ["d/2", 0, "d"]\ninertia')
-    answers = eomgen.solve(eomgen.loads(f"{HEAD}{INERTIA}{off_center}{WEIGHT}[outputs]\n{ASKED}"))
+    answers = eomgen.solve(eomgen.loads(f"{HEAD}{INERTIA}{off_center}{WEIGHT}[outputs]\n{REQUESTED}"))
     return [answer.value for answer in answers.values()]
 
 
@@ -258,7 +258,7 @@ def test_speeds_that_do_not_determine_the_rates_somewhere_are_named():
     ],
 )
 def test_what_does_not_determine_a_motion_is_refused(text, what):
-    """One clear error, with the mend."""
+    """One clear error, with the fix."""
     with pytest.raises(eomgen.ModelError) as caught:
         derived(INERTIA + text)
     assert what in str(caught.value)

@@ -238,10 +238,10 @@ def test_a_tree_moves_and_reacts_as_a_second_reading_of_its_file_says(name):
     compared = 0
     for body, (force, couple) in by_hand.reactions(q, u, t).items():
         for k, axis in enumerate("xyz"):
-            for asked, known in ((f"reaction_{axis}", force[k]), (f"reaction_couple_{axis}", couple[k])):
-                if f"{asked}({body})" in held:
+            for requested, known in ((f"reaction_{axis}", force[k]), (f"reaction_couple_{axis}", couple[k])):
+                if f"{requested}({body})" in held:
                     compared += 1
-                    assert held[f"{asked}({body})"] == pytest.approx(float(known), rel=1e-8, abs=1e-8), asked
+                    assert held[f"{requested}({body})"] == pytest.approx(float(known), rel=1e-8, abs=1e-8), requested
     assert compared >= 3
 
 

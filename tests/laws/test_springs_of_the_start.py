@@ -54,7 +54,7 @@ STARTS = {
 @pytest.mark.parametrize("gap", GAPS)
 @pytest.mark.parametrize("start", STARTS)
 def test_a_spring_of_the_starts_length_is_slack_where_the_ties_put_it(gap, start):
-    """V(q_0) = 0 where phi(q_0) = 0; not at the guess, nor where a value given breaks the ties."""
+    """V(q_0) = 0 where phi(q_0) = 0; not at the guess, nor where a value given breaks the constraints."""
     text = TIED.replace("R\n", STARTS[start] + "\n", 1).replace("GAP", GAPS[gap])
     equations = eomgen.derive(eomgen.loads(text))
     symbols, begun = equations.graph.symbols, start_of_motion(equations.system).values
@@ -73,7 +73,7 @@ def test_the_length_follows_the_parameters_where_the_start_has_a_closed_form():
     system = eomgen.derive(
         eomgen.loads(TIED.replace("R\n", STARTS["dependent"] + "\n", 1).replace("GAP", GAPS["with a parameter"]))
     ).system
-    (place,) = begun_places(system.free.ties).values()
+    (place,) = begun_places(system.free.constraints).values()
     (L,) = (x for x in system.symbols.parameters.values() if x.name == "L")
     assert evaluate((place,), {L: 0.5}, FLOAT)[0] == pytest.approx(0.4 * 0.5 + 0.25)
 

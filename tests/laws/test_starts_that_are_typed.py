@@ -1,4 +1,5 @@
-"""Where ties do not hold at the start asked for, every verb begins at the same one; what was typed moves last."""
+"""Where constraints do not hold at the start asked for, every verb begins at the same one; what was typed moves
+last."""
 
 from __future__ import annotations
 
@@ -58,7 +59,7 @@ points = ["rod.end", "piston.center"]
 TURNED = CRANK.replace("b = -0.3", "b = {}").replace(
     "[bodies.crank]", "[speeds]\nw = \"2*a' + b'\"\nv = \"a' - b'\"\n[bodies.crank]"
 )
-"""loops of which all starts, some, or none that the ties allow are given; with a declared speed too"""
+"""loops of which all starts, some, or none that the constraints allow are given; with a declared speed too"""
 LOOPS = {
     "four_bar": (FOUR_BAR, ["a=40"], ["a=40", "b=0.1 rad"], ["c=100", "c'=2"], ["a'=3"]),
     "crank": (CRANK, ["a=50"], ["s=160"], ["s=1.55 m", "s'=20"], ["b=-0.2"]),
@@ -73,13 +74,13 @@ def typed(request, tmp_path):
     name, starts = request.param
     text, names = LOOPS[name][0], LOOPS[name][0].partition("[coordinates]")[2].partition("[")[0]
     bodies = [line[8:-1] for line in text.splitlines() if line.startswith("[bodies.")]
-    asked = [line.split(" =")[0] for line in names.splitlines() if " =" in line]
-    text += "[outputs]\n" + "".join(f'out_{q} = "{q}"\nrate_{q} = "{q}\'"\n' for q in asked)
+    requested = [line.split(" =")[0] for line in names.splitlines() if " =" in line]
+    text += "[outputs]\n" + "".join(f'out_{q} = "{q}"\nrate_{q} = "{q}\'"\n' for q in requested)
     text += "".join(f'x_{body} = "x({body}.center)"\n' for body in bodies)
     path = tmp_path / "loop.toml"
     path.write_text(text)
     words = [word for start in starts for word in ("--start", start)]
-    run = told("simulate", path, words, "--time", "0", "--target", "numpy")
+    run = reported("simulate", path, words, "--time", "0", "--target", "numpy")
     return path, words, run | {"start": with_rates(run["start"])}
 
 
@@ -90,7 +91,7 @@ def with_rates(start: dict[str, float]) -> dict[str, float]:
     return start | {"a'": (start["w"] + start["v"]) / 3, "b'": (start["w"] - 2 * start["v"]) / 3}
 
 
-def told(verb: str, path: Path, words: list[str], *more: str) -> dict:
+def reported(verb: str, path: Path, words: list[str], *more: str) -> dict:
     found = CliRunner().invoke(main, [verb, str(path), *words, *more, "--json"])
     assert found.exit_code == 0, found.stderr
     return json.loads(found.stdout) | {"said": [line for line in found.stderr.splitlines() if "The start was" in line]}
@@ -111,18 +112,18 @@ def test_what_was_typed_is_kept_where_the_ties_allow_it(typed):
 def test_every_verb_begins_at_the_same_start(typed):
     """check, solve, reactions and kinematics give of the start what the first row of a run gives, and say the same."""
     path, words, run = typed
-    begun = told("check", path, words)
+    begun = reported("check", path, words)
     assert begun["start"] == {name: pytest.approx(run["start"][name], abs=1e-12) for name in begun["start"]}
-    answers = told("solve", path, words, "--no-certify")
+    answers = reported("solve", path, words, "--no-certify")
     for name, answer in answers["outputs"].items():
         kind, _, of = name.partition("_")
         if kind != "x":
             expected = run["start"][of if kind == "out" else f"{of}'"]
             assert answer["value"] == pytest.approx(expected, abs=1e-9), name
-    reactions = told("reactions", path, words, "--no-certify")
+    reactions = reported("reactions", path, words, "--no-certify")
     for name, reaction in reactions["reactions"].items():
         assert reaction["value"] == pytest.approx(run["start"][name], rel=1e-9, abs=1e-9), name
-    moving = told("kinematics", path, words, "--no-certify")
+    moving = reported("kinematics", path, words, "--no-certify")
     rates = {"crank": "a'", "rocker": "c'", "coupler": "b'", "rod": "b'"}
     for body, rate in rates.items():
         if body in moving["angular_velocities"]:
@@ -148,4 +149,4 @@ def test_the_page_and_python_begin_there_too(typed):
     assert begun == {name: pytest.approx(run["start"][name], abs=1e-12) for name in names}
     found = eomgen.simulate(path, time=0.01, start=start, target="numpy")
     live = PlayedRun(found, PlayerOptions(moves=True)).live
-    assert live is not None and set(live.told()["typed"]) >= set(start) & set(names)
+    assert live is not None and set(live.reported()["typed"]) >= set(start) & set(names)

@@ -16,9 +16,9 @@ from eomgen.mechanics.rigidity.structure import structure_of
 from eomgen.mechanics.rigidity.velocity_plan import blocks_of
 from eomgen.mechanics.statics.virtual_work import (
     StaticReactions,
-    asked_reactions,
     by_virtual_work,
     loads_at_rest,
+    requested_reactions,
     static_reactions_of,
 )
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -154,7 +154,7 @@ def test_virtual_work_does_not_use_the_solution_of_the_balance(monkeypatch):
         raise AssertionError("the balance was solved")
 
     monkeypatch.setattr("eomgen.mechanics.reactions.reactions.solution_of_balance", refused)
-    named = asked_reactions(structure)["reaction_couple(E)"]
+    named = requested_reactions(structure)["reaction_couple(E)"]
     assert to_text(by_virtual_work(structure, named).value) == "-20*p*a^2"
 
 

@@ -164,7 +164,7 @@ def plane_truss(nodes: dict[Any, Any], members: list[str], loads: dict[Any, Any]
 
 @known
 def fink_truss(n: Numbers) -> Numbers:
-    """Built from its geometry: the rafter's quarters, struts across it, the tie's joints by equal angles."""
+    """Built from its geometry: the rafter's quarters, struts across it, the constraint's joints by equal angles."""
     P, W, a = (n[x] for x in ("P", "W", "a"))
     rise = 1 / sqrt(3)
     left = {f"n{k}": (k * a, k * a * rise) for k in (1, 2, 3)}
@@ -191,8 +191,8 @@ def k_truss(n: Numbers) -> Numbers:
         inner = k + 1 if k < 4 else k - 1
         members += [f"b{k}-m{k}", f"m{k}-t{k}", f"m{k}-b{inner}", f"m{k}-t{inner}"]
     r = plane_truss(nodes, members, {"b2": (0, -3 * P), "b5": (0, -2 * P), "t1": (P, 0)}, "b0", "b8")
-    asked = {"K_up": "m2-t3", "K_down": "m2-b3", "post": "m2-t2", "chord": "b3-b4", "end": "b0-t1"}
-    return {name: r[member] for name, member in asked.items()}
+    requested = {"K_up": "m2-t3", "K_down": "m2-b3", "post": "m2-t2", "chord": "b3-b4", "end": "b0-t1"}
+    return {name: r[member] for name, member in requested.items()}
 
 
 def legs(nodes: dict[str, Any], loads: list[Any], top: str) -> Numbers:
@@ -259,10 +259,10 @@ def test_a_structure_of_the_classics_balances(name, other):
     """Every output that equilibrium knows, at two sets of numbers; all of them exact."""
     model = model_of(name, other)
     expected, found = KNOWN[name](numeric_parameters(model)), answers(name, other)
-    asked = {output: expected[output] for output in model.outputs}
-    assert all(found[output].exact is not None for output in asked)
-    scale = max(map(abs, asked.values()))
-    assert {output: found[output].value for output in asked} == pytest.approx(asked, rel=1e-9, abs=1e-9 * scale)
+    requested = {output: expected[output] for output in model.outputs}
+    assert all(found[output].exact is not None for output in requested)
+    scale = max(map(abs, requested.values()))
+    assert {output: found[output].value for output in requested} == pytest.approx(requested, rel=1e-9, abs=1e-9 * scale)
 
 
 @each("name", KNOWN)
@@ -390,7 +390,7 @@ def test_a_loose_structure_is_refused_with_the_motion_named(name):
     with pytest.raises(eomgen.DerivationError) as refused:
         eomgen.statics(eomgen.loads(text))
     assert motion in str(refused.value), str(refused.value)
-    assert "mend:" in str(refused.value)
+    assert "fix:" in str(refused.value)
 
 
 @each("name", REDUNDANT)

@@ -194,11 +194,11 @@ def test_about_a_start_that_is_no_rest_it_is_about_the_rest_near_it_and_says_so(
     assert found.entries()["beside_start"]["q"]["away"] == pytest.approx(-0.2)
     assert np.diag(found.K) == pytest.approx([500, 2 * 9.81 * 0.4])
     text = found.render("text")
-    assert "The start is accelerated. The place of rest near it" in text and "-0.2" in text
+    assert "The start is accelerated. The equilibrium near it" in text and "-0.2" in text
     assert found.certify().ok and "y = -0.07848 for -0.05 at the start" in found.derivation.notes[0]
 
 
 def test_about_a_start_far_from_rest_the_refusal_names_what_is_nearest():
     """Nearest to q = 0.9 is q = 0, farther than NEARBY."""
-    with pytest.raises(eomgen.DerivationError, match=r"the place of rest nearest to it is not near: .*q = 0 \(-0.9\)"):
+    with pytest.raises(eomgen.DerivationError, match=r"the equilibrium nearest to it is not near: .*q = 0 \(-0.9\)"):
         eomgen.linearize(eomgen.loads(BESIDE.replace("START", "0.9")))

@@ -8,9 +8,23 @@ from math import cos, sin
 
 import numpy as np
 import pytest
+from constrained import (
+    AXLE,
+    FREE,
+    GIVEN,
+    R,
+    accelerations,
+    block,
+    constraint,
+    disc,
+    frozen_velocity,
+    g,
+    m,
+    particle,
+    system_with,
+)
 from each import each
 from moving import at, moved, state_of
-from tied import AXLE, FREE, GIVEN, R, accelerations, block, disc, frozen_velocity, g, m, particle, system_with, tie
 
 import eomgen
 from eomgen.mechanics.dynamics.system import System
@@ -25,7 +39,7 @@ def test_a_massive_pulley_has_different_tensions_on_its_sides(strands):
         disc("pulley", AXLE, "6*m")
         + particle("P", "-R", "p", "2*m")
         + particle("Q", "R", "q")
-        + tie("string", 'path = ["P.origin", { body = "pulley", turn = "cw" }, "Q.origin"]' + strands),
+        + constraint("string", 'path = ["P.origin", { body = "pulley", turn = "cw" }, "Q.origin"]' + strands),
         p=-1,
         q=-2,
         a=0,
@@ -33,7 +47,7 @@ def test_a_massive_pulley_has_different_tensions_on_its_sides(strands):
     a, lam = accelerations(system, p=-1, q=-2)
     assert a == pytest.approx({"p": -g / 6, "q": g / 6, "a": g / 6 / R})
     assert list(lam.values()) == pytest.approx([5 / 3 * m * g, 7 / 6 * m * g])
-    assert [row.component for row in system.ties.rows] == ["tension", "tension"]
+    assert [row.component for row in system.constraints.rows] == ["tension", "tension"]
 
 
 def test_a_string_that_slips_has_one_tension_and_leaves_the_pulley_at_rest():
@@ -42,7 +56,7 @@ def test_a_string_that_slips_has_one_tension_and_leaves_the_pulley_at_rest():
         disc("pulley", AXLE, "6*m")
         + particle("P", "-R", "p", "2*m")
         + particle("Q", "R", "q")
-        + tie("string", 'path = ["P.origin", { body = "pulley", turn = "cw", slip = true }, "Q.origin"]'),
+        + constraint("string", 'path = ["P.origin", { body = "pulley", turn = "cw", slip = true }, "Q.origin"]'),
         p=-1,
         q=-2,
         a=0,
@@ -50,18 +64,21 @@ def test_a_string_that_slips_has_one_tension_and_leaves_the_pulley_at_rest():
     a, lam = accelerations(system, p=-1, q=-2)
     assert a == pytest.approx({"p": -g / 3, "q": g / 3, "a": 0})
     assert list(lam.values()) == pytest.approx([4 / 3 * m * g])
-    assert system.scope.model.constraints["tie"].strand_rows() == (1, 1)
+    assert system.scope.model.constraints["constraint"].strand_rows() == (1, 1)
 
 
 def test_a_disc_unrolls_from_a_string():
     """ch20-p1: a_C = 2g/3, T = m g / 3; the string leaves it on its left."""
     text = "[points]\nA = [0, 0]\n" + disc("spool", FREE)
     path = 'path = ["A", { body = "spool", turn = "ccw" }]\nstrands = ["down"]'
-    system = system_with(text + tie("string", path), x='"R"', y=-1, a=0)
+    system = system_with(text + constraint("string", path), x='"R"', y=-1, a=0)
     a, lam = accelerations(system, x=R, y=-1)
     assert a == pytest.approx({"x": 0, "y": -2 / 3 * g, "a": -2 / 3 * g / R}, abs=1e-12)
-    assert lam == pytest.approx({"tie, 1": m * g / 3, "tie, 2": 0}, abs=1e-12)
-    assert [row.component for row in system.ties.rows] == ["tension", "n"]  # the strand stays vertical: no pendulum
+    assert lam == pytest.approx({"constraint, 1": m * g / 3, "constraint, 2": 0}, abs=1e-12)
+    assert [row.component for row in system.constraints.rows] == [
+        "tension",
+        "n",
+    ]  # the strand stays vertical: no pendulum
 
 
 def test_a_disc_hangs_in_a_loop_of_two_drums():
@@ -70,7 +87,7 @@ def test_a_disc_hangs_in_a_loop_of_two_drums():
         disc("drum", AXLE, "6*m", "2*R")
         + particle("P", "-2*R", "p")
         + disc("C", 'kind = "placed", at = ["3*R", "c"], angle = "b"', "2*m")
-        + tie(
+        + constraint(
             "string",
             'path = ["P.origin", { body = "drum", turn = "cw" }, { body = "C", turn = "ccw" }]\n'
             'strands = ["up", "down"]',
@@ -93,8 +110,8 @@ def test_a_stepped_drum_lifts_a_disc_in_the_loop():
         + '[bodies.drum]\nmass = "4*m"\ninertia = "6*m*R^2"\njoint = { kind = "revolute", angle = "a" }\n'
         + particle("P", "2*R", "p", "4*m")
         + disc("C", 'kind = "placed", at = ["-2*R", "c"], angle = "b"', "2*m")
-        + tie("string", 'path = [{ body = "drum", radius = "2*R", turn = "cw" }, "P.origin"]', "outer")
-        + tie(
+        + constraint("string", 'path = [{ body = "drum", radius = "2*R", turn = "cw" }, "P.origin"]', "outer")
+        + constraint(
             "string",
             'path = [{ body = "drum", radius = "R", turn = "ccw" }, { body = "C", turn = "cw" }, '
             '"ceiling"]\nstrands = ["down", "up"]',
@@ -105,7 +122,7 @@ def test_a_stepped_drum_lifts_a_disc_in_the_loop():
         c=-1,
         b=0,
     )
-    J = np.array([at(row, state_of(system)) for row in system.ties.J])
+    J = np.array([at(row, state_of(system)) for row in system.constraints.J])
     radius = float(state_of(system)[system.symbols.parameters["R"]])
     assert J @ [-1, -2 * radius, radius / 2, 0.5] == pytest.approx([0, 0, 0], abs=1e-13)
     assert np.linalg.matrix_rank(J) == 3
@@ -117,7 +134,7 @@ def test_a_pulley_that_a_body_carries_doubles_the_force():
         '[points]\nceiling = ["-2*R", 0]\n'
         + disc("hook", 'kind = "placed", at = ["-R", "y"]', "3*m")
         + particle("Q", "2*R", "q")
-        + tie(
+        + constraint(
             "string",
             'path = ["ceiling", { body = "hook", turn = "ccw", slip = true }, '
             '{ at = ["R", 0], radius = "R", turn = "cw", slip = true }, "Q.origin"]\n'
@@ -135,9 +152,11 @@ def test_a_string_over_a_peg_gives_way_as_its_other_side_grows():
     """ch18-p5: a bar's end A, a smooth peg, a weight below it: y_Q = y_peg - (L - |A - peg|), exactly, with a gap."""
     bar = '[bodies.bar]\nshape = { kind = "rod", mass = "3*m", length = "2*l" }\n'
     bar += 'joint = { kind = "revolute", angle = "a" }\n'
-    rope = tie("string", 'path = ["bar.end", { at = [0, "2*l"], radius = 0, turn = "cw", slip = true }, "Q.origin"]')
+    rope = constraint(
+        "string", 'path = ["bar.end", { at = [0, "2*l"], radius = 0, turn = "cw", slip = true }, "Q.origin"]'
+    )
     system = system_with(bar + particle("Q", "0", "y") + rope, a=0.3, y='"-l"')
-    (row,) = system.ties.rows
+    (row,) = system.constraints.rows
     state = state_of(system)
     angle, y, length = (state[s] for s in (*system.symbols.q, system.symbols.parameters["l"]))
     used = 2 * length * (2 * (1 - fifty_digits().functions["sin"](angle))) ** 0.5 + 2 * length - y
@@ -173,7 +192,7 @@ def numbers(system: System, x: Scalar, state):
 def stops_of(system: System, state) -> list[tuple]:
     """(body, centre as a complex number, signed offset, slips) of every item of the path, at 50 digits."""
     found = []
-    for item in system.scope.model.constraints["tie"].path:
+    for item in system.scope.model.constraints["constraint"].path:
         if isinstance(item, str):
             place, offset = system.motion.place(item), 0
         else:
@@ -208,11 +227,11 @@ def near_the_start(system: System):
 @each("path", ROPES.values())
 def test_strands_pull_along_the_common_tangents_of_what_they_touch(path):
     """J u + sigma = d . (v_1 - v_2) of the material points at the tangent points, summed over what slips."""
-    system = system_with(MOVERS + tie("string", f"path = {path}"), **STARTS)
+    system = system_with(MOVERS + constraint("string", f"path = {path}"), **STARTS)
     state = near_the_start(system)
     stops = stops_of(system, state)
     expected: dict[int, float] = {}
-    numbered = system.scope.model.constraints["tie"].strand_rows()
+    numbered = system.scope.model.constraints["constraint"].strand_rows()
     for number, (first, second), (delta, _) in zip(numbered, pairwise(stops), tangents(stops), strict=True):
         d = np.array([cos(delta), sin(delta), 0])
         across = np.array([-d[1], d[0], 0])
@@ -221,17 +240,19 @@ def test_strands_pull_along_the_common_tangents_of_what_they_touch(path):
             for body, x, y, a in (first, second)
         ]
         expected[number] = expected.get(number, 0) + d @ (v[0] - v[1])
-    assert at([row.velocity for row in system.ties.rows], state) == pytest.approx(list(expected.values()), rel=1e-11)
+    assert at([row.velocity for row in system.constraints.rows], state) == pytest.approx(
+        list(expected.values()), rel=1e-11
+    )
 
 
 @each("path", [p for p in ROPES.values() if p.count("slip") == p.count("turn")])
 def test_the_row_of_a_smooth_string_is_the_rate_of_its_whole_length(path):
     """J u + sigma = - d/dt (straight pieces + r * angle wrapped), by differences of lengths found by angles."""
-    system = system_with(MOVERS + tie("string", f"path = {path}"), **STARTS)
+    system = system_with(MOVERS + constraint("string", f"path = {path}"), **STARTS)
     state = near_the_start(system)
     h = fifty_digits().number(1) / 10**15
     late, early = (whole_length(system, moved(system, state, sign * h)) for sign in (1, -1))
-    (row,) = system.ties.rows
+    (row,) = system.constraints.rows
     assert at((row.velocity,), state)[0] == pytest.approx(float((early - late) / (2 * h)), rel=1e-12)
 
 
@@ -247,9 +268,9 @@ def whole_length(system: System, state):
 def test_a_strand_that_is_said_to_stay_vertical_forbids_the_pendulum():
     """A load on a vertical strand cannot swing: the strand's own row, and one across it with no force at rest."""
     text = "[points]\nA = [0, 0]\n" + particle("P", "x", "y")
-    system = system_with(text + tie("string", 'path = ["A", "P.origin"]\nstrands = ["down"]'), x=0, y=-1)
+    system = system_with(text + constraint("string", 'path = ["A", "P.origin"]\nstrands = ["down"]'), x=0, y=-1)
     a, lam = accelerations(system, y=-1)
-    assert lam == pytest.approx({"tie, 1": m * g, "tie, 2": 0}) and a == pytest.approx({"x": 0, "y": 0})
+    assert lam == pytest.approx({"constraint, 1": m * g, "constraint, 2": 0}) and a == pytest.approx({"x": 0, "y": 0})
 
 
 BESIDE = "[points]\nA = [0, 0]\n" + particle("P", "R", "y")
@@ -264,20 +285,20 @@ BESIDE = "[points]\nA = [0, 0]\n" + particle("P", "R", "y")
     ],
 )
 def test_a_strand_that_cannot_be_is_refused_by_name(text, message):
-    """Where, what, and a mend."""
+    """Where, what, and a fix."""
     with pytest.raises(eomgen.ModelError, match=message) as caught:
-        system_with(BESIDE + tie("string", text), y=-1)
-    assert caught.value.problems[0].where == "constraints.tie" and caught.value.problems[0].mend
+        system_with(BESIDE + constraint("string", text), y=-1)
+    assert caught.value.problems[0].where == "constraints.constraint" and caught.value.problems[0].fix
 
 
 @each("time, passes", [(0.5, False), (1.2, True)])
 def test_a_run_in_which_a_load_passes_its_pulley_is_warned_of(time, passes):
     """a = g/3 up from 1 m below the axle: nothing is left of the strand at t = sqrt(6 m / g) = 0.782 s."""
     model = eomgen.loads(ATWOOD)
-    with warnings.catch_warnings(record=True) as told:
+    with warnings.catch_warnings(record=True) as reported:
         warnings.simplefilter("always")
         eomgen.simulate(model, time=time, samples=400, target="numpy")
-    said = [str(x.message) for x in told if "nothing is left of strand 2 of 'rope'" in str(x.message)]
+    said = [str(x.message) for x in reported if "nothing is left of strand 2 of 'rope'" in str(x.message)]
     assert len(said) == passes
     assert all("at t = 0.78" in x for x in said)
 

@@ -89,11 +89,11 @@ def test_two_legs_of_four_carry_the_share_that_moments_give(table):
 
 def test_reactions_and_statics_tell_the_sums_in_which_self_stress_leaves_no_trace(table):
     """sum of k_i s_i = 0 for each self-stress s: here of (1, -1, 1, -1)."""
-    told, at_rest = reactions(table), eomgen.statics(table)
-    for sums in (told.sums, at_rest.entries()["sums"]):
+    reported, at_rest = reactions(table), eomgen.statics(table)
+    for sums in (reported.sums, at_rest.entries()["sums"]):
         assert sorted(x.value for x in sums.values()) == [-2.5, 5.0, 7.5]
         assert sorted(x.exact for x in sums.values()) == ["-1/4*P", "1/2*P", "3/4*P"]
-    assert told.certify().ok and at_rest.certify().ok
+    assert reported.certify().ok and at_rest.certify().ok
     assert any("one value, whatever self-stress" in check.name for check in at_rest.certify().checks)
 
 
@@ -111,6 +111,6 @@ def test_sums_are_columns_of_a_run_and_outputs_of_code():
     columns = eomgen.simulate(eomgen.loads(SLED), time=0.2, samples=5, target="numpy").columns()
     assert columns["N"] == pytest.approx(2 * 9.81)
     assert columns["moment"] == pytest.approx(2 * 9.81 * 0.3)
-    asked = eomgen.derive(eomgen.loads(SLED)).asked_outputs
-    assert {*asked.values} == {"N", "moment"} and not asked.left
+    requested = eomgen.derive(eomgen.loads(SLED)).requested_outputs
+    assert {*requested.values} == {"N", "moment"} and not requested.left
     assert math.isclose(eomgen.solve(eomgen.loads(SLED))["moment"].value, 2 * 9.81 * 0.3)

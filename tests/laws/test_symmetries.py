@@ -64,15 +64,16 @@ def pairs() -> Iterable[tuple[Path, str]]:
 
 
 def accelerations(tables: Tables) -> dict[str, tuple[float, ...]]:
-    """u' by name at the start and, where no tie closes, at a random state beside it; by the model's own numbers."""
+    """u' by name at the start and, where no constraint closes, at a random state beside it; by the model's own
+    numbers."""
     equations = eomgen.derive(eomgen.loads(text_of(tables)))
     rhs = equations.rhs("numpy")
     names = (*equations.coordinates, *equations.speeds)
     rng = Random(3)
     moved = {name: rng.uniform(-0.1, 0.1) for name in sorted(names)}
-    tied = bool(equations.graph.J) or any(c.dependent for c in equations.model.coordinates.values())
+    constrained = bool(equations.graph.J) or any(c.dependent for c in equations.model.coordinates.values())
     states = [np.asarray(rhs.x0)]
-    if not tied:
+    if not constrained:
         states.append(states[0] + np.array([moved[name] for name in names]))
     rows = [rhs(0.0, x, rhs.p0)[len(equations.coordinates) :] for x in states]
     return dict(zip(equations.speeds, zip(*(map(float, row) for row in rows), strict=True), strict=True))

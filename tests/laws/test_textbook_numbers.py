@@ -189,11 +189,11 @@ axis = [1, 0, 0]
 
 
 def test_a_cross_without_mass_ties_as_a_universal_joint_holds():
-    """The cross has no inertia, so that M is singular: the ties say what its acceleration is."""
+    """The cross has no inertia, so that M is singular: the constraints say what its acceleration is."""
     assert eomgen.derive(eomgen.loads(BY_CROSS)).certify().ok
-    asked = '[outputs]\na = "c\'\'"\nay = "ay(B.b)"\nR = "reaction_y({0})"\nM = "reaction_couple_z({0})"\n'
-    one = eomgen.solve(eomgen.loads(BY_JOINT + asked.format("B")))
-    other = eomgen.solve(eomgen.loads(BY_CROSS + asked.format("u")))
+    requested = '[outputs]\na = "c\'\'"\nay = "ay(B.b)"\nR = "reaction_y({0})"\nM = "reaction_couple_z({0})"\n'
+    one = eomgen.solve(eomgen.loads(BY_JOINT + requested.format("B")))
+    other = eomgen.solve(eomgen.loads(BY_CROSS + requested.format("u")))
     for name, answer in one.items():
         assert other[name].value == pytest.approx(answer.value, rel=1e-9, abs=1e-12)
     ends = [eomgen.simulate(eomgen.loads(text), time=1)["c"][-1] for text in (BY_JOINT, BY_CROSS)]

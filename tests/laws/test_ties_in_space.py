@@ -1,4 +1,4 @@
-"""Ties in space, equations between points, friction on surfaces, and rows of velocities that can be integrated.
+"""Constraints in space, equations between points, friction on surfaces, and rows of velocities that can be integrated.
 
 Oracles: Newton's law and Lagrange's multipliers written here in numbers, closed forms of textbooks, the same system in
 the plane or with a joint.
@@ -56,7 +56,7 @@ shape = {{ kind = "particle", mass = "m" }}
 joint = {{ kind = "placed", at = ["x", "y", "z"] }}
 """
 BOWL = '[constraints.bowl]\nkind = "equation"\ngap = "z(bead.center) - k*(x(bead.center)^2 + y(bead.center)^2)"\n'
-ASKED = """
+REQUESTED = """
 [outputs]
 x = { value = "reaction_x(bowl)", at = "t = 0" }
 y = { value = "reaction_y(bowl)", at = "t = 0" }
@@ -75,7 +75,7 @@ def multiplier_on_the_bowl(m: float, k: float, q: np.ndarray, v: np.ndarray) -> 
 def test_an_equation_between_points_pushes_along_its_gradient():
     """A bead on a paraboloid: R = lam grad phi, as Newton's law asks."""
     lam, R = multiplier_on_the_bowl(1.5, 2, np.array([0.3, 0.1]), np.array([0.4, -0.2]))
-    found = values_of(BEAD + BOWL + WEIGHT + ASKED)
+    found = values_of(BEAD + BOWL + WEIGHT + REQUESTED)
     assert [found["x"], found["y"], found["z"]] == pytest.approx(R)
     assert found["lam"] == pytest.approx(lam)
 
@@ -121,7 +121,7 @@ kind = "equation"
 """
 BY_POINTS = 'gap = "(x(follower.center, cam)/a)^2 + (y(follower.center, cam)/b)^2 - 1"\n'
 BY_COORDINATES = 'gap = "((e*cos(phi) + h*sin(phi))/a)^2 + ((h*cos(phi) - e*sin(phi))/b)^2 - 1"\n'
-CAM_ASKED = {
+CAM_REQUESTED = {
     "x": "reaction_x(contact)",
     "y": "reaction_y(contact)",
     "axle": "reaction_x(cam)",
@@ -138,7 +138,7 @@ def test_a_cam_with_an_offset_follower_moves_as_its_equation_in_coordinates():
 def test_the_force_of_a_cam_is_normal_to_its_profile_and_borne_by_axle_and_guide():
     """F along grad of the profile in the cam's axes, no other force along x: axle = - F_x, guide = F_x (left is -x)."""
     run = eomgen.simulate(model_of(CAM + BY_POINTS, "plane"), time=0.01)
-    found = {name: run.reactions[asked][0] for name, asked in CAM_ASKED.items()}
+    found = {name: run.reactions[requested][0] for name, requested in CAM_REQUESTED.items()}
     h = found_height(0.3)
     c, s = cos(0.3), sin(0.3)
     u, v = 0.03 * c + h * s, h * c - 0.03 * s
@@ -179,11 +179,11 @@ BY_SKATE = 'kind = "skate"\npoint = "sleigh.blade"\nalong = [1, 0]\n'
 
 def test_a_knife_edge_written_as_velocities_of_a_point_is_a_skate():
     """n . v = 0 with the force lam n: the same motion, and the same force on the blade."""
-    asked = '[outputs]\nx = { value = "reaction_x(blade)", at = "t = 0" }\n'
+    requested = '[outputs]\nx = { value = "reaction_x(blade)", at = "t = 0" }\n'
     normal = '[outputs]\nn = { value = "reaction_n(blade)", at = "t = 0" }\n'
-    one, other = (eomgen.simulate(model_of(SLEIGH + tie, "plane"), time=2) for tie in (BY_RATE, BY_SKATE))
+    one, other = (eomgen.simulate(model_of(SLEIGH + constraint, "plane"), time=2) for constraint in (BY_RATE, BY_SKATE))
     assert one.x[-1] == pytest.approx(other.x[-1], abs=1e-7)
-    x, n = values_of(SLEIGH + BY_RATE + asked, "plane")["x"], values_of(SLEIGH + BY_SKATE + normal, "plane")["n"]
+    x, n = values_of(SLEIGH + BY_RATE + requested, "plane")["x"], values_of(SLEIGH + BY_SKATE + normal, "plane")["n"]
     assert x == pytest.approx(-n * sin(0.4636476090008061))
 
 
@@ -253,7 +253,7 @@ force = [5, 1, 7]
 
 def test_a_guide_in_space_is_a_prismatic_joint():
     """Two forces and three couples: the same acceleration, and the same force and couple in space."""
-    asked = "[outputs]\n" + "".join(
+    requested = "[outputs]\n" + "".join(
         f'{kind}{k} = {{ value = "reaction_{kind}{k}(NAME)", at = "t = 0" }}\n'
         for kind in ("", "couple_")
         for k in "xyz"
@@ -266,8 +266,8 @@ def test_a_guide_in_space_is_a_prismatic_joint():
     slide = BLOCK.replace("COORDINATES", "s = 0").replace(
         "JOINT", 'joint = { kind = "prismatic", axis = [1, 2, 2], displacement = "s" }'
     )
-    one = values_of(free + WEIGHT + asked.replace("NAME", "rail"))
-    other = values_of(slide + WEIGHT + asked.replace("NAME", "block"))
+    one = values_of(free + WEIGHT + requested.replace("NAME", "rail"))
+    other = values_of(slide + WEIGHT + requested.replace("NAME", "block"))
     assert one == pytest.approx(other, abs=1e-9)
     assert freedom_of(model_of(free)).by_rank == 1
 
@@ -678,7 +678,7 @@ def test_short_integrals_of_roots_of_sines_are_given():
 
 
 def test_a_ball_that_rolls_reaches_all_five_freedoms():
-    """Two rows of no slip on a plane, with a unit quaternion: 3 freedoms in velocity, 5 in position."""
+    """Two rows of no slip on a plane, with a unit quaternion: 3 degrees of freedom in velocity, 5 in position."""
     text = BALL.replace("slip = true\n", "").replace('friction = "mu"\n', "")
     freedom = freedom_of(model_of(text))
     assert freedom.integrability is not None
@@ -699,7 +699,7 @@ WRONG = [
 
 @each("text, message", WRONG)
 def test_what_an_equation_or_a_tie_cannot_say_in_space_is_an_error_of_the_model(text, message):
-    """The culprit and the mend, from reading the model."""
+    """The culprit and the fix, from reading the model."""
     with pytest.raises(ModelError) as caught:
         model_of(text)
     assert message in str(caught.value)

@@ -8,7 +8,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.linearization import polynomial as conditions
-from eomgen.proof.small_motions_told import linear_entries
+from eomgen.proof.small_motions_reported import linear_entries
 
 TURNING = """
 eomgen = 1
@@ -27,8 +27,8 @@ g = { kind = "generalized", coordinate = "y", value = "-2*k*y - c*y' - n*x' - h*
 FADING, SWINGING = {}, {"h": 3.0}  # a follower force lets it grow
 
 
-def wrong(told: dict[str, Any], found: eomgen.Linearization) -> str:
-    (check,) = linear_entries(told, found.A, found.B)
+def wrong(reported: dict[str, Any], found: eomgen.Linearization) -> str:
+    (check,) = linear_entries(reported, found.A, found.B)
     return check.detail
 
 
@@ -44,24 +44,24 @@ CHANGES = {
 def test_a_matrix_under_another_name_is_contradicted(swap):
     """x' = A x + B_x w, A = [F E; -M^-1 K, -M^-1 C], C = D + G."""
     found = eomgen.linearize(eomgen.loads(TURNING))
-    told = found.entries()
-    assert not wrong(told, found)
-    assert wrong({**told, **{name: told[other] for name, other in swap.items()}}, found)
+    reported = found.entries()
+    assert not wrong(reported, found)
+    assert wrong({**reported, **{name: reported[other] for name, other in swap.items()}}, found)
 
 
 @pytest.mark.parametrize("values", [FADING, SWINGING], ids=["fades", "grows"])
 def test_words_of_motions_and_of_stability_are_those_of_the_eigenvalues(values):
     """grows: Re > 0; flutter: with Im != 0."""
     found = eomgen.linearize(eomgen.loads(TURNING), parameters=values)
-    told = found.entries()
-    assert not wrong(told, found)
-    modes = told["modes"]
+    reported = found.entries()
+    assert not wrong(reported, found)
+    modes = reported["modes"]
     turned = {"grows": "fades", "fades": "grows"}
     other = [{**mode, "kind": " ".join(turned.get(word, word) for word in mode["kind"].split())} for mode in modes]
-    assert wrong({**told, "modes": other}, found)
-    assert wrong({**told, "modes": [{**modes[0], "hertz": modes[0]["hertz"] * 2}, *modes[1:]]}, found)
-    assert wrong({**told, "why": "an oscillation grows (flutter)" if not values else "(divergence)"}, found)
-    assert wrong({**told, "eigenvalues": told["eigenvalues"][1:]}, found)
+    assert wrong({**reported, "modes": other}, found)
+    assert wrong({**reported, "modes": [{**modes[0], "hertz": modes[0]["hertz"] * 2}, *modes[1:]]}, found)
+    assert wrong({**reported, "why": "an oscillation grows (flutter)" if not values else "(divergence)"}, found)
+    assert wrong({**reported, "eigenvalues": reported["eigenvalues"][1:]}, found)
 
 
 def test_a_condition_that_is_missing_is_seen_at_other_parameters(monkeypatch):

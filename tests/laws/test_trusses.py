@@ -30,7 +30,7 @@ def model(nodes: Nodes, members: list[str], rest: str, *, space: str = "plane", 
     )
 
 
-def asked(members: list[str]) -> str:
+def requested(members: list[str]) -> str:
     return "[outputs]\n" + "".join(f'"{m.replace("-", "_")}" = "tension(T, {m})"\n' for m in members)
 
 
@@ -71,7 +71,7 @@ def test_members_are_those_of_the_method_of_joints(seed):
         f'f{k} = {{ kind = "force", point = "T.{n}", force = [{x}, {y}] }}\n'
         for k, (n, (x, y)) in enumerate(loads.items())
     )
-    found = answers(model(nodes, members, rest + asked(members) + 'A_x = "reaction_x(A)"\nB = "reaction_n(B)"\n'))
+    found = answers(model(nodes, members, rest + requested(members) + 'A_x = "reaction_x(A)"\nB = "reaction_n(B)"\n'))
     structure = Structure(joints=nodes)
     for member in members:
         i, j = member.split("-")
@@ -85,13 +85,14 @@ def test_members_are_those_of_the_method_of_joints(seed):
 
 
 def test_lengths_with_roots_stay_exact():
-    """At the top of a triangle 6 a wide and a high: 2 S/sqrt(10) = -P, S = -sqrt(10)/2 P; the tie carries 3/2 P."""
+    """At the top of a triangle 6 a wide and a high: 2 S/sqrt(10) = -P, S = -sqrt(10)/2 P; the constraint carries 3/2
+    P."""
     nodes: Nodes = {"n1": (0, 0), "n2": ('"6*a"', 0), "n3": ('"3*a"', '"a"')}  # type: ignore[dict-item]
     rest = '[constraints]\nA = { kind = "pin", points = ["T.n1"] }\n'
     rest += 'B = { kind = "support", point = "T.n2", normal = [0, 1] }\n'
     rest += '[forces.f]\nkind = "force"\npoint = "T.n3"\nforce = [0, "-P"]\n'
     members = ["n1-n2", "n2-n3", "n1-n3"]
-    found = eomgen.solve(model(nodes, members, rest + asked(members), parameters="P = {}\na = { positive = true }"))
+    found = eomgen.solve(model(nodes, members, rest + requested(members), parameters="P = {}\na = { positive = true }"))
     assert [a.exact for a in found.values()] == ["3/2*P", "-1/2*sqrt(10)*P", "-1/2*sqrt(10)*P"]
 
 
@@ -129,7 +130,7 @@ def test_a_truss_in_space_is_in_balance_at_every_node():
     rest += f'[forces.f]\nkind = "force"\npoint = "T.top"\nforce = {F.tolist()}\n'
     members = [f"top-{k}" for k in feet]
     nodes: Nodes = {"top": tuple(top), **feet}
-    outputs = asked(members) + "".join(f'R{k}{x} = "reaction_{x}({k})"\n' for k in feet for x in "xyz")
+    outputs = requested(members) + "".join(f'R{k}{x} = "reaction_{x}({k})"\n' for k in feet for x in "xyz")
     found = answers(model(nodes, members, rest + outputs, space="space"))
     arms = {k: (np.array(at) - top) / np.linalg.norm(np.array(at) - top) for k, at in feet.items()}
     assert sum(found[f"top_{k}"] * e for k, e in arms.items()) + F == pytest.approx(np.zeros(3), abs=1e-9)
@@ -195,12 +196,12 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("old", "new", "told"), WRONG.values(), ids=WRONG)
-def test_a_wrong_truss_is_refused_by_name(old, new, told):
-    """What, where, mend."""
+@pytest.mark.parametrize(("old", "new", "reported"), WRONG.values(), ids=WRONG)
+def test_a_wrong_truss_is_refused_by_name(old, new, reported):
+    """What, where, fix."""
     text = TRIANGLE.read_text()
     assert old in text
-    with pytest.raises(eomgen.EomgenError, match=told.replace("(", r"\(").replace(")", r"\)")):
+    with pytest.raises(eomgen.EomgenError, match=reported.replace("(", r"\(").replace(")", r"\)")):
         eomgen.derive(eomgen.loads(text.replace(old, new)))
 
 

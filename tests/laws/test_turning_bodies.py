@@ -23,8 +23,8 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
-ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
-BY_HAND = [(system, output) for system, output in ASKED if ANSWERS[system][output] is not None]
+REQUESTED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
+BY_HAND = [(system, output) for system, output in REQUESTED if ANSWERS[system][output] is not None]
 MOVING = ("w1", "w2", "w3", "phi", "theta", "psi", "phi'", "theta'", "psi'")
 ALL_UNITS = {system: UNITS.get(system, {}) | INFERRED.get(system, {}) for system in ANSWERS}
 
@@ -60,7 +60,7 @@ def found_by_the_oracle(system: str, other: bool) -> dict[str, float]:
 
 
 @each("other", [False, True])
-@each("system, output", ASKED, by="system")
+@each("system, output", REQUESTED, by="system")
 def test_the_number_is_the_oracles(system, output, other):
     """dL/dt = torque and R' = R w~, at the file's parameters and at others."""
     answer, expected = answers(system, other)[output], found_by_the_oracle(system, other)[output]

@@ -124,12 +124,12 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("old", "new", "told"), WRONG.values(), ids=WRONG)
-def test_what_no_balance_gives_is_said(old, new, told):
+@pytest.mark.parametrize(("old", "new", "reported"), WRONG.values(), ids=WRONG)
+def test_what_no_balance_gives_is_said(old, new, reported):
     """Each in the answer that asks for it."""
     assert old in LEVER
     answer = solved(LEVER.replace(old, new))["P"]
-    assert answer.exact is None and told in answer.message
+    assert answer.exact is None and reported in answer.message
 
 
 def test_friction_leaves_a_range_and_is_refused():

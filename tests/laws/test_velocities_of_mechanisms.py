@@ -148,7 +148,11 @@ e = "epsilon(plate)"
         ('velocity = "x(plate.A) = 2"', "w", "says nothing of velocities"),
         ('velocity = "epsilon(plate) = 2"', "w", "put it under `acceleration`"),
         ('velocity = "omega(plate) = 2"', "k", "the unknown 'k' stands in no load and in no equation of [given]"),
-        ('velocity = ["vx(plate.A) = k", "vx(plate.B) = k"]', "k", "3 freedoms and 1 unknown, 1 equation given"),
+        (
+            'velocity = ["vx(plate.A) = k", "vx(plate.B) = k"]',
+            "k",
+            "3 degrees of freedom and 1 unknown, 1 equation given",
+        ),
     ],
 )
 def test_an_equation_in_the_wrong_place_is_said_so(given, output, said):

@@ -47,8 +47,8 @@ def test_a_node_without_mass_follows_from_its_balance(held, roots):
     assert found.certify().ok
     equations = eomgen.derive(model)
     assert equations.certify().ok and "n moves no mass" in equations.assumptions[0]
-    told = reactions(model)
-    assert told["reaction_n(node)"].value == 0 and told.certify().ok
+    reported = reactions(model)
+    assert reported["reaction_n(node)"].value == 0 and reported.certify().ok
 
 
 @pytest.mark.parametrize(
@@ -75,7 +75,7 @@ def test_a_run_of_a_node_without_mass_is_that_of_its_balance(held, node, rate):
 
 
 def test_a_node_that_a_nonlinear_damper_holds_is_refused_by_name():
-    """c n' |n'| = k2 (x - n) is not linear in n': no tie says so."""
+    """c n' |n'| = k2 (x - n) is not linear in n': no constraint says so."""
     text = NODE.replace("HELD", "force = \"-c*n'*abs(n')\"").replace("START", "0")
     with pytest.raises(ModelError, match="the free coordinate 'n' moves no mass"):
         eomgen.simulate(eomgen.loads(text), time=1, target="numpy")

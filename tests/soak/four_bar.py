@@ -1,4 +1,5 @@
-"""A four-bar runs for long: `python tests/soak/four_bar.py --time 1000`; ties and energy are measured, not believed.
+"""A four-bar runs for long: `python tests/soak/four_bar.py --time 1000`; constraints and energy are measured, not
+believed.
 
 What is asked in the end is 1e6 s; a run of it takes as many times longer as it is longer.
 """
@@ -17,9 +18,9 @@ MODEL = Path(__file__).parents[2] / "models" / "four_bar.toml"
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--time", type=float, default=100.0)
-    asked = parser.parse_args()
+    requested = parser.parse_args()
     begun = time.process_time()
-    run = eomgen.simulate(MODEL, time=asked.time, samples=101)
+    run = eomgen.simulate(MODEL, time=requested.time, samples=101)
     drift = "none is kept" if run.drift is None else f"{run.drift:.1e}"
     gap = "none" if run.gap is None else f"{run.gap:.1e}"
     seconds = time.process_time() - begun

@@ -154,8 +154,8 @@ def chaos(seconds: float) -> str:
     within = {size: np.flatnonzero(off > size) for size in (1e-9, 1e-6, 1e-3)}
     held = ", ".join(f"{size:g} rad to {times[late[0]]:g} s" for size, late in within.items() if len(late))
     worst = np.max(off[: within[1e-9][0]] if len(within[1e-9]) else off)
-    told = f"within {held}; the end is {off[-1]:.0e} rad off" if held else "so to its end"
-    return f"angle off by {worst:.1e}, {told}; energy drift {run.drift:.1e}, {run.steps} steps"
+    reported = f"within {held}; the end is {off[-1]:.0e} rad off" if held else "so to its end"
+    return f"angle off by {worst:.1e}, {reported}; energy drift {run.drift:.1e}, {run.steps} steps"
 
 
 def stiffness(seconds: float) -> str:
@@ -188,13 +188,16 @@ def main() -> None:
     parser.add_argument("motion", choices=[one.__name__ for one in ALL])
     parser.add_argument("--length", type=float, default=100.0, help="events, or seconds of chaos and stiffness")
     parser.add_argument("--at-once", type=int, default=AT_ONCE, help="periods of one run, of events")
-    asked = parser.parse_args()
-    one = next(one for one in ALL if one.__name__ == asked.motion)
-    begun, soon = time.process_time(), min(asked.length, 1000.0) if one in (stick_slip, impacts) else asked.length
-    before = (one(int(soon)), peak()) if soon < asked.length else ("", "")
-    told = one(int(asked.length), asked.at_once) if one in (stick_slip, impacts) else one(asked.length)
+    requested = parser.parse_args()
+    one = next(one for one in ALL if one.__name__ == requested.motion)
+    begun, soon = (
+        time.process_time(),
+        min(requested.length, 1000.0) if one in (stick_slip, impacts) else requested.length,
+    )
+    before = (one(int(soon)), peak()) if soon < requested.length else ("", "")
+    reported = one(int(requested.length), requested.at_once) if one in (stick_slip, impacts) else one(requested.length)
     memory = f"memory {before[1]} after {soon:g}, {peak()} after all" if before[1] else f"memory {peak()}"
-    print(f"{asked.motion} {asked.length:g}: {told}; {memory}; {time.process_time() - begun:.0f} s of CPU")
+    print(f"{requested.motion} {requested.length:g}: {reported}; {memory}; {time.process_time() - begun:.0f} s of CPU")
 
 
 if __name__ == "__main__":

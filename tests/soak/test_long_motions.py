@@ -22,6 +22,6 @@ SHORT = [("stick_slip", 20), ("impacts", 20), ("stiffness", 3.0), ("chaos", 0.4 
 @pytest.mark.parametrize(("motion", "length"), SHORT)
 def test_a_long_motion_keeps_its_law(motion, length):
     """Instants of events and places to 1e-8 (s, m, rad) beside closed forms, a chaotic angle beside its series."""
-    told = getattr(long_motions, motion)(length)
-    off = [float(x) for x in re.findall(r"\d\.\de[-+]\d+", told)]
-    assert off and max(off) < 1e-8, told
+    reported = getattr(long_motions, motion)(length)
+    off = [float(x) for x in re.findall(r"\d\.\de[-+]\d+", reported)]
+    assert off and max(off) < 1e-8, reported

@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.lowered import Language
-from eomgen.codegen.lowering import Lowered, lowered
+from eomgen.codegen.lowering import Statements, statements
 from eomgen.codegen.program import Program
-from eomgen.records import dataclass
+from eomgen.codegen.statements import Language
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.formula import NAMES
 
 
@@ -97,7 +97,9 @@ class Role:
 
 RHS = Role("rhs", "", "dx", "dx = f(t, x, p), the equations of motion solved for the accelerations")
 INVERSE = Role("inverse", "_inverse", "tau", "tau = f(t, x, a, p), the forces and torques that accelerations a take")
-REACTIONS = Role("reactions", "_reactions", "out", "out = f(t, x, p), the reactions of joints and ties in the motion")
+REACTIONS = Role(
+    "reactions", "_reactions", "out", "out = f(t, x, p), the reactions of joints and constraints in the motion"
+)
 
 
 OUTPUTS = Role("outputs", "_outputs", "out", "out = f(t, x, p), what the model asks in [outputs], in SI")
@@ -105,7 +107,7 @@ MATRICES = Role(
     "matrices",
     "_matrices",
     "out",
-    "out = f(t, x, p), of M a = forcing + J^T lam and, where ties close, J a + gamma = 0",
+    "out = f(t, x, p), of M a = forcing + J^T lam and, where constraints close, J a + gamma = 0",
 )
 REGRESSOR = Role(
     "regressor",
@@ -275,12 +277,12 @@ class FileForm:
     path: str = ""
     test_path: str = ""
     top: str = "{head}\n{text}"
-    told: Callable[[str], str] | None = None
+    reported: Callable[[str], str] | None = None
     prefix: str = ""
     given: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     fixed: Mapping[str, str] = field(default_factory=dict)
     marked: Mapping[str, tuple[str, str]] = field(default_factory=dict)
-    body: Callable[[Lowered], Mapping[str, str]] | None = None
+    body: Callable[[Statements], Mapping[str, str]] | None = None
     keys: tuple[str, str, str] = ("x_names", "p_names", "input_names")
     named: NameLines | str = ""
     quoted: Callable[[str], str] = in_quotes
@@ -317,12 +319,12 @@ class FileForm:
         words |= {"upper": others.upper(), "MAIN": words["main"].upper(), "a": "" if without else "a, ", **self.fixed}
         return words | {word: pair[without].format(**words) for word, pair in self.given.items()}
 
-    def lowered(
+    def statements(
         self, program: Program, stem: str, role: Role, remarks: Mapping[str, str] | None = None
-    ) -> tuple[Lowered, dict[str, Any]]:
+    ) -> tuple[Statements, dict[str, Any]]:
         """The functions of a program, and the words with what they give."""
         words = self.words(program, stem, role)
-        made = lowered(program, self.language, role.result, self.prefix.format(**words), remarks)
+        made = statements(program, self.language, role.result, self.prefix.format(**words), remarks)
         words |= {"constants": made.constants, "size": max(made.constants, 1)}
         return made, words | {"names": "\n".join(self._names(program))}
 
@@ -333,9 +335,9 @@ class FileForm:
             stem: NAME of the files and functions, an identifier.
             remarks: of an argument's name: its unit and what it is, for the comments.
         """
-        return self.written(*self.lowered(program, stem, role, remarks), [role.about])
+        return self.written(*self.statements(program, stem, role, remarks), [role.about])
 
-    def written(self, made: Lowered, words: Mapping[str, Any], head: Sequence[str] = ()) -> str:
+    def written(self, made: Statements, words: Mapping[str, Any], head: Sequence[str] = ()) -> str:
         """Lowered functions with what stands around them."""
         own = self.body(made) if self.body else {"functions": "\n\n".join(made.texts(self.language))}
         there = {word: text * (mark in own["functions"]) for word, (mark, text) in self.marked.items()}
@@ -355,33 +357,35 @@ class FileForm:
     def head(self, lines: Sequence[str]) -> str:
         """Lines as the language's remarks."""
         language = self.language
-        told = self.told or (lambda line: language.remark.format(text=language.harmless(line)).rstrip())
-        return "\n".join(map(told, lines))
+        reported = self.reported or (lambda line: language.remark.format(text=language.harmless(line)).rstrip())
+        return "\n".join(map(reported, lines))
 
     def files(self, stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
         """The file of each function, and its test."""
-        return {path: text for program, told in emitted for path, text in self.of_one(stem, program, told).items()}
+        return {
+            path: text for program, reported in emitted for path, text in self.of_one(stem, program, reported).items()
+        }
 
-    def of_one(self, stem: str, program: Program, told: Description) -> dict[str, FileContent]:
+    def of_one(self, stem: str, program: Program, reported: Description) -> dict[str, FileContent]:
         """The file of one function, and its test."""
-        made, words = self.lowered(program, stem, told.role, told.remarks)
-        lines = header(program, told)
+        made, words = self.statements(program, stem, reported.role, reported.remarks)
+        lines = header(program, reported)
         text = self.top.format(**words, head=self.head(lines), text=self.written(made, words, lines))
         test = (
-            {self.test_path.format(**words): self.tested(program, stem, told)}
-            if told.vectors and self.test_path
+            {self.test_path.format(**words): self.tested(program, stem, reported)}
+            if reported.vectors and self.test_path
             else {}
         )
-        return {self.path_of(program, stem, told.role): text, **test}
+        return {self.path_of(program, stem, reported.role): text, **test}
 
     def path_of(self, program: Program, stem: str, role: Role) -> str:
         """Where a function stands."""
         return self.path.format(**self.words(program, stem, role))
 
-    def tested(self, program: Program, stem: str, told: Description) -> str:
+    def tested(self, program: Program, stem: str, reported: Description) -> str:
         """What holds the function against its test vectors."""
-        words = self.words(program, stem, told.role)
-        lines = "\n".join(self.checked(v, words) for v in told.vectors)
+        words = self.words(program, stem, reported.role)
+        lines = "\n".join(self.checked(v, words) for v in reported.vectors)
         return self.finished(self.test.format(**words, lines=lines))
 
     def checked(self, v: TestVector, words: Mapping[str, Any]) -> str:
@@ -423,8 +427,8 @@ def header(program: Program, description: Description) -> list[str]:
     for place, name in enumerate(description.outputs):
         lines.append(f"    {result}[{place}]  {name}  {description.remarks.get(name, '')}".rstrip())
     first = 0
-    told = description.columns or ((),) * len(description.blocks)
-    for (name, rows, columns), meant in zip(description.blocks, told, strict=True):
+    reported = description.columns or ((),) * len(description.blocks)
+    for (name, rows, columns), meant in zip(description.blocks, reported, strict=True):
         last = first + rows * columns - 1
         lines.append(f"    {result}[{first}..{last}]  {name}, {rows} x {columns}, row after row")
         lines += [f"        column {k} of {name}  {column}" for k, column in enumerate(meant, 1)]

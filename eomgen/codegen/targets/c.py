@@ -11,9 +11,9 @@ from typing import Any
 
 from eomgen.codegen.build import C as COMPILER
 from eomgen.codegen.build import library, of_this_machine
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
-from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.lowering import Statements
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.targets.base import (
     FUNCTIONS,
     QUOTED,
@@ -191,7 +191,7 @@ FORM = FileForm(
     _MODULE,
     "{main}.c",
     top='{head}#include "{main}.h"\n\n{text}\n',
-    told=lambda line: f" * {comment(line)}".rstrip(),
+    reported=lambda line: f" * {comment(line)}".rstrip(),
     prefix="{others}_",
     given={
         "one": (f"double t, {_X}, {_A}, {_P}", f"double t, {_X}, {_P}"),
@@ -220,13 +220,13 @@ def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, 
 
 def c_functions(program: Program) -> Functions:
     """The program compiled (or found in the cache) and callable."""
-    made, words = FORM.lowered(program, "eomgen", RHS)
+    made, words = FORM.statements(program, "eomgen", RHS)
     return functions_of(library(FORM.written(made, words), by=of_this_machine()), program, "eomgen", made.constants)
 
 
 def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
     """Several programs, compiled as one text."""
-    made = [FORM.lowered(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
+    made = [FORM.statements(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
     compiled = library("\n".join(_apart(*each) for each in made), by=of_this_machine())
     return tuple(
         functions_of(compiled, program, words["stem"], each.constants)
@@ -236,10 +236,10 @@ def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
 
 def apart(program: Program, stem: str, role: Role) -> str:
     """The functions of a program, to stand in one text with those of others."""
-    return _apart(*FORM.lowered(program, stem, role))
+    return _apart(*FORM.statements(program, stem, role))
 
 
-def _apart(made: Lowered, words: Mapping[str, Any]) -> str:
+def _apart(made: Statements, words: Mapping[str, Any]) -> str:
     """The functions of a program, what is hidden in them under names of its own."""
     hidden = [C.called(op, ["0"] * 3).partition("(")[0] for op in sorted(made.ops & C.defined.keys())]
     hidden += [*(table.name for table in made.tables), *(function.name for function in made.kernels)]
@@ -250,11 +250,11 @@ def _apart(made: Lowered, words: Mapping[str, Any]) -> str:
 def _files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
     files: dict[str, FileContent] = {}
-    for program, told in emitted:
-        made, words = FORM.lowered(program, stem, told.role, told.remarks)
-        words |= {"head": f"/*\n{FORM.head(header(program, told))}\n */\n"}
+    for program, reported in emitted:
+        made, words = FORM.statements(program, stem, reported.role, reported.remarks)
+        words |= {"head": f"/*\n{FORM.head(header(program, reported))}\n */\n"}
         text = FORM.top.format(**words, text=FORM.written(made, words))
-        tested = FORM.tested(program, stem, told) if told.vectors else ""
+        tested = FORM.tested(program, stem, reported) if reported.vectors else ""
         files |= {f"{words['main']}.c": text + tested, f"{words['main']}.h": _DECLARED.format(**words)}
     return files
 

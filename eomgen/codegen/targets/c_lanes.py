@@ -15,9 +15,9 @@ from functools import cache
 
 from eomgen.codegen import build
 from eomgen.codegen.expressions import ATOM, RankedText, ranked_number
-from eomgen.codegen.lowered import CHANGED, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program, spheres_of
+from eomgen.codegen.lowering import statements
+from eomgen.codegen.program import Program, unit_quaternions_of
+from eomgen.codegen.statements import CHANGED, READ, REAL, ROOM, Language
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.numbers import Number
@@ -56,7 +56,7 @@ def text_of(name: str) -> str:
 
 def lanes_text(program: Program) -> tuple[int, str]:
     """(lanes, eomgen_constants and eomgen_evaluate over vectors of so many)."""
-    made = lowered(program, LANES, "dx", "eomgen_")
+    made = statements(program, LANES, "dx", "eomgen_")
     if made.kernels:
         return 1, f"{text_of('one_lane.c')}\n{c_text(program, 'eomgen')}"
     return WIDTH, "\n\n".join([f"#define LANES {WIDTH}\n{text_of('lanes.c')}", *made.texts(LANES)])
@@ -64,7 +64,7 @@ def lanes_text(program: Program) -> tuple[int, str]:
 
 def constants_of(program: Program) -> int:
     """How many numbers the parameters determine."""
-    return lowered(program, C, "dx", "eomgen_").constants
+    return statements(program, C, "dx", "eomgen_").constants
 
 
 @cache
@@ -122,7 +122,7 @@ def integrator_files(
         start, values: of the states and parameters in `main`, None where one is missing.
         rtol: there, where nobody says another.
     """
-    n, constants = len(program.states), max(lowered(program, C, "dx", f"{stem}_").constants, 1)
+    n, constants = len(program.states), max(statements(program, C, "dx", f"{stem}_").constants, 1)
     states = [x.name for x in program.states]
     parameters = list(program.symbols.parameters)
     defined = {
@@ -160,13 +160,13 @@ def _named(text: str, stem: str) -> str:
 def _hold(stem: str, program: Program) -> str:
     """Quaternions back to norm 1; whether there are any."""
     lines = [f"static int {stem}_hold(double *x)", "{"]
-    spheres = spheres_of(program)
-    for places in spheres:
+    unit_quaternions = unit_quaternions_of(program)
+    for places in unit_quaternions:
         squares = " + ".join(f"x[{k}]*x[{k}]" for k in places)
         lines += ["    {", f"        double norm = sqrt({squares});", "        if (norm > 0)"]
         lines += [f"            {', '.join(f'x[{k}] /= norm' for k in places)};", "    }"]
-    lines += [] if spheres else ["    (void)x;"]
-    return "\n".join([*lines, f"    return {int(bool(spheres))};", "}"])
+    lines += [] if unit_quaternions else ["    (void)x;"]
+    return "\n".join([*lines, f"    return {int(bool(unit_quaternions))};", "}"])
 
 
 def _listed(values: Sequence[float]) -> str:

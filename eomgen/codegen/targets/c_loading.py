@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.codegen.build import function_of
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Address, Functions
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 _ADDRESS = ctypes.c_void_p
 

@@ -10,8 +10,8 @@ from dataclasses import replace
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
-from eomgen.codegen.lowered import INDICES, INT, READ
-from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.lowering import Statements
+from eomgen.codegen.statements import INDICES, INT, READ
 from eomgen.codegen.targets.base import QUOTED, SUFFIXED, SingleWords, by_cases, in_quotes
 from eomgen.codegen.targets.c import CONSTANTS, ENTRY, SELF_TEST, C
 from eomgen.codegen.targets.c import FORM as C_FORM
@@ -98,7 +98,7 @@ struct {main} {{
 """
 
 
-def _inner(made: Lowered) -> dict[str, str]:
+def _inner(made: Statements) -> dict[str, str]:
     """The functions as members."""
     lines = "\n\n".join(made.texts(CPP)).split("\n")
     return {"functions": "\n".join(f"    {line}".rstrip() for line in lines)}
@@ -117,7 +117,7 @@ FORM = replace(
     path="{main}.hpp",
     test_path="{main}_test.cpp",
     top="{head}\n#ifndef {MAIN}_HPP\n#define {MAIN}_HPP\n\n{text}\n#endif\n",
-    told=None,
+    reported=None,
     prefix="",
     given={
         **C_FORM.given,

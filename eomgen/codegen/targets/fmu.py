@@ -112,8 +112,8 @@ def _firsts(programs: Sequence[Program]) -> list[int]:
 def source(stem: str, emitted: Sequence[Emitted]) -> str:
     """Everything in one text of C."""
     kept = _kept(emitted)
-    program, told = kept[0]
-    start, firsts = _start(told, program), _firsts([each for each, _ in kept])
+    program, reported = kept[0]
+    start, firsts = _start(reported, program), _firsts([each for each, _ in kept])
     calls = "".join(
         f" {other.role.main(stem)}(t, x, p, inputs, (out) + {at - firsts[1]});"
         for (_, other), at in zip(kept[1:], firsts[1:], strict=True)
@@ -144,32 +144,32 @@ def _braces(values: Sequence[float]) -> str:
     return "{" + (", ".join(map(repr, values)) or "0") + "}"
 
 
-def _start(told: Description, program: Program) -> tuple[Sequence[float], Sequence[float]]:
+def _start(reported: Description, program: Program) -> tuple[Sequence[float], Sequence[float]]:
     """x and p at the start, as the test vectors have them; zeros and the parameters of one where the model has none."""
-    first = next((v for v in told.vectors if v.t == 0 and v.inputs is None), None)
+    first = next((v for v in reported.vectors if v.t == 0 and v.inputs is None), None)
     if first is not None:
         return first.x, first.p
-    p = told.vectors[0].p if told.vectors else (1.0,) * len(program.symbols.parameters)
+    p = reported.vectors[0].p if reported.vectors else (1.0,) * len(program.symbols.parameters)
     return (0.0,) * len(program.states), p
 
 
 def token(stem: str, emitted: Sequence[Emitted]) -> str:
     """What belongs to this model alone."""
-    text = "\n".join(c_text(program, stem, told.role) for program, told in _kept(emitted))
+    text = "\n".join(c_text(program, stem, reported.role) for program, reported in _kept(emitted))
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
 def _variables(kept: Sequence[Emitted]) -> list[tuple[str, str, str]]:
     """(name, remark, attributes) of each, in the order of the value references."""
-    program, told = kept[0]
-    symbols, (x, p), states = program.symbols, _start(told, program), [node.name for node in program.states]
+    program, reported = kept[0]
+    symbols, (x, p), states = program.symbols, _start(reported, program), [node.name for node in program.states]
     how = [f'causality="local" initial="exact" start="{value!r}"' for value in x]
     how += [f'causality="local" derivative="{k}"' for k in range(1, len(x) + 1)]
     how += [f'causality="parameter" variability="tunable" start="{value!r}"' for value in p]
     how += ['causality="input" start="0.0"'] * len(symbols.inputs)
     names = (*states, *(f"der({name})" for name in states), *symbols.parameters, *symbols.inputs)
     found = [("time", "", 'causality="independent" variability="continuous"')]
-    found += [(name, told.remarks.get(name, ""), said) for name, said in zip(names, how, strict=True)]
+    found += [(name, reported.remarks.get(name, ""), said) for name, said in zip(names, how, strict=True)]
     for _, other in kept[1:]:
         found += [(name, other.remarks.get(name, ""), 'causality="output"') for name in other.outputs]
     return found
@@ -194,13 +194,13 @@ def description(stem: str, emitted: Sequence[Emitted]) -> str:
         taken.add(unique)
         lines.append(f'<Float64 name={quoteattr(unique)} valueReference="{k}" {attributes}/>')
     first = len(lines) - sum(len(each.outputs) for each, _ in kept[1:])
-    rates, outputs, told = range(n + 1, 2 * n + 1), range(first, len(lines)), kept[0][1]
+    rates, outputs, reported = range(n + 1, 2 * n + 1), range(first, len(lines)), kept[0][1]
     known = [f"<Unit name={quoteattr(unit)}/>" for unit in units]
     body = [
         '<?xml version="1.0" encoding="UTF-8"?>',
         f'<fmiModelDescription fmiVersion="3.0" modelName={quoteattr(stem)} '
         f'instantiationToken="{token(stem, emitted)}" '
-        f"description={quoteattr(_plain(told.title))} generationTool={quoteattr(_plain(told.origin))}>",
+        f"description={quoteattr(_plain(reported.title))} generationTool={quoteattr(_plain(reported.origin))}>",
         f'<ModelExchange modelIdentifier="{stem}"/>',
         f'<CoSimulation modelIdentifier="{stem}" canHandleVariableCommunicationStepSize="true"/>',
         *(["<UnitDefinitions>", *known, "</UnitDefinitions>"] if known else []),
@@ -244,7 +244,7 @@ def fmu_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
             archive.writestr(zipfile.ZipInfo(path, EPOCH), content, zipfile.ZIP_DEFLATED)
     program, firsts = kept[0][0], _firsts([program for program, _ in kept])
     sizes = {"parameters": len(program.symbols.parameters), "inputs": len(program.symbols.inputs)}
-    kinds = [(told.role.name, first) for (_, told), first in zip(kept, firsts, strict=True)]
+    kinds = [(reported.role.name, first) for (_, reported), first in zip(kept, firsts, strict=True)]
     times = UNTIL_STUCK if _jumps(program) else UNTIL_STUCK[:1]
     test = _TEST.format(times=times, run=RUN, stem=stem, states=len(program.states), kinds=kinds, **sizes)
     return {f"{stem}.fmu": packed.getvalue(), f"test_{stem}_fmu.py": test}
@@ -267,7 +267,7 @@ def _binary(stem: str, text: str) -> dict[str, bytes]:
 
 BUILT = Compiler(
     COMPILER.language, COMPILER.suffix, COMPILER.variable, COMPILER.names,
-    (*COMPILER.flags, "-fvisibility=hidden"), COMPILER.mend, COMPILER.zig,
+    (*COMPILER.flags, "-fvisibility=hidden"), COMPILER.fix, COMPILER.zig,
 )  # fmt: skip
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
@@ -286,11 +286,11 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
     path = f"binaries/{platform_name()}/{stem}{SUFFIX}"
     if path not in archive.namelist():
         library(archive.read("sources/all.c").decode(), by=BUILT)  # why there is none
-        raise ToolMissing("the FMU has sources alone", mend=COMPILER.mend)
+        raise ToolMissing("the FMU has sources alone", fix=COMPILER.fix)
     folder = tempfile.TemporaryDirectory(prefix="eomgen-")
     model = ctypes.CDLL(archive.extract(path, folder.name))
-    told = archive.read("modelDescription.xml").decode()
-    found = re.search(r'instantiationToken="(\w+)"', told)
+    reported = archive.read("modelDescription.xml").decode()
+    found = re.search(r'instantiationToken="(\w+)"', reported)
     assert found is not None
     model.fmi3InstantiateModelExchange.restype = ctypes.c_void_p
     made = ctypes.c_void_p(
@@ -298,14 +298,14 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
     )
     n, size = len(program.states), len(program.outputs)
     begin = _firsts([program, program])[0 if role is RHS else 1]
-    begin += told.count('causality="output"') - size if role is OUTPUTS else 0  # they come last
+    begin += reported.count('causality="output"') - size if role is OUTPUTS else 0  # they come last
 
     def values(function: str, at: int, numbers: Sequence[float]) -> Any:
         count = len(numbers)
         references, held = (ctypes.c_uint32 * count)(*range(at, at + count)), (ctypes.c_double * count)(*numbers)
         many = ctypes.c_size_t(count)
         if count and getattr(model, function)(made, references, many, held, many):
-            raise RunFailed(f"{function} of the FMU refuses", mend="make it again by eomgen codegen --target fmu")
+            raise RunFailed(f"{function} of the FMU refuses", fix="make it again by eomgen codegen --target fmu")
         return held
 
     def called(t: float, x: Any, a: Any, p: Any, inputs: Any) -> Sequence[float]:

@@ -12,8 +12,8 @@ from typing import Any
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
-from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
-from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.lowering import Statements
+from eomgen.codegen.statements import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
 from eomgen.codegen.targets.base import CHECK, FileForm, SingleWords, by_cases
 from eomgen.codegen.targets.loading import compiled_target
 from eomgen.symbolic.expression.numbers import Number
@@ -199,7 +199,7 @@ end program {main}_test
 """
 
 
-def _body(made: Lowered) -> dict[str, str]:
+def _body(made: Statements) -> dict[str, str]:
     """The tables, and the functions inside the module."""
     tables = [line for table in made.tables for line in _held(table)]
     defined = [FORTRAN.defined[op] for op in sorted(made.ops & FORTRAN.defined.keys())]
@@ -231,11 +231,11 @@ def _named(key: str, names: Sequence[str]) -> list[str]:
     if not names:
         return []
     width, parts = max(len(name.encode()) for name in names), _pieces(names)
-    told = [", ".join('"' + name.replace('"', '""') + '"' for name in part) for part in parts]
+    reported = [", ".join('"' + name.replace('"', '""') + '"' for name in part) for part in parts]
     kind, held = f"character({width}), parameter", [f"{key}_{k}" for k in range(len(parts))]
     if len(parts) == 1:
-        return [f"    {kind}, public :: {key}({len(names)}) = [character({width}) :: {told[0]}]"]
-    pieces = zip(held, parts, told, strict=True)
+        return [f"    {kind}, public :: {key}({len(names)}) = [character({width}) :: {reported[0]}]"]
+    pieces = zip(held, parts, reported, strict=True)
     lines = [f"    {kind} :: {name}({len(part)}) = [character({width}) :: {text}]" for name, part, text in pieces]
     return [*lines, f"    {kind}, public :: {key}({len(names)}) = [{', '.join(held)}]"]
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.targets.base import by_cases
 from eomgen.codegen.targets.node import node_form, node_target
 

@@ -6,8 +6,8 @@ and nobody has run it; its head says so.
 
 from __future__ import annotations
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.targets.base import FileForm, Functions, Target, by_cases, in_quotes
 from eomgen.errors import ToolMissing
 
@@ -125,7 +125,7 @@ def functions(program: Program) -> Functions:
         ToolMissing: always.
     """
     raise ToolMissing(
-        "nothing here runs Julia", mend="choose another target; the code of this one is written all the same"
+        "nothing here runs Julia", fix="choose another target; the code of this one is written all the same"
     )
 
 

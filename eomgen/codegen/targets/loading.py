@@ -143,7 +143,7 @@ class _Process:
         lines = self._process.stderr.read().decode(errors="replace").strip().splitlines()
         raise RunFailed(
             f"{self._language} could not run the emitted code: " + (lines[-1] if lines else "it ended"),
-            mend="take --target numpy, or see what is installed: eomgen doctor",
+            fix="take --target numpy, or see what is installed: eomgen doctor",
         )
 
 

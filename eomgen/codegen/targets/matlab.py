@@ -11,8 +11,8 @@ import weakref
 from collections.abc import Mapping
 from pathlib import Path
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.targets.base import (
     CHECK,
     Called,
@@ -172,7 +172,7 @@ def _many(text: str, main: str, program: Program) -> Many:
     """The function file, run by Octave beside us."""
     path = octave()
     if path is None:
-        raise ToolMissing("there is no Octave to run MATLAB code", mend="install octave, or choose another target")
+        raise ToolMissing("there is no Octave to run MATLAB code", fix="install octave, or choose another target")
     folder = Path(tempfile.mkdtemp(prefix="eomgen-"))
     (folder / f"{main}.m").write_text(text, encoding="utf-8")
     server = _SERVER.format(folder=str(folder).replace("'", "''"), main=main)

@@ -11,8 +11,8 @@ import shutil
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from eomgen.codegen.lowered import Language, one_line
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import Language, one_line
 from eomgen.codegen.targets.base import (
     RHS,
     Called,
@@ -92,7 +92,7 @@ def many_of_module(text: str, program: Program) -> Many:
     """
     node = shutil.which("node")
     if node is None:
-        raise ToolMissing("there is no node to run JavaScript", mend="install node, or choose another target")
+        raise ToolMissing("there is no node to run JavaScript", fix="install node, or choose another target")
     coded = base64.b64encode(text.encode())
     coded += b" " * (-len(coded) % 8)
     return many_beside("node", [node, "-e", _SERVER], program, doubles([len(coded) // 8]) + coded)
@@ -106,7 +106,7 @@ def node_form(language: Language, module: str, **words: Any) -> FileForm:
         "{main}.mjs",
         "{main}.test.mjs",
         "{head}\n\nexport const names = {{\n{names}\n}};\n\n{text}",
-        told=lambda line: f"// {one_line(line)}".rstrip(),
+        reported=lambda line: f"// {one_line(line)}".rstrip(),
         given={"a_of_v": ("v.a, ", "")},
         keys=("x", "p", "inputs"),
         named="    {key}: [{names}],",
@@ -142,7 +142,7 @@ def node_target(
     """
 
     def files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        further = (beside(stem, program, told.role, told.remarks) for program, told in emitted)
+        further = (beside(stem, program, reported.role, reported.remarks) for program, reported in emitted)
         return form.files(stem, emitted) | {path: content for each in further for path, content in each.items()}
 
     def functions(program: Program) -> Functions:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.codegen.lowered import CHANGED, INDICES, PLACES, READ, ROOM
+from eomgen.codegen.statements import CHANGED, INDICES, PLACES, READ, ROOM
 from eomgen.codegen.targets.base import CASES, by_cases
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.targets.python_files import python_form, python_target

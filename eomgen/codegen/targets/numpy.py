@@ -7,9 +7,9 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
-from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.lowering import Statements
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Target, by_cases
 from eomgen.codegen.targets.python_files import called_each, executed, python_form
 
@@ -139,7 +139,7 @@ np.empty((len(t), 0))
 '''
 
 
-def _body(made: Lowered) -> dict[str, str]:
+def _body(made: Statements) -> dict[str, str]:
     """The functions by the arithmetic that they are given, and the two arithmetics."""
     ops = sorted(made.ops & SCALARS.keys())
     kernels = [*map(PYTHON.holds, made.tables), *("\n\n" + "\n".join(PYTHON.defines(f)) for f in made.kernels)]

@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.lowered import Language
 from eomgen.codegen.program import Program
+from eomgen.codegen.statements import Language
 from eomgen.codegen.targets.base import (
     Called,
     FileContent,
@@ -59,7 +59,7 @@ def python_form(
         f"{named}.py",
         f"test_{named}.py",
         '"""{head}\n"""\n\n{text}',
-        told=lambda line: line.replace("\\", "/").replace('"""', "'''"),
+        reported=lambda line: line.replace("\\", "/").replace('"""', "'''"),
         given={**given, "a_of_v": ('v["a"], ', "")},
         test=_TEST.replace("{module}", named),
         **words,
@@ -99,7 +99,7 @@ def executed(text: str, name: str, package: str = "") -> dict[str, Any]:
         exec(compile(text, name, "exec"), space)
     except ImportError as error:
         raise ToolMissing(
-            f"{package or name} cannot be imported: {error}", mend="pip install 'eomgen[languages]', or another target"
+            f"{package or name} cannot be imported: {error}", fix="pip install 'eomgen[languages]', or another target"
         ) from None
     return space
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.codegen.build import Compiler
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.targets.base import QUOTED, Emitted, FileContent, FileForm, SingleWords, by_cases, in_quotes
 from eomgen.codegen.targets.loading import compiled_target
 
@@ -212,14 +212,14 @@ FORM = FileForm(
 def rust_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """The crate: Cargo.toml, lib.rs, math.rs, a module a function, and the test."""
     folder, about = f"{stem}_rhs", RUST.harmless(emitted[0][1].origin)
-    modules = "".join(f"pub mod {told.role.name};\n" for _, told in emitted)
+    modules = "".join(f"pub mod {reported.role.name};\n" for _, reported in emitted)
     return {
         f"{folder}/Cargo.toml": _CARGO.format(stem=stem, about=in_quotes(about)),
         f"{folder}/src/lib.rs": f"// {about}\n#![no_std]\n\nmod math;\n{modules}",
         f"{folder}/src/math.rs": _MATH,
         **FORM.files(stem, emitted),
         f"{folder}/tests/vectors.rs": _CHECK
-        + "".join(FORM.tested(program, stem, told) for program, told in emitted if told.vectors),
+        + "".join(FORM.tested(program, stem, reported) for program, reported in emitted if reported.vectors),
     }
 
 

@@ -13,7 +13,7 @@ from itertools import accumulate
 from typing import Any
 
 from eomgen.codegen.build import Compiler, binary
-from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.lowering import Statements
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import QUOTED, FileContent, Role, SingleWords
 from eomgen.codegen.targets.c import FORM as C_FORM
@@ -91,7 +91,7 @@ export function {role}(t, x, {a}p, inputs = null) {{
 """
 
 
-def _body(made: Lowered) -> dict[str, Any]:
+def _body(made: Statements) -> dict[str, Any]:
     """The C, and the places in the block."""
     program, symbols = made.program, made.program.symbols
     arrays = (program.states, program.accelerations, symbols.parameters, range(made.constants), symbols.inputs)

@@ -16,6 +16,7 @@ import numpy as np
 
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.drawing import Sketch, draw_model, name_beside
+from eomgen.documents.equilibrium_picture import picture_of_scene
 from eomgen.documents.figures import Picture
 from eomgen.documents.inertia.steps import (
     LONGEST,
@@ -36,16 +37,16 @@ from eomgen.documents.inertia.steps import (
     together,
 )
 from eomgen.documents.motion_steps import data_step
-from eomgen.documents.rest_picture import picture_of_scene
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Law, Prose, Quantity, Statement, Step, prose
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.mass_properties import flat_bodies, in_ground, numbers_in, shapeless
 from eomgen.mechanics.start.state import start_state
 from eomgen.mechanics.statics.contacts import contacts_at_start
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.shapes.forms import EllipsoidForm, LineForm
@@ -53,7 +54,6 @@ from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Certificate
 from eomgen.proof.masses import Stated, mass_checks, tried
 from eomgen.proof.parameters import other_parameters
-from eomgen.records import dataclass
 from eomgen.scene.connections import ordered
 from eomgen.scene.forms import LabelForm, PointForm
 from eomgen.scene.making import scene_of_system
@@ -197,11 +197,11 @@ class _Report:
         model = self.system.scope.model
         for name in self.named:
             if name not in model.bodies:
-                raise UsageError(f"there is no body '{name}'", mend=nearest(name, model.bodies))
+                raise UsageError(f"there is no body '{name}'", fix=nearest(name, model.bodies))
         names = self.named or tuple(link.name for link in self.system.motion.links if link.name in model.bodies)
         heavy = tuple(name for name in names if not is_zero(together_mass(self.system, name)))
         if not heavy:
-            raise DerivationError("no body has a mass", mend="give a body a shape, or 'mass' and 'inertia'")
+            raise DerivationError("no body has a mass", fix="give a body a shape, or 'mass' and 'inertia'")
         return heavy
 
     def made(self) -> Inertia:
@@ -285,18 +285,18 @@ class _Report:
         """The point, its name, and the axis: a point on it, and its direction."""
         if self.axis is None or self.axis in ("x", "y", "z"):
             if self.about is None:
-                raise UsageError(f"the axis {self.axis} goes through what point?", mend="write --about POINT")
+                raise UsageError(f"the axis {self.axis} goes through what point?", fix="write --about POINT")
             point = self._place(self.about)
             return point, self.about, None if self.axis is None else (point, IDENTITY["xyz".index(self.axis)])
         first, comma, second = (part.strip() for part in self.axis.partition(","))
         if not comma:
-            raise UsageError(f"'{self.axis}' is no axis", mend='write x, y or z, or two points: "A,B"')
+            raise UsageError(f"'{self.axis}' is no axis", fix='write x, y or z, or two points: "A,B"')
         point, other = self._place(first), self._place(second)
         along = minus(other, point)
         if all(is_zero(x) for x in along):
             raise UsageError(
                 f"'{first}' and '{second}' are in one place, so they are on no single axis",
-                mend="name two points that are apart",
+                fix="name two points that are apart",
             )
         if self.about is not None and self.about != first:
             return self._place(self.about), self.about, (point, along)
@@ -306,7 +306,7 @@ class _Report:
         """Where a named point is, ground axes."""
         known = self.system.scope.model.named_points
         if name not in known:
-            raise UsageError(f"there is no point '{name}'", mend=nearest(name, known))
+            raise UsageError(f"there is no point '{name}'", fix=nearest(name, known))
         return self.system.motion.position(self.system.motion.place(name))
 
 

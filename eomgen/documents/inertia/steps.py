@@ -12,13 +12,13 @@ import numpy as np
 
 from eomgen.documents.latex_math import letter_law
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import Motion, made_of
 from eomgen.mechanics.mass_properties import Principal, numbers_in, principal_of, short_form
 from eomgen.model.composite import about, matrix_times
 from eomgen.model.outputs.masses import about_axis, polar, second_moments
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
@@ -340,15 +340,15 @@ class InertiaSum:
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
         """What scalars are worth at the start, those not met before in one go; None where one has no value."""
-        fresh = [x for x in dict.fromkeys(scalars) if x not in self._worth]
+        fresh = [x for x in dict.fromkeys(scalars) if x not in self._value]
         found = numbers_in(fresh, self.motion.scope, self.start) if fresh else []
         if found is None:
             return None
-        self._worth.update(zip(fresh, found, strict=True))
-        return [self._worth[x] for x in scalars]
+        self._value.update(zip(fresh, found, strict=True))
+        return [self._value[x] for x in scalars]
 
     @cached_property
-    def _worth(self) -> dict[Scalar, float]:
+    def _value(self) -> dict[Scalar, float]:
         return {}
 
     @cached_property

@@ -161,7 +161,7 @@ def mechanism_picture(state: KinematicState, centrodes: Sequence[Centrodes] = ()
         MissingValues: parameters without a value.
     """
     if state.mechanism is None:
-        raise RunFailed("only plane mechanisms are drawn", mend="ask for the pages of a run: eomgen animate, or play")
+        raise RunFailed("only plane mechanisms are drawn", fix="ask for the pages of a run: eomgen animate, or play")
     shown = tuple(centrodes[:MOST_CENTRODES])
     size = (SIZE[0], SIZE[1] + BELOW * ((len(shown) + 1) // 2))
     return Picture(size, _Panels(state, state.mechanism, shown).fill, state.system.scope.model.name)

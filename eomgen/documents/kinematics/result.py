@@ -25,12 +25,12 @@ from eomgen.documents.kinematics.steps import (
 from eomgen.documents.motion_steps import data_step
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
+from eomgen.frozen import dataclass
 from eomgen.mechanics.instant.kinematic_state import KinematicState, body_motions
 from eomgen.mechanics.instant.mechanism import RotationCenter
 from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
 from eomgen.proof.check import Certificate
 from eomgen.proof.instant import instant_checks
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.print.text import readable_text, text_size
@@ -135,7 +135,11 @@ class Kinematics(Result):
         return {
             "name": state.system.scope.model.name,
             "when": state.when,
-            "freedoms": {"by_rank": state.freedoms, "by_formula": state.formula[0], "formula": state.formula[1]},
+            "freedoms": {
+                "by_rank": state.degrees_of_freedom,
+                "by_formula": state.formula[0],
+                "formula": state.formula[1],
+            },
             "given": list(state.given),
             "rate": None if state.symbol is None else {"symbol": state.symbol.name, "of": state.rate},
             "exact": state.exact,

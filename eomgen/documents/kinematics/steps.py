@@ -392,7 +392,7 @@ def _in_frame(system: System, particle: str, body: str, readable: Readable) -> t
     words = (
         f"In the axes of {body}, ",
         IN_FRAME,
-        ": F is what is applied, and the reactions of joints and ties; "
+        ": F is what is applied, and the reactions of joints and constraints; "
         "of the rest, transport brings the Euler and the centrifugal force.",
     )
     statements: tuple[Statement, ...] = (Prose(words), *tabled(("force", *letters), rows))
@@ -445,12 +445,12 @@ def _mechanism(state: KinematicState) -> Step:
     number, formula = state.formula
     statements: list[Statement] = [
         prose(
-            f"{count(state.freedoms, 'degree')} of freedom by the rank of the constraints {state.when}; ",
+            f"{count(state.degrees_of_freedom, 'degree')} of freedom by the rank of the constraints {state.when}; ",
             f"by count {formula} = {number}" if formula else "",
             "."
-            if number == state.freedoms
+            if number == state.degrees_of_freedom
             else ": the count takes constraints for independent that are not."
-            if number < state.freedoms
+            if number < state.degrees_of_freedom
             else ": the count does not see what coordinates hold by themselves.",
         )
     ]
@@ -487,7 +487,7 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
     rows = tuple((center.name, *place_cells(state, center), how) for center, how in (*known, *left))
     theory = (
         "(0, i) is the point about which body i turns, (i, j) the point at which bodies i and j have one velocity. A "
-        "hinge is the centre of its two bodies; a force that a tie can bear between two bodies passes through theirs; "
+        "hinge is the centre of its two bodies; a force of a constraint between two bodies passes through theirs; "
         "the three centres of any three bodies are in one line."
     )
     agree = (
@@ -561,7 +561,7 @@ def how_found(state: KinematicState, found: FoundPoint) -> str:
 
 
 def _called(state: KinematicState, owner: str) -> str:
-    """A tie, or the joint of a body."""
+    """A constraint, or the joint of a body."""
     return f"'{owner}'" if owner in state.system.scope.model.constraints else f"the joint of '{owner}'"
 
 

@@ -42,7 +42,7 @@ def modes_picture(modes: Modes) -> Picture:
     """
     reference = modes.small.reference
     if not reference.valued:
-        raise RunFailed("a picture needs values of all parameters", mend="give them values in [parameters]")
+        raise RunFailed("a picture needs values of all parameters", fix="give them values in [parameters]")
     drawn = modes.spectrum.modes[:MOST]
     columns = math.ceil(math.sqrt(len(drawn)))
     rows = math.ceil(len(drawn) / columns)
@@ -132,7 +132,7 @@ def bode_picture(small: SmallMotions) -> Picture:
     """
     e = small.numbers
     if not e.inputs:
-        raise RunFailed("without inputs there is no transfer function", mend="declare one in [inputs]")
+        raise RunFailed("without inputs there is no transfer function", fix="declare one in [inputs]")
     _refuse_unvalued(small)
     A, B = small.state_matrix, small.input_matrix
     omega = _frequencies(A)
@@ -253,7 +253,7 @@ def _matrix_over(small: SmallMotions, parameter: str) -> MatrixOf:
     exact = small.exact
     if exact is None:
         what = "the small motions are known in numbers only, at the values of the parameters"
-        raise RunFailed(f"{what}: there are no roots over '{parameter}'", mend="take a place in closed form")
+        raise RunFailed(f"{what}: there are no roots over '{parameter}'", fix="take a place in closed form")
     scope = small.reference.system.scope
     names = [f.name for f in fields(LinearEquations) if f.name in ("M", "C", "K", "B", "F", "E")]
     shapes = {name: [len(row) for row in getattr(exact, name)] for name in names}
@@ -273,4 +273,4 @@ def _matrix_over(small: SmallMotions, parameter: str) -> MatrixOf:
 
 def _refuse_unvalued(small: SmallMotions) -> None:
     if not small.reference.valued:
-        raise RunFailed("a picture needs values of all parameters", mend="give them values in [parameters]")
+        raise RunFailed("a picture needs values of all parameters", fix="give them values in [parameters]")

@@ -21,7 +21,8 @@ from eomgen.documents.motion_steps import assumption_steps, data_step
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Quantity
 from eomgen.errors import DerivationError, ToolMissing, UsageError
-from eomgen.mechanics.dynamics.formulations import told_of_nodes, with_nodes_balanced
+from eomgen.frozen import dataclass
+from eomgen.mechanics.dynamics.formulations import reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.linearization.first_order import Entries
 from eomgen.mechanics.linearization.linearization import SmallMotions, small_motions_of
@@ -40,14 +41,13 @@ from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.reports_read import DrawnPanel
 from eomgen.proof.small_motions import small_motion_checks
-from eomgen.proof.small_motions_told import (
+from eomgen.proof.small_motions_reported import (
     linear_entries,
     modes_drawn,
     responses_drawn,
     roots_drawn,
-    small_motions_told,
+    small_motions_reported,
 )
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -60,7 +60,7 @@ METHOD = "linearization"
 
 @dataclass(frozen=True)
 class Linearization(Result):
-    """Small motions about a place of rest or a steady motion.
+    """Small motions about an equilibrium or a steady motion.
 
     Args:
         model: the system.
@@ -185,16 +185,16 @@ class Linearization(Result):
             raise DerivationError(
                 "numbers of small motions need values of all parameters",
                 "parameters",
-                mend="give every parameter a value in [parameters]",
+                fix="give every parameter a value in [parameters]",
             )
 
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
         first = self.small.first
         entries, values = self.entries(), exact_parameters(self.model)
-        told = linear_entries(entries, self.A, self.B) if self.valued else ()
-        printed = small_motions_told(entries, printed_modes(self.derivation), values)
-        return certify(first.equations) + small_motion_checks(self.modes) + told + printed
+        reported = linear_entries(entries, self.A, self.B) if self.valued else ()
+        printed = small_motions_reported(entries, printed_modes(self.derivation), values)
+        return certify(first.equations) + small_motion_checks(self.modes) + reported + printed
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
         """Bode's diagrams and roots over a parameter, by M, C, K and B as machines get them; the modes by these."""
@@ -239,7 +239,7 @@ class Linearization(Result):
         (number,) = call.args
         k = number.literal if isinstance(number, Expression) else None
         if k is None or k != int(k):
-            raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...", mend="frequency(1) is the lowest")
+            raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...", fix="frequency(1) is the lowest")
         return int(k)
 
     def _frequency(self, call: Call) -> tuple[Scalar, bool]:
@@ -270,8 +270,8 @@ class Linearization(Result):
         if reference.beside is None:
             return ()
         away = [(x.name, float(reference.numbers[x]), value) for x, value in reference.beside.items()]
-        told = ", ".join(f"{name} = {x:.6g} for {value:.6g} at the start" for name, x, value in away if x != value)
-        return (f"The start is accelerated: linearized about what is at rest or steady near it, {told}.",)
+        reported = ", ".join(f"{name} = {x:.6g} for {value:.6g} at the start" for name, x, value in away if x != value)
+        return (f"The start is accelerated: linearized about what is at rest or steady near it, {reported}.",)
 
     @property
     def picture(self) -> Picture:
@@ -450,7 +450,7 @@ def linearize(
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Linearization:
-    """The small motions of a model about a place of rest, or about its start, a steady motion.
+    """The small motions of a model about an equilibrium, or about its start, a steady motion.
 
     Args:
         about: "equilibrium", "start" (a steady motion), or "steady" (the one near the start); None: as the model says.
@@ -458,19 +458,19 @@ def linearize(
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a coordinate that the model does not have.
-        DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
+        DerivationError: no equilibrium; the start is no steady motion; the coordinates do not move by themselves.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
     part = model.linearize
-    asked = coordinates or (part.coordinates if part is not None else None) or ()
-    wanted = tuple(dict.fromkeys((asked,) if isinstance(asked, str) else asked))
+    requested = coordinates or (part.coordinates if part is not None else None) or ()
+    wanted = tuple(dict.fromkeys((requested,) if isinstance(requested, str) else requested))
     for name in wanted:
         if name not in model.coordinates:
-            raise UsageError(f"no coordinate '{name}'", mend=f"one of {', '.join(model.coordinates)}")
+            raise UsageError(f"no coordinate '{name}'", fix=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
     contacts = contacts_at_start(model)
     modes = Modes(small_motions_of(system_of(model, contacts.modes), about, wanted))
-    return Linearization(model, modes, assumptions=(*told_of_nodes(model), *contacts.assumptions))
+    return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *contacts.assumptions))
 
 
 # -------- state space -----------------------------------------------------------------------------------------
@@ -538,7 +538,7 @@ class StateSpace:
         try:
             import control
         except ImportError:
-            raise ToolMissing("python-control is not installed", mend="pip install control") from None
+            raise ToolMissing("python-control is not installed", fix="pip install control") from None
         # its names have no dots; a rate's prime stays
         names = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
         return control.ss(*self, **{key: [name.replace(".", "_") for name in each] for key, each in names.items()})
@@ -556,7 +556,7 @@ class StateSpace:
             raise DerivationError(
                 "numbers of small motions need values of all parameters",
                 "parameters",
-                mend="give every parameter a value in [parameters]",
+                fix="give every parameter a value in [parameters]",
             )
         rows = getattr(self.numbers, letter)
         return np.array(rows, dtype=float).reshape(len(rows), columns)

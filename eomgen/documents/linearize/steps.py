@@ -37,7 +37,7 @@ from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM, STEADY, Family, ReferenceMotion
 from eomgen.mechanics.linearization.transfer import TransferFunction, exact_state_space, with_outputs
 from eomgen.mechanics.start.exact import known_exactly
-from eomgen.proof.small_motions_told import PrintedModes
+from eomgen.proof.small_motions_reported import PrintedModes
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -88,7 +88,7 @@ def linearization_steps(modes: Modes) -> tuple[Step, ...]:
 def _equations(modes: Modes) -> Step:
     small = modes.small
     e = small.exact or small.numbers
-    tied = len(e.coordinates) < len(e.all) or bool(small.reference.system.ties.closing)
+    constrained = len(e.coordinates) < len(e.all) or bool(small.reference.system.constraints.closing)
     statements: list[Statement] = [
         prose(
             "The equations of motion ",
@@ -98,9 +98,9 @@ def _equations(modes: Modes) -> Step:
             ", to first order in the displacements ",
             *listed_symbols(e.coordinates),
             " from it",
-            ", along the ties" if tied else "",
+            ", along the constraints" if constrained else "",
             ": ",
-            ALONG if tied else PLAIN,
+            ALONG if constrained else PLAIN,
             ".",
         )
     ]
@@ -109,8 +109,8 @@ def _equations(modes: Modes) -> Step:
     if turns:
         words = " are small turns about the axes of the body that spins, of which its speeds are the rates."
         statements.append(prose(*listed_symbols(turns), words))
-    if tied:
-        statements.append(prose("The ties, differentiated, say what follows: ", FOLLOW, "."))
+    if constrained:
+        statements.append(prose("The constraints, differentiated, say what follows: ", FOLLOW, "."))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
     statements.append(prose(law, "."))
     if small.forced:
@@ -434,7 +434,7 @@ def printed_modes(derivation: Document) -> PrintedModes:
     matrices: dict[str, Any] = {}
     for name, side in named:
         if isinstance(side, Matrix):
-            rows = [[_worth(x, values) for x in row] for row in side.rows]
+            rows = [[_value(x, values) for x in row] for row in side.rows]
             if not any(math.isnan(x) for row in rows for x in row):
                 matrices[name] = rows  # of the two that are called B that of the states, the last
     grids = {cell_text(s.head[0]): s for s in statements if isinstance(s, Grid)}
@@ -445,7 +445,7 @@ def printed_modes(derivation: Document) -> PrintedModes:
         if modes is None
         else [dict(zip(map(cell_text, modes.head), map(cell_text, r), strict=True)) for r in modes.rows],
         {} if shapes is None else {cell_text(q): list(map(cell_text, cells)) for q, *cells in shapes.rows},
-        [_worth(side, values) for name, side in named if name.startswith("h_")],
+        [_value(side, values) for name, side in named if name.startswith("h_")],
     )
 
 
@@ -461,7 +461,7 @@ def _parameter_number(value: Any) -> float:
     return float(evaluate((value,), {}, FLOAT)[0] if isinstance(value, Node) else value)
 
 
-def _worth(side: Any, values: Mapping[str, float]) -> float:
+def _value(side: Any, values: Mapping[str, float]) -> float:
     if isinstance(side, Law):
         try:
             return float(side.text)
@@ -476,7 +476,7 @@ def _worth(side: Any, values: Mapping[str, float]) -> float:
 
 
 # -------- reference step --------------------------------------------------------------------------------------
-# Modes -> the step that says about what the equations are linearized: place of rest or steady motion.
+# Modes -> the step that says about what the equations are linearized: equilibrium or steady motion.
 
 
 LONG_CONDITION = 400  # characters of a condition or formula of a family
@@ -516,12 +516,12 @@ def _words(reference: ReferenceMotion) -> str:
     if reference.about != EQUILIBRIUM:
         return "The steady motion from the start:"
     if reference.moving:
-        return "The place of rest beside what moves steadily, nearest to the start:"
-    return "The place of rest nearest to the start:"
+        return "The equilibrium beside what moves steadily, nearest to the start:"
+    return "The equilibrium nearest to the start:"
 
 
 def _near(reference: ReferenceMotion) -> str:
-    return "The steady motion" if reference.about == STEADY else "The place of rest"
+    return "The steady motion" if reference.about == STEADY else "The equilibrium"
 
 
 def _family(modes: Modes, family: Family) -> list[Statement]:
@@ -544,7 +544,7 @@ def _family(modes: Modes, family: Family) -> list[Statement]:
 
 def _others(modes: Modes, family: Family) -> list[Statement]:
     """A row for each of them: values, closed forms, stability."""
-    kind = "places of rest" if _at_rest(modes) else "steady motions"
+    kind = "equilibria" if _at_rest(modes) else "steady motions"
     words = f"All {kind}" if family.complete else f"{kind.capitalize()} that were found"
     where = f" ({family.where})" if family.where else ""
     held = (" with the same ", *listed_symbols((*family.zeros, *family.held))) if family.zeros or family.held else ()

@@ -32,6 +32,7 @@ from eomgen.documents.statements import (
     prose,
 )
 from eomgen.errors import DerivationError, ModelError, RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system
 from eomgen.mechanics.equilibrium.reactions import ReactionsOrWhy, RestingReaction, reactions_or_why
@@ -44,14 +45,14 @@ from eomgen.model.parts import Model
 from eomgen.model.units import in_own_unit
 from eomgen.proof.check import Certificate, unchecked
 from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, pushes_check, resting_checks
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SAME_PLACE
 from eomgen.symbolic.print.text import to_text
 
 # -------- equilibrium result ----------------------------------------------------------------------------------
-# Model -> Resting: where a system with freedoms is at rest, as a user gets it: step by step, and for machines.
+# Model -> Resting: where a system with degrees of freedom is at rest, as a user gets it: step by step, and for
+# machines.
 
 
 METHOD = "equilibrium"
@@ -59,7 +60,7 @@ METHOD = "equilibrium"
 
 @dataclass(frozen=True)
 class Resting(Result):
-    """The places of rest of a system with freedoms.
+    """The equilibria of a system with degrees of freedom.
 
     Args:
         model: the system.
@@ -70,7 +71,7 @@ class Resting(Result):
     found: Equilibria
 
     def __repr__(self) -> str:
-        return f"<statics of {self.model.name!r}: {len(self.places)} places of rest>"
+        return f"<statics of {self.model.name!r}: {len(self.places)} equilibria>"
 
     @property
     def places(self) -> tuple[Equilibrium, ...]:
@@ -115,7 +116,7 @@ class Resting(Result):
 
     @property
     def picture(self) -> Picture:
-        """The system in each place of rest.
+        """The system in each equilibrium.
 
         Raises:
             RunFailed: there is none; the system is in space; parameters have no values.
@@ -124,7 +125,7 @@ class Resting(Result):
 
 
 def resting_places(model: Model, system: System) -> Resting:
-    """The places of rest of a model.
+    """The equilibria of a model.
 
     Args:
         system: of the model, contacts as they are at the start.
@@ -193,19 +194,19 @@ SIDE = 3.4  # of one panel [inches]
 
 
 def resting_picture(places: Sequence[Equilibrium]) -> Picture:
-    """The first places of rest of a plane system.
+    """The first equilibria of a plane system.
 
     Raises:
         RunFailed: there is none; the system is not plane; parameters have no values.
     """
     places = places[:MOST]
     if not places:
-        raise RunFailed("there is no place of rest to be drawn", mend="give a start near one")
+        raise RunFailed("there is no equilibrium to be drawn", fix="give a start near one")
     model = places[0].statics.system.scope.model
     if model.space != "plane":
-        raise RunFailed("pictures of places of rest are drawn of plane systems", mend="take them by value: .places")
+        raise RunFailed("pictures of equilibria are drawn of plane systems", fix="take them by value: .places")
     if not all(place.numbers for place in places):
-        raise RunFailed("a picture needs values of all parameters", mend="give them values in [parameters]")
+        raise RunFailed("a picture needs values of all parameters", fix="give them values in [parameters]")
     columns = math.ceil(math.sqrt(len(places)))
     rows = math.ceil(len(places) / columns)
 
@@ -231,7 +232,7 @@ def _sketch(place: Equilibrium) -> Sketch:
 
 
 REST = Law("Q_k = 0", "Q_{k} = 0")
-REST_WITH_TIES = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
+REST_WITH_CONSTRAINTS = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
 STIFFNESS = Law(
     "K = -Z^T*d(Q + J^T*lam)/dq*Z",
     r"K = -Z^{\mathsf{T}} \frac{\partial (Q + J^{\mathsf{T}} \lambda)}{\partial q} Z",
@@ -256,20 +257,20 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     empty = _nowhere(reader, statics)
     if not statics.q:
         return Step("balance", "Balance at rest", empty or (prose("No force changes with the place."),))
-    law = REST_WITH_TIES if statics.lam else REST
+    law = REST_WITH_CONSTRAINTS if statics.lam else REST
     words = "At rest the virtual work of all forces vanishes for every displacement"
-    words += ", those of the ties included: " if statics.lam else ": "
+    words += ", those of the constraints included: " if statics.lam else ": "
     held: list[Statement] = []
     if statics.held:
         held = [prose(f"What the model drives is held where it starts: {', '.join(statics.held)}.")]
     forces = _all_forces(reader, statics)
     own = len(statics.phi) - statics.norms
-    ties = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
-    ties += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
-    between = [prose("The ties hold the coordinates by")] if ties else []
+    constraints = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
+    constraints += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
+    between = [prose("The constraints hold the coordinates by")] if constraints else []
     rates = [Formula((reader.shown(x), 0)) for x in statics.sigma]
     still = [prose("The constraints of velocities leave, where no speed is,")] if rates else []
-    lines = (*held, prose(words, law, "."), *forces, *between, *ties, *still, *rates, *empty)
+    lines = (*held, prose(words, law, "."), *forces, *between, *constraints, *still, *rates, *empty)
     return Step("balance", "Balance at rest", lines)
 
 
@@ -285,7 +286,7 @@ def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
 
 
 def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
-    """The equation along every coordinate; with ties the multipliers stand in it beside Q."""
+    """The equation along every coordinate; with constraints the multipliers stand in it beside Q."""
     if not statics.lam:
         pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
         others = tuple(Formula((reader.shown(x), 0)) for x in statics.beside)
@@ -304,7 +305,7 @@ def _places(found: Equilibria) -> Step:
         statements.append(prose("No force holds ", *listed_symbols(symbols), f": {stay}."))
     if found.chosen:
         stay = "its start: it stays" if len(found.chosen) == 1 else "their start: they stay"
-        any_ = "The velocity ties let it rest at any "
+        any_ = "The velocity constraints let it rest at any "
         statements.append(prose(any_, *listed_symbols(found.chosen), f" near {stay} there."))
     if not found.found:
         statements.append(prose(_how_many(found)))
@@ -322,26 +323,28 @@ def _declared_units(model: Model) -> dict[str, Unit]:
 
 
 def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
-    """What moves along a curve of places of rest, what follows it, what stays."""
+    """What moves along a curve of equilibria, what follows it, what stays."""
     model, names = place.statics.system.scope.model, [q.name for q in place.statics.q]
     points = curve.points[:, : len(names)]
     moved = np.max(points, axis=0) - np.min(points, axis=0)
     first = int(np.flatnonzero(moved >= np.max(moved) / 2)[0])
     low, high = (in_own_unit(model, names[first], float(end(points[:, first])), 4) for end in (np.min, np.max))
-    told = [f"{names[first]} may be anything" if curve.closed else f"{names[first]} was followed from {low} to {high}"]
+    reported = [
+        f"{names[first]} may be anything" if curve.closed else f"{names[first]} was followed from {low} to {high}"
+    ]
     for k, name in enumerate(names):
         if k == first:
             continue
         if moved[k] <= SAME_PLACE:
-            told.append(f"{name} = {in_own_unit(model, name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
+            reported.append(f"{name} = {in_own_unit(model, name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
             continue
         offsets = {sign: points[:, k] - sign * points[:, first] for sign in (1, -1)}
         sign = next((s for s, x in offsets.items() if np.ptp(x) <= SAME_PLACE), 0)
         away = in_own_unit(model, name, float(abs(offsets[sign or 1][0])), 9)
         plus = "+" if float(offsets[sign or 1][0]) >= 0 else "-"
         other = f"{'-' if sign < 0 else ''}{names[first]} {plus} {away}"
-        told.append(f"{name} = {other}" if sign else f"{name} follows it")
-    return prose(f"Place {number} is one of a curve of places of rest, a family: {', '.join(told)}.")
+        reported.append(f"{name} = {other}" if sign else f"{name} follows it")
+    return prose(f"Place {number} is one of a curve of equilibria, a family: {', '.join(reported)}.")
 
 
 def _how_many(found: Equilibria) -> str:
@@ -357,7 +360,7 @@ def _how_many(found: Equilibria) -> str:
 
 
 def _places_in_words(n: int) -> str:
-    return "none" if n == 0 else count(n, "place of rest", "places of rest")
+    return "none" if n == 0 else count(n, "equilibrium", "equilibria")
 
 
 def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tuple[Cell, ...]]:
@@ -379,8 +382,8 @@ def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tu
 
 
 def _stability_step(found: Equilibria) -> Step:
-    ties = bool(found.statics.lam)
-    law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if ties else (SECOND,)
+    constraints = bool(found.statics.lam)
+    law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if constraints else (SECOND,)
     statements: list[Statement] = [prose("The second variation of the potential energy decides: ", *law, ".")]
     for number, place in enumerate(found.found, start=1):
         statements += _verdict(number, place.stability)

@@ -27,6 +27,7 @@ from eomgen.documents.figures import Picture, Scale, figures, scale_of
 from eomgen.documents.letters import PlacedName
 from eomgen.documents.statics.section_steps import Sections
 from eomgen.errors import RunFailed
+from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect
 from eomgen.mechanics.rigidity.velocity_plan import members_of
 from eomgen.mechanics.statics.influence import InfluenceLine
@@ -35,7 +36,6 @@ from eomgen.mechanics.statics.virtual_work import StaticReactions, loads_at_rest
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -194,7 +194,7 @@ class StaticScene:
         return x + dx, y + dy
 
     def _seat(self, couple: Component) -> PagePoint:
-        """Where a couple is drawn: at the forces of its tie or joint, else in the middle of the body."""
+        """Where a couple is drawn: at the forces of its constraint or joint, else in the middle of the body."""
         for other in self.statics.structure.components:
             if other.owner == couple.owner and other.label != couple.label and len(other.effects) == 1:
                 return self.place(other.effects[0])
@@ -218,7 +218,7 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
     """
     model = found.system.scope.model
     if model.space != "plane":
-        raise RunFailed("structures in space are not drawn", mend="leave out --plot")
+        raise RunFailed("structures in space are not drawn", fix="leave out --plot")
     missing = missing_values(model)
     scene = StaticScene(found, not missing)
     bodies = list(sections.found.values())[:MOST_COLUMNS] if not missing else []

@@ -14,15 +14,16 @@ from eomgen.documents.statics.section_steps import (
     Sections,
     influence_payload,
     influence_step,
+    reported_sections,
     section_payload,
     section_steps,
     sections_of,
-    told_sections,
 )
-from eomgen.documents.statics.steps import contacts_step, statics_derivation, sum_name, told_work
+from eomgen.documents.statics.steps import contacts_step, reported_work, statics_derivation, sum_name
 from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System, system_of
-from eomgen.mechanics.equilibrium.equations import has_freedoms, with_drives_held
+from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of
 from eomgen.mechanics.start.exact import known_exactly, shown_numbers
 from eomgen.mechanics.statics.contacts import RestCondition, conditions_of, modes_at_rest
@@ -36,15 +37,14 @@ from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.parameters import other_data
 from eomgen.proof.reports_read import DrawnPanel
-from eomgen.proof.sections_told import ToldWork, sections_told, works_told
+from eomgen.proof.sections_reported import ReportedWork, sections_reported, works_reported
 from eomgen.proof.structure import diagrams_drawn, state_of, structure_checks
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
 
-MOST_TOLD = 8  # reactions whose virtual work is read again
+MOST_REPORTED = 8  # reactions whose virtual work is read again
 
 if TYPE_CHECKING:
     from eomgen.documents.statics.equilibrium import Resting
@@ -89,7 +89,7 @@ class Statics(Result):
         degree = self.found.structure.indeterminacy
         return (
             f"the structure is statically indeterminate, to the degree {degree}: the balance of rigid bodies "
-            f"leaves {', '.join(names)} open; take a redundant tie away, or let something give",
+            f"leaves {', '.join(names)} open; take a redundant constraint away, or let something give",
         )
 
     @cached_property
@@ -128,19 +128,19 @@ class Statics(Result):
     def certify(self) -> Certificate:
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
         checks = structure_checks(self.found, self.sections.found, self.influence)
-        told = told_sections(self.sections, self.derivation.steps, section_payload(self.sections))
-        sections = sections_told(self.sections.found, told, exact_parameters(self.model))
-        works = works_told(self.found, state_of(self.found), self._told_works())
+        reported = reported_sections(self.sections, self.derivation.steps, section_payload(self.sections))
+        sections = sections_reported(self.sections.found, reported, exact_parameters(self.model))
+        works = works_reported(self.found, state_of(self.found), self._reported_works())
         return Certificate((*checks, *other_data(self.found.system.motion), *sections, *works))
 
-    def _told_works(self) -> Iterator[ToldWork]:
+    def _reported_works(self) -> Iterator[ReportedWork]:
         """Of some reactions in the plane, evenly spread."""
         by_key = {step.key: step for step in self.derivation.steps}
         worked = [(r.name, r.work) for r in self.found.reactions if r.work is not None]
-        for name, work in worked[:: 1 + len(worked) // MOST_TOLD] if self.model.space == "plane" else ():
-            told = told_work(name, by_key[f"work {name}"], _work(work))
-            if told is not None:
-                yield told
+        for name, work in worked[:: 1 + len(worked) // MOST_REPORTED] if self.model.space == "plane" else ():
+            reported = reported_work(name, by_key[f"work {name}"], _work(work))
+            if reported is not None:
+                yield reported
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
         """N, V, M and the influence line as they are drawn, from the other end and by unit loads."""
@@ -179,7 +179,7 @@ class Statics(Result):
             },
             "sections": section_payload(self.sections),
             "influence": None if self.influence is None else influence_payload(self.influence),
-            "contacts": [{"tie": c.tie, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
+            "contacts": [{"tie": c.constraint, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
             "broken": list(self.broken),
             "agree": self.ok,
         }
@@ -255,7 +255,7 @@ def statics(
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Statics | Resting:
-    """A structure at rest; of a system that is free to move, its places of rest.
+    """A structure at rest; of a system that is free to move, its equilibria.
 
     Args:
         influence: the reaction, member force or section force whose influence line is asked too.
@@ -267,7 +267,7 @@ def statics(
     """
     model = model_at(model, parameters, start)
     system = system_of(model, modes_at_rest(model))
-    if has_freedoms(system):
+    if has_degrees_of_freedom(system):
         from eomgen.documents.statics.equilibrium import resting_places
 
         _refuse_for_resting(reaction=reaction, influence=influence)
@@ -278,15 +278,15 @@ def statics(
     return Statics(model, found, line)
 
 
-def _refuse_for_resting(**asked: str | None) -> None:
+def _refuse_for_resting(**requested: str | None) -> None:
     """Refuse what is asked of structures alone.
 
     Raises:
         UsageError: it is named.
     """
-    for name, value in asked.items():
+    for name, value in requested.items():
         if value is not None:
             raise UsageError(
                 f"--{name} is of structures that stand, and this system is free to move",
-                mend="without it the places of rest are given",
+                fix="without it the equilibria are given",
             )

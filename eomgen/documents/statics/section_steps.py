@@ -9,12 +9,12 @@ from eomgen.documents.latex_math import letter_law
 from eomgen.documents.statements import Formula, Grid, Law, Name, Side, Statement, Step, prose
 from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece, section_forces
 from eomgen.model.trusses import is_node
-from eomgen.proof.sections_told import ToldSections
-from eomgen.records import dataclass
+from eomgen.proof.sections_reported import ReportedSections
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 
@@ -51,7 +51,7 @@ def sections_of(reactions: Reactions) -> Sections:
             found[body] = section_forces(reactions, body)
         except DerivationError as error:
             if NO_LINE not in error.what:
-                reasons[body] = f"{error.what}; {error.mend}" if error.mend else error.what
+                reasons[body] = f"{error.what}; {error.fix}" if error.fix else error.what
     return Sections(found, reasons)
 
 
@@ -80,7 +80,9 @@ def section_payload(sections: Sections) -> dict[str, Any]:
     return found | {body: {"message": reason} for body, reason in sections.reasons.items()}
 
 
-def told_sections(sections: Sections, steps: Sequence[Step], payload: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+def reported_sections(
+    sections: Sections, steps: Sequence[Step], payload: Mapping[str, Any]
+) -> Iterator[tuple[str, Any]]:
     """(body, what is told of it), as it is printed and as machines get it."""
     by_key = {step.key: step.statements for step in steps}
     for body, forces in sections.found.items():
@@ -91,8 +93,8 @@ def told_sections(sections: Sections, steps: Sequence[Step], payload: Mapping[st
         extremes = [dict(zip(("M", "x"), sides[k : k + 2], strict=True)) for k in range(0, len(sides), 2)]
         rows = [dict(zip(heads, row, strict=True)) for row in grid.rows]
         x = _variable(forces).name
-        yield body, ToldSections(x, rows, extremes)  # type: ignore[arg-type]
-        yield body, ToldSections(payload[body]["variable"], payload[body]["pieces"], payload[body]["extremes"])
+        yield body, ReportedSections(x, rows, extremes)  # type: ignore[arg-type]
+        yield body, ReportedSections(payload[body]["variable"], payload[body]["pieces"], payload[body]["extremes"])
 
 
 def _row(forces: SectionForces, piece: SectionPiece, x: Node) -> dict[str, str]:

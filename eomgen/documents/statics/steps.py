@@ -36,7 +36,7 @@ from eomgen.mechanics.statics.virtual_work import (
 )
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
-from eomgen.proof.sections_told import ToldBlock, ToldMotion, ToldWork
+from eomgen.proof.sections_reported import ReportedBlock, ReportedMotion, ReportedWork
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, plus, times, vector_of
@@ -118,7 +118,7 @@ def structure_step(statics: StaticReactions) -> Step:
     statements: list[Statement] = [
         prose(
             f"{' and '.join(parts)}, held by {count(len(structure.components), 'scalar reaction')}{besides}. "
-            "The count of freedoms, everything that holds taken as independent:"
+            "The count of degrees of freedom, everything that holds taken as independent:"
         ),
         Formula((_law(formula), number)),
         prose(
@@ -143,15 +143,15 @@ def _free(structure: Structure) -> str:
         return "Nothing can move"
     if structure.turns_idly:
         return f"Nothing can move but {', '.join(idle)} about its own line, on which nothing acts"
-    told = "; ".join(motion_in_words(plan) for plan in structure.loose)
+    reported = "; ".join(motion_in_words(plan) for plan in structure.loose)
     why = "nothing resists it, but no load does any work in it"
-    return f"{told[0].upper()}{told[1:]}: {why}. Else nothing can move"
+    return f"{reported[0].upper()}{reported[1:]}: {why}. Else nothing can move"
 
 
 def _law(formula: str) -> Law:
     """The count as it stands, words upright."""
     latex = formula.replace("*", r" \cdot ")
-    for word in ("bodies", "particles", "joints", "ties", "given motions", "unknown loads"):
+    for word in ("bodies", "particles", "joints", "constraints", "given motions", "unknown loads"):
         latex = latex.replace(f"({word})", rf"\ \text{{({word})}}")
     return Law(formula, latex)
 
@@ -170,14 +170,14 @@ def _open(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str,
             prose("To these at once may be added, with any number ", k, ", without a trace:"),
             Grid(("reaction", "added"), tuple((letters[j], share * k) for j, share in stress.items())),
         ]
-    ties = dict.fromkeys(
+    constraints = dict.fromkeys(
         statics.structure.components[j].owner
         for s in statics.structure.stresses
         for j in s
         if j < len(statics.structure.components)
     )
     statements.append(
-        prose(f"One tie too many for each of these is among: {', '.join(ties)}. What stays determinate is given.")
+        prose(f"One constraint too many for each of these is among: {', '.join(constraints)}. The rest is determinate.")
     )
     if statics.sums:
         rows: list[tuple[Cell, ...]] = []
@@ -279,7 +279,7 @@ def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) ->
     """What must hold of contacts that can end or slide, and what does not."""
     if not conditions:
         return ()
-    rows = tuple((c.tie, MARGINS[c.kind], c.margin) for c in conditions)
+    rows = tuple((c.constraint, MARGINS[c.kind], c.margin) for c in conditions)
     statements: list[Statement] = [
         prose("The contacts are as they were taken while none of these is negative:"),
         Grid(("contact", "what", "formula"), rows),
@@ -308,7 +308,7 @@ def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
     assert equation is not None, "an indeterminate reaction has no equation of work"
     plan, blocks = equation.plan, blocks_of(equation.plan)
     if not blocks:
-        nothing = prose("Its tie leaves this motion free, and so bears nothing: ", symbol, " = 0.")
+        nothing = prose("Its constraint leaves this motion free, and so bears nothing: ", symbol, " = 0.")
         return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", (nothing,))
     delta = _scale(blocks, symbol)
     statements: list[Statement] = [_released(plan, blocks, symbol, delta), _mechanism(plan, blocks, delta)]
@@ -352,23 +352,23 @@ def _listed(names: Sequence[str]) -> str:
 # -- as it is told -----------------------------------------------------------------------------------
 
 
-def told_work(name: str, step: Step, machines: Mapping[str, Any]) -> ToldWork | None:
+def reported_work(name: str, step: Step, machines: Mapping[str, Any]) -> ReportedWork | None:
     """How a reaction in the plane is found, as it is printed and as machines get it; None where nothing moves."""
     grids = {cell_text(s.head[0]): [_by_head(s, row) for row in s.rows] for s in step.statements if isinstance(s, Grid)}
     formulas = [s for s in step.statements if isinstance(s, Formula)]
     if "block" not in grids:
         return None
-    blocks = [ToldBlock(tuple(x["parts"]), x["rotation"][2], x["shift_at_origin"]) for x in machines["mechanism"]]
+    blocks = [ReportedBlock(tuple(x["parts"]), x["rotation"][2], x["shift_at_origin"]) for x in machines["mechanism"]]
     loads = grids.get("load", [])
     left, last = formulas[0].sides[0], formulas[1].sides[1]
-    return ToldWork(
+    return ReportedWork(
         name,
         blocks,
         machines["along"],
         [(term["load"], term["work"]) for term in machines["terms"]],
         machines["value"],
-        [_told_motion(row) for row in grids["block"]],
-        [_told_motion(row) for row in loads if any(f"shift {k}" in row for k in "xy")],
+        [_reported_motion(row) for row in grids["block"]],
+        [_reported_motion(row) for row in loads if any(f"shift {k}" in row for k in "xy")],
         [(row["load"], row["work"]) for row in loads if not isinstance(row["work"], str)],
         left,  # type: ignore[arg-type]
         last,  # type: ignore[arg-type]
@@ -379,11 +379,11 @@ def _by_head(grid: Grid, row: Sequence[Cell]) -> dict[str, Any]:
     return dict(zip(map(cell_text, grid.head), row, strict=True))
 
 
-def _told_motion(row: Mapping[str, Any]) -> ToldMotion:
+def _reported_motion(row: Mapping[str, Any]) -> ReportedMotion:
     """Columns in which nothing stands are left out, and a centre at infinity is a word."""
     spin, *shift = (0 if isinstance(x := row.get(k, ""), str) else x for k in ("rotation", "shift x", "shift y"))
     x = row.get("centre x", "")
-    return ToldMotion(None if isinstance(x, str) else (x, row["centre y"]), spin, shift, row.get("at", ""))
+    return ReportedMotion(None if isinstance(x, str) else (x, row["centre y"]), spin, shift, row.get("at", ""))
 
 
 # -- the mechanism -----------------------------------------------------------------------------------

@@ -1,6 +1,6 @@
 """Constraints -> where coordinates start that they place, and whether branches meet there.
 
-Ties -> where the coordinates start that the ties place, or move.
+Constraints -> where the coordinates start that the constraints place, or move.
 
 phi(q) = 0        dependent coordinates from their guesses, then the nearest place of all others
 """
@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import (
     bilateral,
     closed,
@@ -26,14 +27,13 @@ from eomgen.mechanics.constraints.closure import (
     still_values,
 )
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rank import rank_of_ties
-from eomgen.mechanics.constraints.rows import Row, Ties
+from eomgen.mechanics.constraints.rank import rank_of_constraints
+from eomgen.mechanics.constraints.rows import Constraints, Row
 from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.mechanics.kinematics.scene import start_values, with_unit_quaternions
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.rational import Fraction
@@ -46,18 +46,19 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, OPEN_GAP, RANK
 SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
 
 
-def begun_places(ties: Ties) -> dict[Node, Scalar]:
-    """Where the coordinates start that the ties place, or move: in closed form, else in numbers; {} where none do.
+def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
+    """Where the coordinates start that the constraints place, or move: in closed form, else in numbers; {} where none
+    do.
 
     Raises:
         DerivationError: a place has no closed form, and parameters have no value.
     """
-    scope, rows = ties.motion.scope, gaps_of(ties)
+    scope, rows = constraints.motion.scope, gaps_of(constraints)
     if not rows:
         return {}
     declared = with_unit_quaternions(scope, start_values(scope)) | {scope.symbols.t: 0}
     drawn = any(name not in exact_parameters(scope.model) for name in scope.symbols.parameters)
-    states = [_assembled(ties, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
+    states = [_assembled(constraints, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
     moved = [q for q in scope.symbols.q if any(_differs(declared[q], q, state) for state in states)]
     if not moved:
         return {}
@@ -73,16 +74,16 @@ def begun_places(ties: Ties) -> dict[Node, Scalar]:
     return exact | {q: Fraction(str(states[0][q])) for q in left}
 
 
-def _assembled(ties: Ties, declared: dict[Node, Scalar], seed: int) -> State:
-    """A state at t = 0 in which positions agree with the ties."""
-    scope = ties.motion.scope
-    state, guesses = still_values(ties, Random(seed))
+def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int) -> State:
+    """A state at t = 0 in which positions agree with the constraints."""
+    scope = constraints.motion.scope
+    state, guesses = still_values(constraints, Random(seed))
     state = state | dict(zip(declared, evaluate(tuple(declared.values()), state, fifty_digits()), strict=True))
-    sought = fixed_by_position(ties)
+    sought = fixed_by_position(constraints)
     state |= {q: of_50_digits(guesses[q.name]) for q in sought}
-    state = (closed(ties, state, sought) or state) if sought else state
+    state = (closed(constraints, state, sought) or state) if sought else state
     called = frozenset(q.name for q in scope.symbols.q if is_typed(scope.model, q.name))
-    return with_gaps_closed(ties, state, called)[0]
+    return with_gaps_closed(constraints, state, called)[0]
 
 
 def _differs(declared: Scalar, q: Node, state: State) -> bool:
@@ -91,19 +92,19 @@ def _differs(declared: Scalar, q: Node, state: State) -> bool:
     return abs(float(state[q]) - before) > COMPUTED * (1 + abs(before))
 
 
-def with_gaps_closed(ties: Ties, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
-    """(the nearest state in which positions agree with the ties, the ties that did not hold).
+def with_gaps_closed(constraints: Constraints, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
+    """(the nearest state in which positions agree with the constraints, the constraints that did not hold).
 
     Args:
         called: coordinates whose start a person typed, or a caller gave: these are moved last.
     """
-    scope = ties.motion.scope
-    apart = open_at(((row, row.gap) for row in ties.rows if not row.identical), scope.symbols.q, state)
-    staying = that_stay(ties, apart)
-    opened = tuple(name for name in apart if any(row.tie == name for row in staying.rows))
+    scope = constraints.motion.scope
+    apart = open_at(((row, row.gap) for row in constraints.rows if not row.identical), scope.symbols.q, state)
+    staying = that_stay(constraints, apart)
+    opened = tuple(name for name in apart if any(row.constraint == name for row in staying.rows))
     if not opened:
         return state, ()
-    standing, sought = set(symbols_of(gaps_of(staying))), fixed_by_position(ties)
+    standing, sought = set(symbols_of(gaps_of(staying))), fixed_by_position(constraints)
     own = [
         q for q in scope.symbols.q if q in standing and q not in sought and not scope.model.coordinates[q.name].driven
     ]
@@ -111,9 +112,9 @@ def with_gaps_closed(ties: Ties, state: State, called: frozenset[str]) -> tuple[
     return nearest_places(staying, state, ([*sought, *silent], given, typed), (*sought, *silent)) or state, opened
 
 
-def fixed_by_position(ties: Ties) -> list[Node]:
+def fixed_by_position(constraints: Constraints) -> list[Node]:
     """The dependent coordinates that stand in a gap."""
-    scope, standing = ties.motion.scope, set(symbols_of(gaps_of(ties)))
+    scope, standing = constraints.motion.scope, set(symbols_of(gaps_of(constraints)))
     names = dependent_coordinates(scope)
     return [q for q in scope.symbols.q if q.name in names and q in standing]
 
@@ -126,15 +127,15 @@ def tiers_of(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple
 
 
 def open_at(pairs: Iterable[tuple[Row, Scalar | None]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
-    """The ties whose scalars ought to be zero and are not."""
+    """The constraints whose scalars ought to be zero and are not."""
     named = ((row, x) for row, x in pairs if x is not None)
-    return tuple(dict.fromkeys(row.tie for row, x in named if open_by(x, symbols, state)))
+    return tuple(dict.fromkeys(row.constraint for row, x in named if open_by(x, symbols, state)))
 
 
-def that_stay(ties: Ties, apart: Sequence[str]) -> Ties:
-    """All ties but the contacts that are open and may be so."""
-    ending = [contact.name for contact in contacts_of(ties.motion.scope.model) if contact.unilateral]
-    return bilateral(ties, ending, [name for name in ending if name not in apart])
+def that_stay(constraints: Constraints, apart: Sequence[str]) -> Constraints:
+    """All constraints but the contacts that are open and may be so."""
+    ending = [contact.name for contact in contacts_of(constraints.motion.scope.model) if contact.unilateral]
+    return bilateral(constraints, ending, [name for name in ending if name not in apart])
 
 
 def open_by(x: Scalar, symbols: Sequence[Node], state: State) -> float:
@@ -170,7 +171,7 @@ _OF_TERMS: dict[str, Callable[..., Any]] = {
 
 
 # -------- bifurcations ----------------------------------------------------------------------------------------
-# Ties, a state -> whether branches meet there, and speeds that lead along one of them.
+# Constraints, a state -> whether branches meet there, and speeds that lead along one of them.
 #
 # Where rank J falls below its value elsewhere (a change point) more speeds satisfy J u + sigma = 0 than lead
 # anywhere: accelerations with J a + gamma = 0 must exist too,
@@ -187,55 +188,59 @@ class Fork:
     """A position in which branches meet.
 
     Args:
-        ties: those whose rows depend on one another there alone.
-        more: freedoms that the ties leave beyond those that they leave elsewhere.
+        constraints: those whose rows depend on one another there alone.
+        more: degrees of freedom that the constraints leave beyond those that they leave elsewhere.
         left: n, one a row.
     """
 
-    ties: tuple[str, ...]
+    constraints: tuple[str, ...]
     more: int
     left: np.ndarray
 
     @property
     def words(self) -> str:
-        names = ", ".join(f"'{name}'" for name in self.ties)
-        do = "does" if len(self.ties) == 1 else "do"
+        names = ", ".join(f"'{name}'" for name in self.constraints)
+        do = "does" if len(self.constraints) == 1 else "do"
         return f"a change point, where {names} {do} not determine the motion"
 
 
-def fork_at(ties: Ties, state: State) -> Fork | None:
+def fork_at(constraints: Constraints, state: State) -> Fork | None:
     """Whether the closing rows are less independent there than elsewhere; None where they are not.
 
     Raises:
-        MissingValues, DerivationError: the ties close nowhere near.
+        MissingValues, DerivationError: the constraints close nowhere near.
     """
-    if not ties.closing or not ties.motion.scope.symbols.u:
+    if not constraints.closing or not constraints.motion.scope.symbols.u:
         return None
-    J = _matrix(ties, state)
+    J = _matrix(constraints, state)
     lengths = np.linalg.norm(J, axis=1, keepdims=True)
     U, sizes, _ = np.linalg.svd(of_one_length(J))
     here = int(np.sum(sizes > RANK))
-    if here == len(ties.closing):
+    if here == len(constraints.closing):
         return None
-    more = rank_of_ties(ties) - here
+    more = rank_of_constraints(constraints) - here
     if more <= 0:
         return None
     shares = np.max(np.abs(U[:, here:]), axis=1)
-    names = dict.fromkeys(row.tie for row, share in zip(ties.closing, shares, strict=True) if share > SHARE)
+    names = dict.fromkeys(
+        row.constraint for row, share in zip(constraints.closing, shares, strict=True) if share > SHARE
+    )
     return Fork(tuple(names), more, U[:, here:].T / np.where(lengths > 0, lengths, 1.0).T)
 
 
-def leads_on(ties: Ties, fork: Fork, state: State) -> bool:
+def leads_on(constraints: Constraints, fork: Fork, state: State) -> bool:
     """Whether accelerations exist with these speeds: J a + gamma = 0."""
-    return bool(_Search(ties, fork, state, ()).size(np.zeros(0)) <= CARRIED)
+    return bool(_Search(constraints, fork, state, ()).size(np.zeros(0)) <= CARRIED)
 
 
-def is_at_rest(ties: Ties, state: State) -> bool:
+def is_at_rest(constraints: Constraints, state: State) -> bool:
     """Whether all speeds are 0 there."""
-    return all(abs(state[u]) <= SOLVED for u in ties.motion.scope.symbols.u)
+    return all(abs(state[u]) <= SOLVED for u in constraints.motion.scope.symbols.u)
 
 
-def speeds_along(ties: Ties, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]) -> dict[Node, Any] | None:
+def speeds_along(
+    constraints: Constraints, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]
+) -> dict[Node, Any] | None:
     """The state with the nearest speeds that lead along a branch; None where none is found.
 
     Args:
@@ -245,7 +250,7 @@ def speeds_along(ties: Ties, fork: Fork, state: State, tiers: Sequence[Sequence[
     for tier in tiers:
         free += tier
         if tier:
-            found = _Search(ties, fork, state, tuple(free)).nearest()
+            found = _Search(constraints, fork, state, tuple(free)).nearest()
             if found is not None:
                 return {**state, **{u: state[u] + float(d) for u, d in zip(free, found, strict=True)}}
     return None
@@ -255,7 +260,7 @@ def speeds_along(ties: Ties, fork: Fork, state: State, tiers: Sequence[Sequence[
 class _Search:
     """Newton's method for J u + sigma = 0, n^T gamma(u) = 0 in some of the speeds."""
 
-    ties: Ties
+    constraints: Constraints
     fork: Fork
     state: State
     free: tuple[Node, ...]
@@ -263,7 +268,7 @@ class _Search:
     def nearest(self) -> np.ndarray | None:
         """The least change of the free speeds that is found."""
         rng = Random(1)
-        reach = max([1.0, *(abs(float(self.state[u])) for u in self.ties.motion.scope.symbols.u)])
+        reach = max([1.0, *(abs(float(self.state[u])) for u in self.constraints.motion.scope.symbols.u)])
         starts = [np.zeros(len(self.free))]
         starts += [reach * np.array([rng.uniform(-1, 1) for _ in self.free]) for _ in range(TRIES)]
         roots = [ALONG_A_BRANCH.root(self, start) for start in starts]
@@ -288,18 +293,18 @@ class _Search:
 
     def _left(self, d: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(J u + sigma above n^T gamma, the size of the terms of each)."""
-        k = len(self.ties.closing)
-        values = self._at(d, (*(row.velocity for row in self.ties.closing), *self.ties.gamma))
-        u = np.array([float(self._moved(d)[x]) for x in self.ties.motion.scope.symbols.u])
-        J, fastest = np.abs(_matrix(self.ties, self.state)), np.max(np.abs(u), initial=0.0)
+        k = len(self.constraints.closing)
+        values = self._at(d, (*(row.velocity for row in self.constraints.closing), *self.constraints.gamma))
+        u = np.array([float(self._moved(d)[x]) for x in self.constraints.motion.scope.symbols.u])
+        J, fastest = np.abs(_matrix(self.constraints, self.state)), np.max(np.abs(u), initial=0.0)
         of_speed = max(np.max(J @ np.abs(u), initial=0.0), np.max(np.abs(values[:k]), initial=0.0), TINIEST)
         own = np.abs(self.fork.left) @ (np.abs(values[k:]) + np.max(J, initial=0.0) * fastest**2)
         f = np.append(values[:k], self.fork.left @ values[k:])
         return f, np.append(np.full(k, of_speed), np.maximum(own, TINIEST))
 
     def _slope(self, d: np.ndarray) -> np.ndarray:
-        k = len(self.ties.closing)
-        rows: tuple[Scalar, ...] = (*(row.velocity for row in self.ties.closing), *self.ties.gamma)
+        k = len(self.constraints.closing)
+        rows: tuple[Scalar, ...] = (*(row.velocity for row in self.constraints.closing), *self.constraints.gamma)
         flat = tuple(x for row in jacobian(rows, self.free) for x in row)
         slope = self._at(d, flat).reshape(2 * k, len(self.free))
         return np.vstack([slope[:k], self.fork.left @ slope[k:]])
@@ -311,6 +316,6 @@ class _Search:
         return np.array([float(x) for x in evaluate(scalars, self._moved(d), fifty_digits())])
 
 
-def _matrix(ties: Ties, state: State) -> np.ndarray:
-    values = evaluate([x for row in ties.J for x in row], state, fifty_digits())
-    return np.array([float(x) for x in values]).reshape(len(ties.closing), -1)
+def _matrix(constraints: Constraints, state: State) -> np.ndarray:
+    values = evaluate([x for row in constraints.J for x in row], state, fifty_digits())
+    return np.array([float(x) for x in values]).reshape(len(constraints.closing), -1)

@@ -1,6 +1,6 @@
 """Constraints -> states at which the loops close, and the nearest one to a rough state.
 
-Ties -> states in which the loops close: phi = 0 and J u + sigma = 0, in numbers of 50 digits.
+Constraints -> states in which the loops close: phi = 0 and J u + sigma = 0, in numbers of 50 digits.
 
 Where loops are redundant the rank of J shows only as well as phi = 0 holds: an error d of the position
 makes redundant rows differ by d. So positions are sought to 1e-28.
@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError, MissingValues, OpenTies
-from eomgen.mechanics.constraints.rows import Ties
+from eomgen.errors import DerivationError, EomgenError, MissingValues, OpenConstraints
+from eomgen.frozen import dataclass, recalled
+from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, start_values
-from eomgen.records import dataclass, recalled
 from eomgen.symbolic.expression.derivative import depends_on, jacobian
 from eomgen.symbolic.expression.formula import Expression, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, State
@@ -42,7 +42,9 @@ CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
-def generic_state(ties: Ties, rng: Random | int = 1, *, shaken: bool = False, spreads: Sequence[float] = ()) -> State:
+def generic_state(
+    constraints: Constraints, rng: Random | int = 1, *, shaken: bool = False, spreads: Sequence[float] = ()
+) -> State:
     """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
 
     Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
@@ -52,50 +54,52 @@ def generic_state(ties: Ties, rng: Random | int = 1, *, shaken: bool = False, sp
         shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
         spreads: how far from the start it is looked for, the first first; before those near to it.
     Raises:
-        MissingValues, DerivationError: the ties do not close there.
+        MissingValues, DerivationError: the constraints do not close there.
     """
     if isinstance(rng, int):
         seed, key = rng, (generic_state, rng, shaken, tuple(spreads))
-        known = recalled(ties, key, lambda: generic_state(ties, Random(seed), shaken=shaken, spreads=spreads))
+        known = recalled(
+            constraints, key, lambda: generic_state(constraints, Random(seed), shaken=shaken, spreads=spreads)
+        )
         return dict(known)
-    state, q = still_values(ties, rng, shaken=shaken)
+    state, q = still_values(constraints, rng, shaken=shaken)
     for spread in (*spreads, *SPREADS):
-        found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
+        found = closed(constraints, state | _scattered(constraints, q, spread, rng), movable(constraints))
         if found is not None:
             with suppress(NoValue, ZeroDivisionError):  # a strand into a pulley: nearer then
-                return speeds_closed(ties, _with_laws(ties, found))
-    raise _open(ties, exact_parameters(ties.motion.scope.model))
+                return speeds_closed(constraints, _with_laws(constraints, found))
+    raise _open(constraints, exact_parameters(constraints.motion.scope.model))
 
 
-def begun_state(ties: Ties) -> State:
+def begun_state(constraints: Constraints) -> State:
     """Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given.
 
     Raises:
-        MissingValues, DerivationError: the ties do not close there.
+        MissingValues, DerivationError: the constraints do not close there.
     """
-    model, symbols = ties.motion.scope.model, ties.motion.scope.symbols
-    state, q = still_values(ties, Random(1))
+    model, symbols = constraints.motion.scope.model, constraints.motion.scope.symbols
+    state, q = still_values(constraints, Random(1))
     numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
     speeds = start_values(model, numbers)[1]
     given = {node: of_50_digits(q[node.name]) for node in symbols.q}
     given |= {u: of_50_digits(speeds.get(u.name, 0.0)) for u in symbols.u}
-    given |= on_unit_spheres(ties.motion.scope.quaternions, state | given)
-    found = closed(ties, state | given, movable(ties))
+    given |= on_unit_norms(constraints.motion.scope.quaternions, state | given)
+    found = closed(constraints, state | given, movable(constraints))
     if found is None:
-        raise _open(ties, exact_parameters(model))
-    return speeds_closed(ties, _with_laws(ties, found))
+        raise _open(constraints, exact_parameters(model))
+    return speeds_closed(constraints, _with_laws(constraints, found))
 
 
-def scattered_state(ties: Ties) -> State:
-    """Values of every symbol: near the start, off any special position; the ties need not hold."""
+def scattered_state(constraints: Constraints) -> State:
+    """Values of every symbol: near the start, off any special position; the constraints need not hold."""
     rng = Random(1)
-    state, q = still_values(ties, rng)
-    return _with_laws(ties, state | _scattered(ties, q, SPREADS[0], rng))
+    state, q = still_values(constraints, rng)
+    return _with_laws(constraints, state | _scattered(constraints, q, SPREADS[0], rng))
 
 
-def still_values(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
+def still_values(constraints: Constraints, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
     """(values of every symbol but the coordinates, where the coordinates start)."""
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     model, symbols = scope.model, scope.symbols
     known = exact_parameters(model)
     p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
@@ -112,24 +116,24 @@ def still_values(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[Stat
     return state, start_values(model, p)[0] | first_guesses(model, p)
 
 
-def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -> State:
+def _scattered(constraints: Constraints, q: Mapping[str, float], spread: float, rng: Random) -> State:
     """Coordinates that lie about those given, soon after t = 0."""
-    symbols = ties.motion.scope.symbols
+    symbols = constraints.motion.scope.symbols
     shifted = {node: of_50_digits(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
-    shifted |= on_unit_spheres(ties.motion.scope.quaternions, shifted)
+    shifted |= on_unit_norms(constraints.motion.scope.quaternions, shifted)
     return shifted | {symbols.t: of_50_digits(rng.uniform(0, spread))}
 
 
-def _with_laws(ties: Ties, state: State) -> State:
+def _with_laws(constraints: Constraints, state: State) -> State:
     """The state, with the given rates and accelerations that are names (`Scope.laws`)."""
-    laws = ties.motion.scope.laws
+    laws = constraints.motion.scope.laws
     return state | dict(zip(laws, evaluate(tuple(laws.values()), state, fifty_digits(partial=True)), strict=True))
 
 
-def on_unit_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
+def on_unit_norms(unit_quaternions: Sequence[Sequence[Node]], state: State) -> State:
     """The symbols whose squares add up to 1, over their norm."""
     found: State = {}
-    for symbols in spheres:
+    for symbols in unit_quaternions:
         (norm,) = evaluate((sqrt(sum((x * x for x in symbols), start=0)),), state, fifty_digits())
         found |= {x: state[x] / norm for x in symbols}
     return found
@@ -140,42 +144,44 @@ def of_50_digits(value: float) -> Any:
     return fifty_digits().number(1) * value
 
 
-def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
-    missing = tuple(name for name in ties.motion.scope.symbols.parameters if name not in known)
+def _open(constraints: Constraints, known: Mapping[str, Any]) -> EomgenError:
+    missing = tuple(name for name in constraints.motion.scope.symbols.parameters if name not in known)
     if missing:
         return MissingValues(missing)
-    names = ", ".join(dict.fromkeys(row.tie for row in ties.rows if not row.identical))
-    what = f"the ties do not close near the start values: {names}"
-    return OpenTies(what, mend="`eomgen check` says whether they can")
+    names = ", ".join(dict.fromkeys(row.constraint for row in constraints.rows if not row.identical))
+    what = f"the constraints do not close near the start values: {names}"
+    return OpenConstraints(what, fix="`eomgen check` says whether they can")
 
 
-def rows_where_closed(ties: Ties, state: State) -> np.ndarray:
+def rows_where_closed(constraints: Constraints, state: State) -> np.ndarray:
     """J of the closing rows at a state in which they hold, k x nu; entries that vanish there are 0, not what is left.
 
     Raises:
         NoValue: it has none there.
     """
-    values = floats_of(evaluate([x for row in ties.J for x in row], state, fifty_digits()))
-    return closed_entries(np.array(values).reshape(len(ties.closing), len(ties.motion.scope.symbols.u)))
+    values = floats_of(evaluate([x for row in constraints.J for x in row], state, fifty_digits()))
+    return closed_entries(np.array(values).reshape(len(constraints.closing), len(constraints.motion.scope.symbols.u)))
 
 
-def movable(ties: Ties) -> list[Node]:
+def movable(constraints: Constraints) -> list[Node]:
     """The coordinates that are not driven."""
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     return [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
 
 
-def gaps_of(ties: Ties) -> tuple[Scalar, ...]:
+def gaps_of(constraints: Constraints) -> tuple[Scalar, ...]:
     """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
-    return tuple(row.gap for row in ties.rows if row.gap is not None and not row.identical)
+    return tuple(row.gap for row in constraints.rows if row.gap is not None and not row.identical)
 
 
-def norms_of(ties: Ties) -> tuple[Scalar, ...]:
+def norms_of(constraints: Constraints) -> tuple[Scalar, ...]:
     """e . e - 1 of every quaternion."""
-    return tuple(sum((e * e for e in four), start=-1) for four in ties.motion.scope.quaternions)
+    return tuple(sum((e * e for e in four), start=-1) for four in constraints.motion.scope.quaternions)
 
 
-def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | None = None) -> State | None:
+def closed(
+    constraints: Constraints, state: State, free: Sequence[Node], sizes: np.ndarray | None = None
+) -> State | None:
     """The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near.
 
     What rounding alone would move stays: a distance that is 0 is 0, and what is divided by it has no value.
@@ -185,7 +191,7 @@ def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | N
 
     The way is damped: see `symbolic.numeric.roots`.
     """
-    found = nearest_root((*gaps_of(ties), *norms_of(ties)), state, free, sizes)
+    found = nearest_root((*gaps_of(constraints), *norms_of(constraints)), state, free, sizes)
     if found is None:
         return None
     return found | {q: state[q] for q in free if abs(found[q] - state[q]) < ROUNDED_AWAY}
@@ -221,32 +227,33 @@ class _Gaps:
         return state | {q: state[q] + float(s) * d for q, s, d in zip(self.free, self.sizes, step, strict=True)}
 
 
-def speeds_closed(ties: Ties, state: State) -> State:
+def speeds_closed(constraints: Constraints, state: State) -> State:
     """The state with the nearest speeds that satisfy J u + sigma = 0."""
-    u = ties.motion.scope.symbols.u
-    if not ties.closing or not u:
+    u = constraints.motion.scope.symbols.u
+    if not constraints.closing or not u:
         return state
-    entries = (*(x for row in ties.J for x in row), *(row.velocity for row in ties.closing))
+    entries = (*(x for row in constraints.J for x in row), *(row.velocity for row in constraints.closing))
     values = [float(x) for x in evaluate(entries, state, fifty_digits())]
-    k = len(ties.closing)
+    k = len(constraints.closing)
     J, open_rate = np.reshape(values[:-k], (k, len(u))), np.array(values[-k:])
     step = np.linalg.lstsq(J, -open_rate, rcond=LEAST_CHANGE)[0]
     return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}
 
 
 # -------- consistency -----------------------------------------------------------------------------------------
-# Ties, a rough state -> the nearest state at which they hold, and what had to change for it.
+# Constraints, a rough state -> the nearest state at which they hold, and what had to change for it.
 #
 # Positions:   phi(q) = 0        with the least sum of (s_k dq_k)^2 Speeds:      J u + sigma = 0   with the least du^T
-# M du, as when the ties take hold at once (an impact without rebound)
+# M du, as when the constraints take hold at once (an impact without rebound)
 #
 # s_k is how far a change of the k-th coordinate moves the gaps: angles and lengths count alike, whatever their units.
-# The same holds of speeds that nobody gave, so that those stay which the ties do not need, and where M is not known
+# The same holds of speeds that nobody gave, so that those stay which the constraints do not need, and where M is not
+# known
 # or measures nothing. Values that nobody gave move first, then those of the model, at last those that the caller
 # gave.
 
 
-ROUNDS = 12  # of walking along the ties towards the values given
+ROUNDS = 12  # of walking along the constraints towards the values given
 LEAP = 1.0  # of a guess [rad, m], beyond which other guesses are tried too
 SPREADS_OF_ROUGH = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one is tried
 EASY = 1e3  # times farther a guess may move than a given value, for the same
@@ -254,7 +261,7 @@ EASY = 1e3  # times farther a guess may move than a given value, for the same
 Tiers = Sequence[Sequence[Node]]
 
 
-def nearest_places(ties: Ties, state: State, tiers: Tiers, guessed: Sequence[Node]) -> State | None:
+def nearest_places(constraints: Constraints, state: State, tiers: Tiers, guessed: Sequence[Node]) -> State | None:
     """The nearest state with phi = 0, moving as few kinds of values as will do; None where none is near.
 
     Args:
@@ -264,14 +271,14 @@ def nearest_places(ties: Ties, state: State, tiers: Tiers, guessed: Sequence[Nod
     free: list[Node] = []
     for tier in tiers:
         free += tier
-        moved = _moved(ties, state, free) if tier else None
+        moved = _moved(constraints, state, free) if tier else None
         found = None if moved is None else _nearest(moved, state, free, guessed)
         if found is not None:
             return found
     return None
 
 
-def nearest_speeds(ties: Ties, state: State, tiers: Tiers, M: np.ndarray | None) -> State | None:
+def nearest_speeds(constraints: Constraints, state: State, tiers: Tiers, M: np.ndarray | None) -> State | None:
     """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none.
 
     Of each tier no more is changed than what those before it cannot close.
@@ -280,12 +287,12 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers, M: np.ndarray | None)
         tiers: as in `nearest_places`; the last two are of values that somebody gave.
         M: the mass matrix at the state, where it is known: it measures changes of these.
     """
-    u = ties.motion.scope.symbols.u
-    if not ties.closing or not u:
+    u = constraints.motion.scope.symbols.u
+    if not constraints.closing or not u:
         return state
-    entries = (*(x for row in ties.J for x in row), *(row.velocity for row in ties.closing))
+    entries = (*(x for row in constraints.J for x in row), *(row.velocity for row in constraints.closing))
     values = np.array([float(x) for x in evaluate(entries, state, fifty_digits())])
-    closing = len(ties.closing)
+    closing = len(constraints.closing)
     J, open_rate = values[:-closing].reshape(closing, len(u)), values[-closing:]
     found, step = open_rate, np.zeros(len(u))
     columns = [[u.index(x) for x in tier] for tier in tiers]
@@ -329,31 +336,31 @@ def _unit(J: np.ndarray, M: np.ndarray | None) -> np.ndarray:
     return np.diag(1 / _slopes(J))
 
 
-def regular(ties: Ties, state: State, free: Sequence[Node]) -> bool:
+def regular(constraints: Constraints, state: State, free: Sequence[Node]) -> bool:
     """Whether the gaps are as independent there as in a configuration that is not special.
 
     Slopes are measured by those of that configuration: where all gaps are flat none is.
     """
-    J = [_slope(ties, each, free) for each in (state, _another(ties, state, free))]
+    J = [_slope(constraints, each, free) for each in (state, _another(constraints, state, free))]
     _, rows, columns = balanced(J[1])
     here, there = (np.linalg.svd(rows[:, None] * each * columns, compute_uv=False) for each in J)
     smallest = RANK * np.max(there, initial=0.0)
     return bool(np.sum(here > smallest) >= np.sum(there > smallest))
 
 
-def _another(ties: Ties, state: State, free: Sequence[Node]) -> State:
+def _another(constraints: Constraints, state: State, free: Sequence[Node]) -> State:
     """A configuration that is not special; where the gaps close in none but this one, they need not close there."""
     try:
-        other = generic_state(ties)
+        other = generic_state(constraints)
     except (DerivationError, MissingValues):
-        return scattered_state(ties)
+        return scattered_state(constraints)
     same = all(abs(other[q] - state[q]) < SAME_PLACE for q in free)
-    return scattered_state(ties) if same else other
+    return scattered_state(constraints) if same else other
 
 
-def far(ties: Ties, before: State, after: State, given: Sequence[Node]) -> bool:
+def far(constraints: Constraints, before: State, after: State, given: Sequence[Node]) -> bool:
     """Whether a given coordinate moved the gaps by more than a turn of 1 rad of some coordinate does."""
-    slopes = _slopes(_slope(ties, after, given))
+    slopes = _slopes(_slope(constraints, after, given))
     moved = [abs(float(after[q] - before[q])) for q in given]
     return bool(np.any(slopes * np.array(moved) > np.max(slopes, initial=0.0)))
 
@@ -387,11 +394,11 @@ def _given(model: Model, name: str) -> list[Expression]:
 # -- positions ---------------------------------------------------------------------------------------
 
 
-def _moved(ties: Ties, state: State, free: Sequence[Node]) -> Ties | None:
+def _moved(constraints: Constraints, state: State, free: Sequence[Node]) -> Constraints | None:
     """The rows that these coordinates move; None where another one is open by more than the rounding of its values."""
-    others = [row for row in ties.rows if row.gap is not None and not depends_on(row.gap, free)]
+    others = [row for row in constraints.rows if row.gap is not None and not depends_on(row.gap, free)]
     gaps = tuple(row.gap for row in others if row.gap is not None and not row.identical)
-    slopes = _slope(replace(ties, rows=tuple(others)), state, movable(ties))
+    slopes = _slope(replace(constraints, rows=tuple(others)), state, movable(constraints))
     sizes = np.max(np.abs(slopes), axis=1, initial=0.0)
     try:
         values = evaluate(gaps, state, fifty_digits())
@@ -399,18 +406,18 @@ def _moved(ties: Ties, state: State, free: Sequence[Node]) -> Ties | None:
         return None
     if any(abs(x) > SOLVED * max(size, DEGENERATE) for x, size in zip(values, sizes, strict=True)):
         return None
-    return replace(ties, rows=tuple(row for row in ties.rows if row not in others))
+    return replace(constraints, rows=tuple(row for row in constraints.rows if row not in others))
 
 
-def _nearest(ties: Ties, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
+def _nearest(constraints: Constraints, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
     """By moving these alone, from where they stand, then from other guesses; the nearest of those that leap."""
     given = [q for q in free if q not in guessed]
     leaps: list[tuple[float, State]] = []
     for start in _guesses(state, [q for q in free if q in guessed]):
-        found = _walked(ties, start, free, state, guessed)
-        if found is None or far(ties, state, found, given) or not regular(ties, found, free):
+        found = _walked(constraints, start, free, state, guessed)
+        if found is None or far(constraints, state, found, given) or not regular(constraints, found, free):
             continue
-        found = _turned_back(ties, state, found, guessed)
+        found = _turned_back(constraints, state, found, guessed)
         apart = max((abs(float(found[q] - state[q])) for q in guessed), default=0.0)
         if apart <= LEAP:
             return found
@@ -418,15 +425,15 @@ def _nearest(ties: Ties, state: State, free: Sequence[Node], guessed: Sequence[N
     return min(leaps, key=lambda leap: leap[0])[1] if leaps else None
 
 
-def _turned_back(ties: Ties, before: State, found: State, guessed: Sequence[Node]) -> State:
-    """The place with whole turns taken back where the ties hold as well without them."""
-    turn = 2 * evaluate((ties.motion.scope.graph.pi,), {}, fifty_digits())[0]
+def _turned_back(constraints: Constraints, before: State, found: State, guessed: Sequence[Node]) -> State:
+    """The place with whole turns taken back where the constraints hold as well without them."""
+    turn = 2 * evaluate((constraints.motion.scope.graph.pi,), {}, fifty_digits())[0]
     for q in guessed:
         turns = round(float((found[q] - before[q]) / turn))
         if not turns:
             continue
         back = found | {q: found[q] - turns * turn}
-        if all(abs(x) <= CLOSED_AT_50 for x in evaluate(gaps_of(ties), back, fifty_digits())):
+        if all(abs(x) <= CLOSED_AT_50 for x in evaluate(gaps_of(constraints), back, fifty_digits())):
             found = back
     return found
 
@@ -438,29 +445,30 @@ def _guesses(state: State, guessed: Sequence[Node]) -> Iterator[State]:
 
 
 def _walked(
-    ties: Ties, start: State, free: Sequence[Node], wanted: Mapping[Node, Any], guessed: Sequence[Node]
+    constraints: Constraints, start: State, free: Sequence[Node], wanted: Mapping[Node, Any], guessed: Sequence[Node]
 ) -> State | None:
-    """Closed from the start, then along the ties to the point that is nearest to the wanted values, guesses last.
+    """Closed from the start, then along the constraints to the point that is nearest to the wanted values, guesses
+    last.
 
     dq = (1 - J^+ J) (q_wanted - q), and closed again, till that is nothing.
     """
-    sizes = 1 / _slopes(_slope(ties, start, free)) * np.array([EASY if q in guessed else 1.0 for q in free])
-    found = closed(ties, start, free, sizes)
+    sizes = 1 / _slopes(_slope(constraints, start, free)) * np.array([EASY if q in guessed else 1.0 for q in free])
+    found = closed(constraints, start, free, sizes)
     for _ in range(ROUNDS if found is not None else 0):
         assert found is not None
-        J = _slope(ties, found, free) * sizes
+        J = _slope(constraints, found, free) * sizes
         left = np.array([float(wanted[q] - found[q]) for q in free]) / sizes
         along = left - np.linalg.pinv(J, rcond=RANK) @ (J @ left)
         if np.max(abs(along), initial=0.0) < SOLVED:
             break
         moved = found | {q: found[q] + float(d) for q, d in zip(free, sizes * along, strict=True)}
-        found = closed(ties, moved, free, sizes) or found
+        found = closed(constraints, moved, free, sizes) or found
     return found
 
 
-def _slope(ties: Ties, state: State, free: Sequence[Node]) -> np.ndarray:
+def _slope(constraints: Constraints, state: State, free: Sequence[Node]) -> np.ndarray:
     """d phi/dq of the free coordinates."""
-    gaps: tuple[Scalar, ...] = gaps_of(ties)
+    gaps: tuple[Scalar, ...] = gaps_of(constraints)
     try:
         values = evaluate([x for row in jacobian(gaps, free) for x in row], state, fifty_digits())
     except (NoValue, ZeroDivisionError):
@@ -474,6 +482,9 @@ def _slopes(J: np.ndarray) -> np.ndarray:
     return np.asarray(np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0)))
 
 
-def bilateral(ties: Ties, ending: Sequence[str], holds: Sequence[str]) -> Ties:
-    """The ties without those contacts that can end and do not hold: what is open there may stay open."""
-    return replace(ties, rows=tuple(row for row in ties.rows if row.tie not in ending or row.tie in holds))
+def bilateral(constraints: Constraints, ending: Sequence[str], holds: Sequence[str]) -> Constraints:
+    """The constraints without those contacts that can end and do not hold: what is open there may stay open."""
+    return replace(
+        constraints,
+        rows=tuple(row for row in constraints.rows if row.constraint not in ending or row.constraint in holds),
+    )

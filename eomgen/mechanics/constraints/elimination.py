@@ -1,4 +1,4 @@
-"""Ties -> Elimination: the rates of dependent coordinates, by the rows that determine them.
+"""Constraints -> Elimination: the rates of dependent coordinates, by the rows that determine them.
 
     J_d u_d + J_i u_i + sigma = 0   ->   u_d = A u_i + b,   N = [1; A],   nu = [0; b]
 
@@ -16,10 +16,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
-from eomgen.mechanics.constraints.rows import Ties, holds_identically
+from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics.symbols import Scope, shorter, with_speeds_named
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -42,17 +42,17 @@ class DependentBlock:
     """Dependent coordinates that some rows determine together.
 
     Args:
-        coordinates, ties: their names.
+        coordinates, constraints: their names.
         determinant: of the rows' coefficients of these rates; where it vanishes they are not determined.
     """
 
     coordinates: tuple[str, ...]
-    ties: tuple[str, ...]
+    constraints: tuple[str, ...]
     determinant: Scalar
 
     def __str__(self) -> str:
-        ties, names = (", ".join(f"'{name}'" for name in each) for each in (self.ties, self.coordinates))
-        return f"{ties} {'does' if len(self.ties) == 1 else 'do'} not determine {names}"
+        constraints, names = (", ".join(f"'{name}'" for name in each) for each in (self.constraints, self.coordinates))
+        return f"{constraints} {'does' if len(self.constraints) == 1 else 'do'} not determine {names}"
 
 
 @dataclass(frozen=True)
@@ -95,85 +95,85 @@ def refuse_undetermined(elimination: Elimination | None, scope: Scope, place: Ma
         place: values of coordinates and t, exact.
         when: the place, in words.
     Raises:
-        DerivationError: the ties and coordinates are named.
+        DerivationError: the constraints and coordinates are named.
     """
     for block in singular_blocks(elimination, scope):
         if is_zero(substituted((block.determinant,), place)[0]):
-            mend = "start beside it, or leave out `dependent`: then their rates belong to the state"
-            raise DerivationError(f"{block} {when} ({PLACE})", mend=mend)
+            fix = "start beside it, or leave out `dependent`: then their rates belong to the state"
+            raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
 
 
-def elimination_of(ties: Ties) -> Elimination:
-    """The dependent coordinates of a model eliminated through its ties.
+def elimination_of(constraints: Constraints) -> Elimination:
+    """The dependent coordinates of a model eliminated through its constraints.
 
     Args:
-        ties: all of them, over the scope in which dependent coordinates are free.
+        constraints: all of them, over the scope in which dependent coordinates are free.
     Raises:
-        DerivationError: a dependent coordinate that no tie determines.
+        DerivationError: a dependent coordinate that no constraint determines.
     """
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     names = dependent_coordinates(scope)
     dependent = tuple(k for k, u in enumerate(scope.symbols.u) if u.name[:-1] in names)
     kept = tuple(k for k in range(len(scope.symbols.u)) if k not in dependent)
-    J = _numbers(ties)
-    rows = _determining_rows(ties, J[:, dependent])
+    J = _numbers(constraints)
+    rows = _determining_rows(constraints, J[:, dependent])
     if len(rows) < len(dependent):
-        raise _undetermined(names, J[np.ix_(rows, dependent)], ties)
+        raise _undetermined(names, J[np.ix_(rows, dependent)], constraints)
     follow = _following(J, rows, dependent, kept)
     sharing = [i for i in follow if np.any(J[i, dependent])]
-    system = _LinearRows(ties, J, rows, dependent, kept)
+    system = _LinearRows(constraints, J, rows, dependent, kept)
     if sharing and system.lean(sharing):
         system = system.where_closed().joined(sharing)
     A, b, blocks = system.solved()
     scope = _reduced(scope, dependent, kept, A, b)
     own = [names[j] for j in _released_by(J[np.ix_(rows, dependent)])]
     found = dict(zip(rows, own, strict=True)) | dict.fromkeys(follow, "")
-    used = {(ties.closing[i].tie, ties.closing[i].number): name for i, name in found.items()}
-    return Elimination(scope, used, tuple(_named(ties, names, system.rows, block) for block in blocks))
+    used = {(constraints.closing[i].constraint, constraints.closing[i].number): name for i, name in found.items()}
+    return Elimination(scope, used, tuple(_named(constraints, names, system.rows, block) for block in blocks))
 
 
 # -- which rows --------------------------------------------------------------------------------------
 
 
-def _numbers(ties: Ties) -> np.ndarray:
+def _numbers(constraints: Constraints) -> np.ndarray:
     """J of the closing rows at a generic state in which they hold, or where none is near at any state.
 
     Raises:
         DerivationError: it has no finite value there.
     """
     try:
-        state = generic_state(ties)
+        state = generic_state(constraints)
     except (DerivationError, MissingValues):
-        state = scattered_state(ties)
+        state = scattered_state(constraints)
     try:
-        return rows_where_closed(ties, state)
+        return rows_where_closed(constraints, state)
     except (NoValue, ZeroDivisionError):
-        what = "the velocities of the ties have no finite value near the start"
+        what = "the velocities of the constraints have no finite value near the start"
         raise DerivationError(what, "constraints", "look at what grows in the joints that they hold") from None
 
 
-def _determining_rows(ties: Ties, J_d: np.ndarray) -> list[int]:
+def _determining_rows(constraints: Constraints, J_d: np.ndarray) -> list[int]:
     """The simplest closing rows that are independent in the dependent speeds, in their order."""
-    speeds = _dependent_speeds(ties)
+    speeds = _dependent_speeds(constraints)
     chosen: list[int] = []
-    for i in sorted(range(len(ties.closing)), key=lambda i: (*_difficulty(ties, i, speeds), i)):
+    for i in sorted(range(len(constraints.closing)), key=lambda i: (*_difficulty(constraints, i, speeds), i)):
         if len(chosen) < J_d.shape[1] and np.any(J_d[i]) and independent(J_d[[*chosen, i]], smallest=RANK):
             chosen.append(i)
     return sorted(chosen)
 
 
-def _dependent_speeds(ties: Ties) -> list[int]:
-    model = ties.motion.scope.model
-    return [k for k, u in enumerate(ties.motion.scope.symbols.u) if model.coordinates[u.name[:-1]].dependent]
+def _dependent_speeds(constraints: Constraints) -> list[int]:
+    model = constraints.motion.scope.model
+    return [k for k, u in enumerate(constraints.motion.scope.symbols.u) if model.coordinates[u.name[:-1]].dependent]
 
 
-def _difficulty(ties: Ties, i: int, dependent: Sequence[int]) -> tuple[int, int, int]:
+def _difficulty(constraints: Constraints, i: int, dependent: Sequence[int]) -> tuple[int, int, int]:
     """How much work a row makes: numbers before parameters before what moves, few coefficients, short ones."""
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     moving = (*scope.symbols.q, scope.symbols.t)
-    entries = [ties.J[i][k] for k in dependent if not is_zero(ties.J[i][k])]
+    entries = [constraints.J[i][k] for k in dependent if not is_zero(constraints.J[i][k])]
     kinds = [0 if type(x) is not Node else 2 if depends_on(x, moving) else 1 for x in entries]
-    return max(kinds, default=0), len(entries), operations(ties.J[i]).total
+    return max(kinds, default=0), len(entries), operations(constraints.J[i]).total
 
 
 def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept: tuple[int, ...]) -> list[int]:
@@ -192,20 +192,20 @@ def _released_by(J_d: np.ndarray) -> list[int]:
     return [found[i] for i in range(len(J_d))]
 
 
-def _undetermined(names: tuple[str, ...], J_d: np.ndarray, ties: Ties) -> DerivationError:
+def _undetermined(names: tuple[str, ...], J_d: np.ndarray, constraints: Constraints) -> DerivationError:
     """Names the coordinates that the rows leave free."""
     solved: list[int] = []
     for k in range(J_d.shape[1]):
         if independent(J_d[:, [*solved, k]].T, smallest=RANK):
             solved.append(k)
     left = [name for k, name in enumerate(names) if k not in solved]
-    what = f"'{left[0]}' is dependent, but " + _why(ties, len(left))
+    what = f"'{left[0]}' is dependent, but " + _why(constraints, len(left))
     return DerivationError(what, f"coordinates.{left[0]}", "add the constraint that moves it, or leave out `dependent`")
 
 
-def _why(ties: Ties, left: int) -> str:
-    if not ties.closing:
-        return "the coordinates satisfy all constraints by themselves" if ties.rows else "there is no constraint"
+def _why(constraints: Constraints, left: int) -> str:
+    if not constraints.closing:
+        return "the coordinates satisfy all constraints by themselves" if constraints.rows else "there is no constraint"
     together = "" if left == 1 else f", and {left - 1} more dependent coordinate{'s' * (left > 2)} with it"
     return f"the constraints leave it free{together}"
 
@@ -218,15 +218,15 @@ class _LinearRows:
     """Rows that determine the dependent rates.
 
     Args:
-        ties: all of them.
+        constraints: all of them.
         numbers: J at a state in which they hold.
         rows: of the closing rows.
         dependent, kept: which speeds are solved for, and which are not.
-        vanishing: (row, speed) of entries that vanish wherever the ties hold.
+        vanishing: (row, speed) of entries that vanish wherever the constraints hold.
         are_squared: whether they are taken together, J_d^T (J_d u_d + J_i u_i + sigma) = 0.
     """
 
-    ties: Ties
+    constraints: Constraints
     numbers: np.ndarray
     rows: list[int]
     dependent: tuple[int, ...]
@@ -235,11 +235,11 @@ class _LinearRows:
     are_squared: bool = False
 
     def where_closed(self) -> _LinearRows:
-        """The same without entries that vanish wherever the ties hold, at parameters near the model's too."""
+        """The same without entries that vanish wherever the constraints hold, at parameters near the model's too."""
         zero = self.numbers == 0
         try:
             for seed in SHAKEN:
-                zero &= rows_where_closed(self.ties, generic_state(self.ties, seed, shaken=True)) == 0
+                zero &= rows_where_closed(self.constraints, generic_state(self.constraints, seed, shaken=True)) == 0
         except (DerivationError, MissingValues, NoValue):
             return self
         return replace(self, vanishing=frozenset((int(i), int(k)) for i, k in np.argwhere(zero)))
@@ -247,14 +247,14 @@ class _LinearRows:
     def lean(self, sharing: Sequence[int]) -> bool:
         """Whether the rows come to depend on one another where with those that share they do not.
 
-        |J_d|^2 / |J_d^T J_d of all| at states far from one another, at which the ties hold.
+        |J_d|^2 / |J_d^T J_d of all| at states far from one another, at which the constraints hold.
         """
         lengths = np.linalg.norm(self.numbers, axis=1, keepdims=True)
         rows, shares = [*self.rows, *sharing], []
         for seed in range(FAR_STATES):
             with suppress(DerivationError, MissingValues, NoValue, ZeroDivisionError):
-                state = generic_state(self.ties, seed, spreads=FAR)
-                J = (rows_where_closed(self.ties, state) / divisor(lengths))[rows]
+                state = generic_state(self.constraints, seed, spreads=FAR)
+                J = (rows_where_closed(self.constraints, state) / divisor(lengths))[rows]
                 J_d = J[:, self.dependent]
                 whole = np.linalg.det(J_d.T @ J_d)
                 if whole > RANK and rank(J) == len(self.rows):  # on another branch they need not follow
@@ -262,16 +262,16 @@ class _LinearRows:
         return min(shares, default=1.0) < LEAN * max(shares, default=1.0)
 
     def joined(self, sharing: Sequence[int]) -> _LinearRows:
-        """All of them together: u_d of least squares, which is exact where the ties hold."""
+        """All of them together: u_d of least squares, which is exact where the constraints hold."""
         return replace(self, rows=sorted([*self.rows, *sharing]), are_squared=True)
 
     def _entry(self, i: int, k: int) -> Scalar:
-        return 0 if (i, k) in self.vanishing else self.ties.J[i][k]
+        return 0 if (i, k) in self.vanishing else self.constraints.J[i][k]
 
     def solved(self) -> Any:
         """(A, b, blocks) of u_d = A u_i + b."""
         left = [[self._entry(i, k) for k in self.dependent] for i in self.rows]
-        right = [[*(-self._entry(i, k) for k in self.kept), -self.ties.sigma[i]] for i in self.rows]
+        right = [[*(-self._entry(i, k) for k in self.kept), -self.constraints.sigma[i]] for i in self.rows]
         if self.are_squared:
             columns = list(zip(*left, strict=True))
             left, right = (
@@ -301,7 +301,7 @@ def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A:
     return with_speeds_named(replace(reduced, names={**scope.names, **names}))
 
 
-def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> DependentBlock:
+def _named(constraints: Constraints, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> DependentBlock:
     taken = rows if len(rows) > len(names) else [rows[i] for i in block.equations]
-    owners = dict.fromkeys(ties.closing[i].tie for i in taken)
+    owners = dict.fromkeys(constraints.closing[i].constraint for i in taken)
     return DependentBlock(tuple(names[j] for j in block.unknowns), tuple(owners), cramer.determinant(block.matrix))

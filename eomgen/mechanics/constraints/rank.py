@@ -9,16 +9,16 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, NotYet
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
-from eomgen.mechanics.constraints.rows import Row, Ties, holds_identically, ties_of
+from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of, holds_identically
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of
 from eomgen.mechanics.kinematics.scene import ContactModes, SystemScene
 from eomgen.mechanics.kinematics.symbols import primitive, scope_of
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
-from eomgen.model.unbuilt import unbuilt_ties
-from eomgen.records import dataclass
+from eomgen.model.unbuilt import unbuilt_constraints
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, tangent
 from eomgen.symbolic.expression.formula import over
@@ -32,18 +32,19 @@ from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import LinearSystem, Pivots, general_solution
 
 # -------- freedom ---------------------------------------------------------------------------------------------
-# Model -> Freedom: the degrees of freedom by rank, beside the count by formula; redundant ties by name.
+# Model -> Freedom: the degrees of freedom by rank, beside the count by formula; redundant constraints by name.
 #
-# By rank:     f = nu - rank J  at a generic configuration in which the ties hold; of a quaternion's four rates its
+# By rank:     f = nu - rank J  at a generic configuration in which the constraints hold; of a quaternion's four rates
+# its
 # norm
 #              takes one.
-# By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given motions
+# By formula:  f = 3 Nb + 2 Np - sum of the components of joints, constraints and given motions
 #              (in space 6 Nb + 3 Np); it counts redundant components too, and then says too little.
 
 
 LONGER = 1e3  # times the length of another row: of another kind, as force and couple at a mechanism of micrometres
 TwistColumns = tuple[tuple[Vector, Vector], ...]
-RowName = tuple[str, int]  # of a tie, from 1
+RowName = tuple[str, int]  # of a constraint, from 1
 
 
 @dataclass(frozen=True)
@@ -51,12 +52,12 @@ class Redundant:
     """A row that holds what others hold already.
 
     Args:
-        tie, number: the row, from 1.
-        others: the other ties from which it follows.
-        by_joints: whether joints alone hold it, and no tie.
+        constraint, number: the row, from 1.
+        others: the other constraints from which it follows.
+        by_joints: whether joints alone hold it, and no constraint.
     """
 
-    tie: str
+    constraint: str
     number: int
     others: tuple[str, ...]
     by_joints: bool = False
@@ -71,11 +72,12 @@ class Freedom:
         by_formula: 3 Nb + 2 Np - the components, None where it was not counted.
         formula: the same as text.
         redundant: closing rows that follow from those declared before them; then rows that only react, and hold what
-            joints or other ties hold already.
+            joints or other constraints hold already.
         identical_rows: what the coordinates satisfy by themselves: it only carries a reaction.
         closing_rows: the others.
         not_counted: why not, or "".
-        integrability: what the rows of velocities alone are, None where there are none; freedoms in position may be
+        integrability: what the rows of velocities alone are, None where there are none; degrees of freedom in position
+            may be
             more than those in velocity.
     """
 
@@ -90,13 +92,13 @@ class Freedom:
 
     @property
     def identical(self) -> tuple[str, ...]:
-        """The ties with rows that only carry a reaction."""
-        return tuple(dict.fromkeys(tie for tie, _ in self.identical_rows))
+        """The constraints with rows that only carry a reaction."""
+        return tuple(dict.fromkeys(constraint for constraint, _ in self.identical_rows))
 
     @property
     def closing(self) -> tuple[str, ...]:
-        """The ties with rows that close."""
-        return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
+        """The constraints with rows that close."""
+        return tuple(dict.fromkeys(constraint for constraint, _ in self.closing_rows))
 
 
 def freedom_of(
@@ -106,53 +108,53 @@ def freedom_of(
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Freedom:
-    """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
+    """The degrees of freedom of a model, where its kinds are built; constraints that move dependent coordinates close.
 
     Args:
         modes: how contacts are that can end; what is not named is closed.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
-        DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
+        DerivationError: a constraint that cannot hold; a dependent coordinate that no constraint determines.
     """
     model = model_at(model, parameters, start)
-    waiting = dict.fromkeys(kind for _, kind in unbuilt_ties(model))
+    waiting = dict.fromkeys(kind for _, kind in unbuilt_constraints(model))
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
     try:
-        ties = ties_of(motion_of(scope_of(model)), modes=modes)
+        constraints = constraints_of(motion_of(scope_of(model)), modes=modes)
     except NotYet as error:
         return Freedom(not_counted=error.what)
-    if dependent_coordinates(ties.motion.scope):
-        elimination_of(ties)
-    count, formula = counted(ties)
-    identical = tuple((row.tie, row.number) for row in ties.rows if row.identical)
-    closing = tuple((row.tie, row.number) for row in ties.closing)
+    if dependent_coordinates(constraints.motion.scope):
+        elimination_of(constraints)
+    count, formula = counted(constraints)
+    identical = tuple((row.constraint, row.number) for row in constraints.rows if row.identical)
+    closing = tuple((row.constraint, row.number) for row in constraints.closing)
     try:
-        state = generic_state(ties)
-        redundant, integrability = redundant_rows(ties, state), integrability_of(ties)
-        shared = rows_held_twice(ties, redundant, state)
+        state = generic_state(constraints)
+        redundant, integrability = redundant_rows(constraints, state), integrability_of(constraints)
+        shared = rows_held_twice(constraints, redundant, state)
     except (DerivationError, MissingValues) as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     speeds = len(scope.symbols.u) - len(scope.quaternions)
-    by_rank = speeds - len(ties.closing) + len(redundant)
+    by_rank = speeds - len(constraints.closing) + len(redundant)
     return Freedom(by_rank, count, formula, (*redundant, *shared), identical, closing, integrability=integrability)
 
 
 # -- by formula ------------------------------------------------------------------------------------
 
 
-def counted(ties: Ties) -> tuple[int, str]:
+def counted(constraints: Constraints) -> tuple[int, str]:
     """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
-    motion = ties.motion
+    motion = constraints.motion
     of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
     particles = [link for link in motion.links if is_particle(motion, link)]
     bodies = [link for link in motion.links if link not in particles]
     free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
-    joints = sum(_components(ties, link, of_body, link.S) for link in bodies)
-    joints += sum(_components(ties, link, of_particle, _sliding(link.S)) for link in particles)
+    joints = sum(_components(constraints, link, of_body, link.S) for link in bodies)
+    joints += sum(_components(constraints, link, of_particle, _sliding(link.S)) for link in particles)
     driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
-    taken = [(joints, "joints"), (len(ties.rows), "ties"), (driven, "given motions")]
+    taken = [(joints, "joints"), (len(constraints.rows), "constraints"), (driven, "given motions")]
     total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
     text = " + ".join(f"{each}*{many} ({what})" for each, many, what in free if many)
     return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
@@ -165,15 +167,15 @@ def is_particle(motion: Motion, link: BodyLink) -> bool:
     return shape is not None and shape.is_point and (is_placed(link) or not turns)
 
 
-def _components(ties: Ties, link: BodyLink, free: int, columns: TwistColumns) -> int:
+def _components(constraints: Constraints, link: BodyLink, free: int, columns: TwistColumns) -> int:
     """How many components of motion the joint takes; what is placed, or has no joint, keeps all.
 
-    A variable that is a constant (`angle = 0`) is one more, unless a tie that this satisfies is counted for it.
+    A variable that is a constant (`angle = 0`) is one more, unless a constraint that this satisfies is counted for it.
     """
     if is_placed(link):
         return 0
-    constant = sum(column not in _ways(ties.motion, link) for column in columns)
-    satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in ties.rows)
+    constant = sum(column not in _ways(constraints.motion, link) for column in columns)
+    satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in constraints.rows)
     return free - len(columns) + max(0, constant - satisfied)
 
 
@@ -192,50 +194,54 @@ def _sliding(columns: TwistColumns) -> TwistColumns:
 # -- by rank ---------------------------------------------------------------------------------------
 
 
-def freedoms(ties: Ties, state: State | None = None) -> int:
+def degrees_of_freedom(constraints: Constraints, state: State | None = None) -> int:
     """nu - rank J; the state and the errors are those of `redundant_rows`."""
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     turning = sum(f"{four[0].name}'" in {u.name for u in scope.symbols.u} for four in scope.quaternions)
-    return len(scope.symbols.u) - turning - rank_of_ties(ties, state)
+    return len(scope.symbols.u) - turning - rank_of_constraints(constraints, state)
 
 
-def rank_of_ties(ties: Ties, state: State | None = None) -> int:
+def rank_of_constraints(constraints: Constraints, state: State | None = None) -> int:
     """rank J, how many closing rows are independent; the state and the errors are those of `redundant_rows`."""
-    return len(ties.closing) - len(redundant_rows(ties, state))
+    return len(constraints.closing) - len(redundant_rows(constraints, state))
 
 
-def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, ...]:
-    """The closing rows that follow from those before them, at a generic configuration in which the ties hold.
+def redundant_rows(constraints: Constraints, state: State | None = None) -> tuple[Redundant, ...]:
+    """The closing rows that follow from those before them, at a generic configuration in which the constraints hold.
 
     Args:
         state: such a configuration, where one is known already.
     Raises:
-        MissingValues: the ties cannot be closed without values for the parameters.
+        MissingValues: the constraints cannot be closed without values for the parameters.
         DerivationError: they do not close near the start.
     """
-    closing = ties.closing
+    closing = constraints.closing
     if not closing:
         return ()
-    J = rows_where_closed(ties, state or generic_state(ties))
+    J = rows_where_closed(constraints, state or generic_state(constraints))
     kept = independent_rows(J, RANK_NEARBY)
     return tuple(
-        Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
+        Redundant(
+            row.constraint,
+            row.number,
+            _others(row.constraint, J[i], [(closing[k].constraint, J[k]) for k in kept if k < i]),
+        )
         for i, row in enumerate(closing)
         if i not in kept
     )
 
 
-def rows_alike(ties: Ties) -> tuple[int, ...]:
+def rows_alike(constraints: Constraints) -> tuple[int, ...]:
     """Of each closing row a number that it has together with those with which it shares what it holds.
 
     Which of them is the one that follows may change along a motion: d cos q = 0 and d sin q = 0 hold d in turns. Rows
     are of one kind where their lengths are, at a generic state, within LONGER of one another.
     """
-    own = tuple(range(len(ties.closing)))
+    own = tuple(range(len(constraints.closing)))
     if len(own) < 2:
         return own
     try:
-        J = rows_where_closed(ties, generic_state(ties))
+        J = rows_where_closed(constraints, generic_state(constraints))
     except (DerivationError, MissingValues, NoValue):
         return own
     kept, lengths, found = independent_rows(J, RANK_NEARBY), np.linalg.norm(J, axis=1), list(own)
@@ -249,7 +255,7 @@ def rows_alike(ties: Ties) -> tuple[int, ...]:
     return tuple(found)
 
 
-def rows_held_twice(ties: Ties, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:
+def rows_held_twice(constraints: Constraints, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:
     """The rows that the coordinates satisfy and that joints, closing rows or such rows before them hold already.
 
     W^T xi of such a row depends on those of the others in all ways that the joints leave the bodies: where it carries
@@ -257,35 +263,40 @@ def rows_held_twice(ties: Ties, redundant: Sequence[Redundant], state: State) ->
 
     Args:
         redundant: closing rows that follow from others.
-        state: a generic configuration in which the ties hold.
+        state: a generic configuration in which the constraints hold.
     """
-    dropped = {(row.tie, row.number) for row in redundant}
-    closing = [row for row in ties.closing if row.wrenches and (row.tie, row.number) not in dropped]
-    reacting = [row for row in ties.rows if row.identical and row.wrenches and is_zero(row.direct)]
+    dropped = {(row.constraint, row.number) for row in redundant}
+    closing = [row for row in constraints.closing if row.wrenches and (row.constraint, row.number) not in dropped]
+    reacting = [row for row in constraints.rows if row.identical and row.wrenches and is_zero(row.direct)]
     if not reacting:
         return ()
     rows = [*closing, *reacting]
     touched = {body for row in reacting for body, _ in row.wrenches}
-    lines = closed_entries(powers_of_rows(ties.motion, rows, state, touched))
+    lines = closed_entries(powers_of_rows(constraints.motion, rows, state, touched))
     kept = independent_rows(lines, RANK_NEARBY)
     found = []
     for i in range(len(closing), len(rows)):
         if i not in kept:
-            before = [(rows[k].tie, lines[k]) for k in kept if k < i]
+            before = [(rows[k].constraint, lines[k]) for k in kept if k < i]
             alone = not np.any(lines[i])
             found.append(
-                Redundant(rows[i].tie, rows[i].number, () if alone else _others(rows[i].tie, lines[i], before), alone)
+                Redundant(
+                    rows[i].constraint,
+                    rows[i].number,
+                    () if alone else _others(rows[i].constraint, lines[i], before),
+                    alone,
+                )
             )
     return tuple(found)
 
 
-def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:
-    """The ties that make up a redundant row."""
+def _others(constraint: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:
+    """The constraints that make up a redundant row."""
     if not kept:
         return ()
     shares = np.linalg.lstsq(np.array([row for _, row in kept]).T, line, rcond=None)[0]
     names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > SHARE)
-    return tuple(name for name in dict.fromkeys(names) if name != tie)
+    return tuple(name for name in dict.fromkeys(names) if name != constraint)
 
 
 # -------- ways of bodies --------------------------------------------------------------------------------------
@@ -293,7 +304,8 @@ def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> t
 #
 #     xi_i = Ad(parent -> i) xi_parent + S_i w_i,   w_i free;   of a body that is placed, all six of xi_i free
 #
-# Coordinates that move several joints together, and ties, are left out of it: a row of a tie whose wrenches do no
+# Coordinates that move several joints together, and constraints, are left out of it: a row of a constraint whose
+# wrenches do no
 # work on any of these ways is held by joints alone.
 
 
@@ -363,7 +375,8 @@ def _numbers(scalars: Sequence[Scalar], state: State) -> np.ndarray:
 
 
 # -------- integrability ---------------------------------------------------------------------------------------
-# Ties -> what the rows of velocities alone really are: holonomic or not, and how many freedoms there are in position.
+# Constraints -> what the rows of velocities alone really are: holonomic or not, and how many degrees of freedom there
+# are in position.
 #
 # Over y = (q, t) a row J q' + sigma = 0 is a form w = J dq + sigma dt; rows with a gap, the norms of quaternions and
 # driven coordinates are others, each of them integrable. By Frobenius a row can be integrated together with these
@@ -372,7 +385,8 @@ def _numbers(scalars: Sequence[Scalar], state: State) -> np.ndarray:
 #     dw(X, Y) = X^T (dw_b/dy_a - dw_a/dy_b) Y = 0   for all X, Y that all of them allow.
 #
 # What velocities reach is spanned by the fields X and their Lie brackets [X, Y] = (dY/dy) X - (dX/dy) Y, taken until
-# nothing new comes: its dimension, less one for t, counts the freedoms in position (Rashevskii, Chow). Source: Bloch,
+# nothing new comes: its dimension, less one for t, counts the degrees of freedom in position (Rashevskii, Chow).
+# Source: Bloch,
 # Nonholonomic Mechanics and Control, 2nd ed., sections 2.2 and 4.1.
 
 
@@ -386,12 +400,12 @@ class VelocityRow:
     """A row of velocities alone.
 
     Args:
-        tie, number: the row, from 1.
+        constraint, number: the row, from 1.
         integrable: it says the same as a gap.
         integral: phi(q, t), 0 at the start, that it keeps at zero, where it was found in closed form; else None.
     """
 
-    tie: str
+    constraint: str
     number: int
     integrable: bool
     integral: Scalar | None = None
@@ -403,7 +417,7 @@ class Integrability:
 
     Args:
         rows: each of them.
-        positions: the freedoms in position; those in velocity are fewer where rows are not integrable.
+        positions: the degrees of freedom in position; those in velocity are fewer where rows are not integrable.
     """
 
     rows: tuple[VelocityRow, ...]
@@ -418,10 +432,10 @@ class _Forms:
         y: the coordinates, then t.
         held: of the rows that are integrable by what they are.
         moving: (row, form) of those of velocities alone.
-        state: a generic one in which the ties hold.
+        state: a generic one in which the constraints hold.
     """
 
-    ties: Ties
+    constraints: Constraints
     y: tuple[Node, ...]
     held: tuple[DifferentialForm, ...]
     moving: tuple[tuple[Row, DifferentialForm], ...]
@@ -449,18 +463,18 @@ class _Forms:
         return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < RANK * size)
 
 
-def integrability_of(ties: Ties) -> Integrability | None:
+def integrability_of(constraints: Constraints) -> Integrability | None:
     """What the closing rows of velocities alone are; None where there are none.
 
     Args:
-        ties: over the rates, before any elimination.
+        constraints: over the rates, before any elimination.
     Raises:
-        MissingValues, DerivationError: the ties do not close near the start.
+        MissingValues, DerivationError: the constraints do not close near the start.
     """
-    moving = tuple(row for row in ties.closing if row.gap is None)
+    moving = tuple(row for row in constraints.closing if row.gap is None)
     if not moving:
         return None
-    forms = _forms_of(ties, generic_state(ties))
+    forms = _forms_of(constraints, generic_state(constraints))
     together = forms.allowed([form for _, form in forms.moving])
     complete = all(forms.closes(form, together) for _, form in forms.moving)
     rows = [_judged(forms, row, form, complete) for row, form in forms.moving]
@@ -470,11 +484,13 @@ def integrability_of(ties: Ties) -> Integrability | None:
 
 def _judged(forms: _Forms, row: Row, form: DifferentialForm, complete: bool) -> VelocityRow:
     alone = forms.closes(form, forms.allowed([form]))
-    return VelocityRow(row.tie, row.number, alone or complete, integral_of(forms.ties, form) if alone else None)
+    return VelocityRow(
+        row.constraint, row.number, alone or complete, integral_of(forms.constraints, form) if alone else None
+    )
 
 
-def _forms_of(ties: Ties, state: State) -> _Forms:
-    scope = ties.motion.scope
+def _forms_of(constraints: Constraints, state: State) -> _Forms:
+    scope = constraints.motion.scope
     q, t = scope.symbols.q, scope.symbols.t
     free = [k for k, x in enumerate(q) if not scope.model.coordinates[x.name].driven]
 
@@ -483,12 +499,12 @@ def _forms_of(ties: Ties, state: State) -> _Forms:
 
     rows = [
         (row, form(dict(zip(free, J, strict=True)), sigma))
-        for row, J, sigma in zip(ties.closing, ties.J, ties.sigma, strict=True)
+        for row, J, sigma in zip(constraints.closing, constraints.J, constraints.sigma, strict=True)
     ]
     driven = [form({k: 1}, -nu) for k, nu in enumerate(scope.nu) if k not in free]
     norms = [form({q.index(e): e for e in four}, 0) for four in scope.quaternions]
     held = (*(w for row, w in rows if row.gap is not None), *driven, *norms)
-    return _Forms(ties, (*q, t), held, tuple((row, w) for row, w in rows if row.gap is None), state)
+    return _Forms(constraints, (*q, t), held, tuple((row, w) for row, w in rows if row.gap is None), state)
 
 
 # -- what is reached -------------------------------------------------------------------------------
@@ -535,9 +551,9 @@ def _rank(rows: Sequence[np.ndarray]) -> int:
 # -- in closed form --------------------------------------------------------------------------------
 
 
-def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
+def integral_of(constraints: Constraints, form: DifferentialForm) -> Scalar | None:
     """phi(q, t), 0 at the start, with dphi = k w for a factor k among 1, 1/w_i and 1/(w_i w_j); None: none found."""
-    scope = ties.motion.scope
+    scope = constraints.motion.scope
     y = (*scope.symbols.q, scope.symbols.t)
     positive = scope.positive
     entries = [simplest(x, Work.FORMULA, positive) for x in form]
@@ -549,7 +565,7 @@ def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
         except (DerivationError, NoValue, ZeroDivisionError):  # no closed form
             found = None
         if found is not None:
-            return simplest(found - SystemScene(ties.motion).start(found), Work.FORMULA, positive)
+            return simplest(found - SystemScene(constraints.motion).start(found), Work.FORMULA, positive)
     return None
 
 

@@ -1,4 +1,4 @@
-"""Motion -> Ties: the rows of the constraints."""
+"""Motion -> Constraints: the rows of the constraints."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ModelError, NotYet, Problem
+from eomgen.frozen import RECALLED, dataclass
 from eomgen.mechanics.kinematics.loads import body_wrench, in_ground_axes
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of, slide_of
 from eomgen.mechanics.kinematics.scene import (
@@ -23,12 +24,11 @@ from eomgen.mechanics.kinematics.scene import (
     start_values,
 )
 from eomgen.mechanics.kinematics.symbols import scope_of, shorter_row
-from eomgen.model.constraints.row import Edge, TieRow
+from eomgen.model.constraints.row import ConstraintRow, Edge
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.parts import Model
-from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.model.unbuilt import unbuilt_constraints
 from eomgen.model.values import exact_parameters
-from eomgen.records import RECALLED, dataclass
 from eomgen.symbolic.exact.equality import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.formula import over, sqrt
@@ -39,8 +39,8 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, PRIME_FIELD, evaluate, fif
 from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE, SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
 
-# -------- ties ------------------------------------------------------------------------------------------------
-# Motion -> Ties: the rows of the constraints.
+# -------- constraints ------------------------------------------------------------------------------------------------
+# Motion -> Constraints: the rows of the constraints.
 #
 # A row holds a wrench on each body that it touches; the motion that it forbids is the dual:
 #
@@ -56,24 +56,25 @@ STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
 
 @dataclass(frozen=True)
 class Row:
-    """One scalar row of a tie.
+    """One scalar row of a constraint.
 
     Args:
-        tie, number: its name and place in the tie, from 1.
+        constraint, number: its name and place in the constraint, from 1.
         wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation. Seen from a body
-            that carries all that is held, that body takes what makes their sum 0, which it is where the tie holds.
+            that carries all that is held, that body takes what makes their sum 0, which it is where the constraint
+            holds.
         direct: s_t, the part that no twist sees: the slide of points in their bodies; of an equation all of it.
-        velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
+        velocity: W^T xi + s_t as a function of q, u, t: zero when the constraint holds.
         gap: phi(q, t), or None where only the velocity row is given.
         status: "identical": the coordinates satisfy the row by themselves; "eliminated": it determines a dependent
             coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
         component: "x", "y", "z", "n", "t", "couple", "tension", or "".
-        pushes: the forces and couples behind `wrenches`, as the tie gave them.
+        pushes: the forces and couples behind `wrenches`, as the constraint gave them.
         tangent: of a contact that has friction, the forces and couples for a unit of friction along it.
         sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
         friction: None, or the friction of a unit of lam along `tangent`, for instance -mu sign(v).
         eliminates: the dependent coordinate that an "eliminated" row determines, or "".
-        part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
+        part: what of the constraint it belongs to, by name: the member of a truss; "" elsewhere.
         cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
         shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
         round: of a bilateral contact on a line: its friction is for a unit of |N|, of which this row's
@@ -81,7 +82,7 @@ class Row:
         carrier: the body in whose axes the row is written, which carries all that it holds; None: the ground.
     """
 
-    tie: str
+    constraint: str
     number: int
     wrenches: tuple[tuple[str, Wrench], ...]
     direct: Scalar
@@ -107,12 +108,12 @@ class Row:
 
     @property
     def label(self) -> str:
-        return f"lam({self.tie}, {self.number})"
+        return f"lam({self.constraint}, {self.number})"
 
 
 @dataclass(frozen=True)
-class Ties:
-    """All rows of all ties, and the matrices of those that close."""
+class Constraints:
+    """All rows of all constraints, and the matrices of those that close."""
 
     motion: Motion
     rows: tuple[Row, ...]
@@ -146,61 +147,61 @@ class Ties:
         return tuple(row.gap for row in self.closing)
 
 
-def ties_of(
+def constraints_of(
     motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: ContactModes | None = None
-) -> Ties:
+) -> Constraints:
     """The rows of every constraint of the model.
 
     Args:
-        used: {(tie, number): coordinate} of the rows through which dependent coordinates were eliminated.
+        used: {(constraint, number): coordinate} of the rows through which dependent coordinates were eliminated.
         modes: how contacts are that can end, slide or stick.
     Raises:
         NotYet: a kind whose rows this version does not build.
     """
-    for where, what in unbuilt_ties(motion.scope.model):
+    for where, what in unbuilt_constraints(motion.scope.model):
         raise NotYet(
             f"the rows of '{what}' are not built yet",
             where,
-            mend="declare it by constraints that are: see eomgen schema",
+            fix="declare it by constraints that are: see eomgen schema",
         )
     rows = []
     for name, constraint in motion.scope.model.constraints.items():
         scene = SystemScene(motion, f"{constraint.table}.{name}")
         mode = (modes or {}).get(name, CLOSED)
-        for number, tie_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
+        for number, constraint_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
             label = (name, number)
-            row = _row(motion, name, number, tie_row, used=label in (used or {}))
+            row = _row(motion, name, number, constraint_row, used=label in (used or {}))
             row = replace(row, eliminates=(used or {}).get(label, ""))
             rows.append(_with_friction(scene, constraint, row, mode))
     stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
     rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
-    return Ties(motion, tuple(rows))
+    return Constraints(motion, tuple(rows))
 
 
-def rows_of_tie(motion: Motion, name: str) -> tuple[Row, ...]:
-    """The rows that a tie has while it is closed, whether it is so or not: how far an open contact is open."""
+def rows_of_constraint(motion: Motion, name: str) -> tuple[Row, ...]:
+    """The rows that a constraint has while it is closed, whether it is so or not: how far an open contact is open."""
     constraint = motion.scope.model.constraints[name]
     rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
     return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
 
 
-def _held_on_path(motion: Motion, link: BodyLink) -> TieRow:
+def _held_on_path(motion: Motion, link: BodyLink) -> ConstraintRow:
     """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
     _, v = link.S[0]
     along = apply(link.pose.R, v)
     parent = None if link.parent == GROUND else motion.links[link.parent].name
     pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), times(-1, along)))
-    return TieRow(pushes, None, component="t", material=True)
+    return ConstraintRow(pushes, None, component="t", material=True)
 
 
 def _dragged(name: str) -> DerivationError:
     """That what is driven slides a contact which was to stick."""
     what = f"'{name}' cannot stick: what is driven slides it, and nothing that is free moves it"
-    mend = "at rest its friction and the drive share one force: leave the friction out, or ask `solve`, where it slides"
-    return DerivationError(what, f"constraints.{name}", mend)
+    fix = "at rest its friction and the drive share one force: leave the friction out, or ask `solve`, where it slides"
+    return DerivationError(what, f"constraints.{name}", fix)
 
 
-def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> Row:
+def _row(motion: Motion, name: str, number: int, row: ConstraintRow, *, used: bool) -> Row:
     seen, pushes = (motion, row.pushes) if row.carrier is None else (motion.seen_from(row.carrier), row.carried)
     wrenches = _wrenches(seen, pushes)
     if row.pushes:
@@ -224,9 +225,9 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
     if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
         if row.gap is None and row.rate is None:
             raise _dragged(name)
-        what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
+        what, fix = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
-        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
+        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", fix)
     return Row(
         name,
         number,
@@ -247,7 +248,7 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
     )
 
 
-def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
+def _dual(motion: Motion, row: ConstraintRow, pushes: tuple[Push, ...]) -> Scalar:
     """The velocity that is dual to pushes of a row."""
     return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
 
@@ -382,18 +383,25 @@ def _settled(x: Scalar, verdict: Equality | None) -> bool:
 
 
 # -------- edges -----------------------------------------------------------------------------------------------
-# Motion -> Edges: where a tie no longer says at which place it holds its bodies (a wheel that lies flat).
+# Motion -> Edges: where a constraint no longer says at which place it holds its bodies (a wheel that lies flat).
 #
-# Beyond its limits a tie goes on as it was, though what it stands for does not: a run that passes them is told of it.
+# Beyond its limits a constraint goes on as it was, though what it stands for does not: a run that passes them is told
+# of it.
 
 
 LOOKED = 200  # rows of a run at which limits are looked at
 
 
 def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
-    """Of all ties of the model but those that are open."""
-    ties = [(name, tie) for name, tie in motion.scope.model.constraints.items() if name not in open]
-    return tuple(edge for name, tie in ties for edge in tie.edges(SystemScene(motion, f"{tie.table}.{name}")))
+    """Of all constraints of the model but those that are open."""
+    constraints = [
+        (name, constraint) for name, constraint in motion.scope.model.constraints.items() if name not in open
+    ]
+    return tuple(
+        edge
+        for name, constraint in constraints
+        for edge in constraint.edges(SystemScene(motion, f"{constraint.table}.{name}"))
+    )
 
 
 def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
@@ -402,26 +410,26 @@ def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
 
 
 def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, ...]:
-    """The limits of ties beyond which a run goes, with the first instant that is seen, of LOOKED rows.
+    """The limits of constraints beyond which a run goes, with the first instant that is seen, of LOOKED rows.
 
     Args:
         t, q: instants, n; coordinates in the model's order, n x nq.
     """
-    if not len(t) or not any(tie.thread() for tie in model.constraints.values()):
+    if not len(t) or not any(constraint.thread() for constraint in model.constraints.values()):
         return ()
     motion, found = motion_of(scope_of(model)), []
     symbols, known = motion.scope.symbols, exact_parameters(model)
     p = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     looked = np.unique(np.linspace(0, len(t) - 1, LOOKED).round().astype(int))
-    for name, tie in model.constraints.items():
-        for limit in tie.limits(SystemScene(motion, f"{tie.table}.{name}")):
+    for name, constraint in model.constraints.items():
+        for limit in constraint.limits(SystemScene(motion, f"{constraint.table}.{name}")):
             for k in looked:
                 state = p | {symbols.t: float(t[k])} | dict(zip(symbols.q, map(float, q[k]), strict=True))
                 if evaluate((limit.vanishes,), state, FLOAT)[0] < 0:
                     what = (
                         f"{limit.words} at t = {t[k]:.4g} s: from there on it is led straight on, which it would not be"
                     )
-                    found.append(Problem(f"{tie.table}.{name}", what, mend="end the run before"))
+                    found.append(Problem(f"{constraint.table}.{name}", what, fix="end the run before"))
                     break
     return tuple(found)
 

@@ -8,12 +8,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, joint_forces, placeless_forces
 from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass
 from eomgen.mechanics.kinematics.loads import Loads
 from eomgen.mechanics.kinematics.motion import GROUND, Motion
 from eomgen.mechanics.kinematics.tree import Branch, applied_wrenches, branches_of, inertia_wrench, rate_matrix
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
@@ -48,7 +48,7 @@ def accelerations_at(equations: EquationsOfMotion, state: State) -> np.ndarray:
     """a from M a = forcing + J^T lam, J a + gamma = 0 at a state, right to double precision whatever the condition.
 
     Raises:
-        NoValue: some motion that the ties allow moves no mass at the state.
+        NoValue: some motion that the constraints allow moves no mass at the state.
     """
     return np.array([float(x) for x in exact_accelerations(equations, state)])
 
@@ -57,7 +57,7 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
     """The same with more digits than doubles have: what they leave of the right side is solved for again.
 
     Raises:
-        NoValue: some motion that the ties allow moves no mass at the state.
+        NoValue: some motion that the constraints allow moves no mass at the state.
     """
     n, k = len(equations.M), len(equations.J)
     if n == 0:
@@ -66,7 +66,7 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
     values = evaluate((*entries, *equations.forcing, *equations.gamma), state, fifty_digits())
     wide = np.array(values[: n * (n + k)], dtype=object).reshape(n + k, n)
     M, J = wide[:n].astype(float), closed_entries(wide[n:].astype(float))
-    if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the ties may say
+    if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the constraints may say
         raise NoValue("the mass matrix is singular")
     wide[n:] *= J != 0
     regular = k == 0 or independent(J, smallest=LEAST_CHANGE)
@@ -348,17 +348,17 @@ def stabilized(equations: EquationsOfMotion, rates: PullBack) -> EquationsOfMoti
     Args:
         rates: alpha, beta [1/s].
     Raises:
-        UsageError: a rate that is no positive number; a tie that has no multiplier to pull by.
+        UsageError: a rate that is no positive number; a constraint that has no multiplier to pull by.
     """
     alpha, beta = (_exact(rate) for rate in rates)
-    taken = dict.fromkeys(row.tie for row in equations.system.ties.rows if row.status == "eliminated")
+    taken = dict.fromkeys(row.constraint for row in equations.system.constraints.rows if row.status == "eliminated")
     if taken:
         names = ", ".join(f"'{name}'" for name in taken)
         raise UsageError(
             f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
-            mend="take the projection, or declare no coordinate dependent",
+            fix="take the projection, or declare no coordinate dependent",
         )
-    rows = zip(equations.gamma, equations.system.ties.closing, equations.phi, strict=True)
+    rows = zip(equations.gamma, equations.system.constraints.closing, equations.phi, strict=True)
     pulling = (g + 2 * alpha * row.velocity + (0 if phi is None else beta * beta * phi) for g, row, phi in rows)
     return replace(equations, gamma=tuple(pulling))
 
@@ -366,5 +366,5 @@ def stabilized(equations: EquationsOfMotion, rates: PullBack) -> EquationsOfMoti
 def _exact(rate: float) -> Fraction:
     """A decimal as it was written."""
     if not 0 < rate < float("inf"):
-        raise UsageError(f"Baumgarte's rates must be positive, not {rate:g}", mend="give alpha and beta in 1/s")
+        raise UsageError(f"Baumgarte's rates must be positive, not {rate:g}", fix="give alpha and beta in 1/s")
     return fraction_of(repr(float(rate)))

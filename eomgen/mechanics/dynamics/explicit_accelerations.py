@@ -52,7 +52,7 @@ def by_factors(
     gamma = [equations.gamma[m] for m in kept]
     loads: list[tuple[ScalarRow, list[Scalar]]] = [(equations.forcing, gamma)]
     loads += [(push, [0] * len(kept)) for push in pushes]
-    if any(is_zero(row[k]) for k, row in enumerate(M)):  # the ties alone say what some acceleration is
+    if any(is_zero(row[k]) for k, row in enumerate(M)):  # the constraints alone say what some acceleration is
         across = [[row[k] for row in J] for k in n]
         M = tuple(tuple(M[i][j] + inner(across[i], across[j]) for j in n) for i in n)
         loads = [(tuple(F[k] - inner(across[k], bias) for k in n), bias) for F, bias in loads]
@@ -82,12 +82,12 @@ def _entries(row: ScalarRow) -> dict[int, Scalar]:
 
 def regular_rows(system: System) -> list[int]:
     """The closing rows that do not follow from others."""
-    dropped = {(row.tie, row.number) for row in redundant_rows(system.ties)}
-    return [i for i, row in enumerate(system.ties.closing) if (row.tie, row.number) not in dropped]
+    dropped = {(row.constraint, row.number) for row in redundant_rows(system.constraints)}
+    return [i for i, row in enumerate(system.constraints.closing) if (row.constraint, row.number) not in dropped]
 
 
 def by_short_rows(equations: EquationsOfMotion, simple: Callable[[Scalar], Scalar]) -> dict[Node, Scalar] | None:
-    """a and lam by determinants of entries at their simplest, where ties hold fixed ratios of rates; else None.
+    """a and lam by determinants of entries at their simplest, where constraints hold fixed ratios of rates; else None.
 
     A closing row is divided by that entry which leaves it shortest: a gear's row then holds two ratios of radii, and no
     factor of it comes back squared in every minor.

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.errors import DerivationError, ModelError
+from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.dynamics.system import (
     EquationsOfMotion,
     System,
@@ -23,7 +24,6 @@ from eomgen.mechanics.kinematics.tree import Branch, applied_wrenches, bias_forc
 from eomgen.model.constraints.equation import NodeBalance
 from eomgen.model.fields import Table
 from eomgen.model.parts import Body, Coordinate, Model
-from eomgen.records import dataclass, recalled
 from eomgen.symbolic.expression.derivative import (
     depends_on,
     derivative,
@@ -323,25 +323,28 @@ def derived_by(method: str, system: System) -> EquationsOfMotion:
 #
 #     0 = Q_k(q, q', t)        of a free coordinate k with M_kj = 0 for all j, in place of M_k a + c_k = Q_k
 #
-# Between springs it is a tie of places, beside a damper one of rates: the node's rate is that of a first-order state.
-# The multiplier of such a tie is 0, as nothing else is left along the coordinate; all others keep their equations.
+# Between springs it is a constraint of places, beside a damper one of rates: the node's rate is that of a first-order
+# state.
+# The multiplier of such a constraint is 0, as nothing else is left along the coordinate; all others keep their
+# equations.
 
 
-PREFIX = "balance_of_"  # of a tie, before its coordinate
+PREFIX = "balance_of_"  # of a constraint, before its coordinate
 LONGEST = 2_000  # characters of a balance that stands as an equation
 
 
 def with_nodes_balanced(model: Model) -> Model:
-    """The model with the balance of every massless node as a tie, from which its coordinate follows; the same where
+    """The model with the balance of every massless node as a constraint, from which its coordinate follows; the same
+    where
     there is none, or where what pushes one is no spring or damper."""
     return recalled(model, with_nodes_balanced, lambda: _balanced(model))
 
 
-def told_of_nodes(model: Model) -> tuple[str, ...]:
+def reported_of_nodes(model: Model) -> tuple[str, ...]:
     """What such a model assumes, in words."""
-    ties = [name for name, tie in model.constraints.items() if isinstance(tie, NodeBalance)]
+    constraints = [name for name, constraint in model.constraints.items() if isinstance(constraint, NodeBalance)]
     follows = "moves no mass: it follows from the balance of what pushes it"
-    return tuple(f"{name.removeprefix(PREFIX)} {follows} ({name})" for name in ties)
+    return tuple(f"{name.removeprefix(PREFIX)} {follows} ({name})" for name in constraints)
 
 
 def _balanced(model: Model) -> Model:
@@ -353,12 +356,12 @@ def _balanced(model: Model) -> Model:
         found = dict(_balances(equations, free))
         if not found:
             return model
-        ties = {PREFIX + name: tie for name, tie in found.items()}
-        moved = {name: _following(model.coordinates[name], tie) for name, tie in found.items()}
+        constraints = {PREFIX + name: constraint for name, constraint in found.items()}
+        moved = {name: _following(model.coordinates[name], constraint) for name, constraint in found.items()}
         return replace(
             model,
             coordinates=Table({**model.coordinates, **moved}),
-            constraints=Table({**model.constraints, **ties}),
+            constraints=Table({**model.constraints, **constraints}),
         )
     except (ModelError, DerivationError):  # whoever needs accelerations says what is missing
         return model
@@ -371,16 +374,16 @@ def _is_lean(body: Body) -> bool:
     return not body.parts and (not given or any(x.literal == 0 for x in given))
 
 
-def _following(coordinate: Coordinate, tie: NodeBalance) -> Coordinate:
-    """The coordinate that follows: of a tie of places its start is a guess."""
-    if tie.gap is None:
+def _following(coordinate: Coordinate, constraint: NodeBalance) -> Coordinate:
+    """The coordinate that follows: of a constraint of places its start is a guess."""
+    if constraint.gap is None:
         return replace(coordinate, dependent=True)
     near = coordinate.start if coordinate.near is None else coordinate.near
     return replace(coordinate, dependent=True, start=None, speed=None, near=near)
 
 
 def _balances(equations: EquationsOfMotion, free: list[str]) -> Iterator[tuple[str, NodeBalance]]:
-    """(coordinate, 0 = Q_k) of those that move no mass, that no tie holds, and that springs or dampers push."""
+    """(coordinate, 0 = Q_k) of those that move no mass, that no constraint holds, and that springs or dampers push."""
     symbols = equations.symbols
     q_of: Mapping[str, Node] = {f"{q.name}'": q for q in symbols.q}
     massless = [k for k, row in enumerate(equations.M) if all(is_zero(x) for x in row)]

@@ -8,7 +8,7 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, load_row, summed
 from eomgen.mechanics.kinematics.loads import weights
 from eomgen.mechanics.kinematics.motion import velocity_of
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.formula import inner
@@ -37,7 +37,7 @@ def coriolis_of(equations: EquationsOfMotion) -> ScalarRows:
     rates = tuple(x.name for x in u) == tuple(f"{x.name}'" for x in q)
     if not rates:
         what = "C of C u = c is that of Christoffel where the speeds are the rates of all coordinates"
-        raise DerivationError(what, mend="take c, or a model without dependent or driven coordinates and other speeds")
+        raise DerivationError(what, fix="take c, or a model without dependent or driven coordinates and other speeds")
     slopes = [jacobian(row, q) for row in equations.M]  # slopes[i][j][k] = dM_ij/dq_k
     half = Fraction(1, 2)
     C = tuple(
@@ -47,7 +47,7 @@ def coriolis_of(equations: EquationsOfMotion) -> ScalarRows:
         for i in range(n)
     )
     if not equal_at_random_states(zip((inner(row, u) for row in C), equations.c, strict=True)).equal:
-        raise DerivationError("c has terms besides C u: something moves as a function of time", mend="take c")
+        raise DerivationError("c has terms besides C u: something moves as a function of time", fix="take c")
     return C
 
 
@@ -59,7 +59,7 @@ def jacobian_of_point(system: System, point: str) -> ScalarRows:
     """
     model = system.scope.model
     if point not in model.named_points:
-        raise UsageError(f"no point '{point}'", mend=nearest(point, model.named_points))
+        raise UsageError(f"no point '{point}'", fix=nearest(point, model.named_points))
     velocity = velocity_of(system.motion, system.motion.place(point))
     return jacobian(velocity[: 2 if model.space == "plane" else 3], system.symbols.u)
 
@@ -69,7 +69,7 @@ def jacobian_of_point(system: System, point: str) -> ScalarRows:
 #
 # q' = N u + nu,  [[M, -J^T], [J, 0]] (u', lam) = (forcing, -gamma).
 #
-# sympy knows no multipliers: they are the derivatives of further speeds, the impulses of the ties.
+# sympy knows no multipliers: they are the derivatives of further speeds, the impulses of the constraints.
 
 
 def sympy_system(equations: EquationsOfMotion) -> Any:
@@ -85,12 +85,12 @@ def sympy_system(equations: EquationsOfMotion) -> Any:
     from eomgen.symbolic.print.sympy_form import symbol, to_sympy
 
     if equations.friction:
-        raise DerivationError("friction that hangs on the reactions has no mass matrix", mend="take `rhs`, or codegen")
+        raise DerivationError("friction that hangs on the reactions has no mass matrix", fix="take `rhs`, or codegen")
     own, t = equations.symbols, dynamicsymbols._t
     n, k = len(own.u), len(equations.J)
     moving = (*own.q, *own.u, *own.inputs.values())
     functions = {symbol(x.name): Function(x.name.replace("'", "_dot"))(t) for x in moving}
-    impulses = [Function(f"impulse_{row.tie}_{row.number}")(t) for row in equations.system.ties.closing]
+    impulses = [Function(f"impulse_{row.constraint}_{row.number}")(t) for row in equations.system.constraints.closing]
     rows: list[ScalarRow] = [(*row, *(-J[i] for J in equations.J)) for i, row in enumerate(equations.M)]
     rows += [(*row, *(0 for _ in equations.J)) for row in equations.J]
     rates = equations.system.scope.rates

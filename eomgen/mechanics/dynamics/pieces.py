@@ -8,18 +8,18 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import (
     begun_state,
     closed,
     generic_state,
     movable,
     of_50_digits,
-    on_unit_spheres,
+    on_unit_norms,
 )
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, generalized_forces
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import function
@@ -57,7 +57,8 @@ ROUNDS = 3  # of entering pieces from those found
 STEPS, LONG = 24, 0.1  # steps along the own motion, and of how many seconds
 AROUND = (0.1, 1.0, 3.0)  # of the size of a coordinate and 1: how far from the start states are drawn
 DRAWN = 4  # at each of these distances
-OPEN = 2  # draws that close no ties, each by several roots, after which ties that do not close at the start are left
+# draws that close no constraints, after which those that do not close at the start are left
+OPEN = 2
 
 
 @dataclass(frozen=True)
@@ -296,9 +297,9 @@ class _Search:
 
     @cached_property
     def _begun(self) -> State | None:
-        """The model's own start, its ties closed; None where it has none."""
+        """The model's own start, its constraints closed; None where it has none."""
         try:
-            return begun_state(self._system.ties)
+            return begun_state(self._system.constraints)
         except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):
             return None
 
@@ -320,10 +321,10 @@ class _Search:
                     return
 
     def _around(self, begun: State | None, spread: float, rng: Random) -> State | None:
-        ties, symbols = self._system.ties, self._system.symbols
+        constraints, symbols = self._system.constraints, self._system.symbols
         try:
             if begun is None:
-                return generic_state(ties, rng)
+                return generic_state(constraints, rng)
             moved = {x: begun[x] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[x])) for x in symbols.q}
             moved |= {u: begun[u] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[u])) for u in symbols.u}
             moved |= {symbols.t: begun[symbols.t] + of_50_digits(spread * rng.uniform(0, 1))}
@@ -333,9 +334,13 @@ class _Search:
             return None
 
     def _closed(self, state: State) -> State | None:
-        ties = self._system.ties
-        state = state | on_unit_spheres(self._system.scope.quaternions, state)
-        return state if all(row.identical for row in ties.rows) else closed(ties, state, movable(ties))
+        constraints = self._system.constraints
+        state = state | on_unit_norms(self._system.scope.quaternions, state)
+        return (
+            state
+            if all(row.identical for row in constraints.rows)
+            else closed(constraints, state, movable(constraints))
+        )
 
     def _along(self, state: State, step: float) -> Iterator[State]:
         """States along the motion, by the midpoint rule."""
@@ -438,4 +443,4 @@ def refuse_jump(system: System, state: Mapping[Node, Any]) -> None:
         (there,) = substituted(substituted(substituted((x,), inputs), state), values)
         if is_zero(there) or vanishes(there):
             what = f"a force jumps with the sign of {to_text(x)}, which is 0 there: dry friction may hold it or not"
-            raise DerivationError(what, mend=SMOOTH)
+            raise DerivationError(what, fix=SMOOTH)

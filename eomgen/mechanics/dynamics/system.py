@@ -7,10 +7,11 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import begun_places
 from eomgen.mechanics.constraints.elimination import Elimination, dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.rank import rows_alike
-from eomgen.mechanics.constraints.rows import Ties, holds_identically, ties_of
+from eomgen.mechanics.constraints.rows import Constraints, constraints_of, holds_identically
 from eomgen.mechanics.kinematics.inertia import spin_of
 from eomgen.mechanics.kinematics.loads import (
     Applied,
@@ -26,7 +27,6 @@ from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.mechanics.kinematics.symbols import Scope, Solved, scope_of, shorter, with_declared_speeds
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, ScalarRows
@@ -35,7 +35,7 @@ from eomgen.symbolic.expression.traversal import Symbols
 from eomgen.symbolic.numeric.evaluation import transplanted
 
 # -------- system ----------------------------------------------------------------------------------------------
-# Model -> System: motion, loads and ties of one model, over one graph.
+# Model -> System: motion, loads and constraints of one model, over one graph.
 
 
 @dataclass(frozen=True)
@@ -43,17 +43,18 @@ class System:
     """What every formulation assembles from: the three suppliers, which do not see one another.
 
     Args:
-        motion, loads, ties: over the independent speeds alone.
-        modes: how the contacts are that can end, slide or stick, by tie.
+        motion, loads, constraints: over the independent speeds alone.
+        modes: how the contacts are that can end, slide or stick, by constraint.
         elimination: how the dependent coordinates follow; None where there are none.
-        free: the same system with every rate a speed, dependent coordinates free and all ties closing; None where it
+        free: the same system with every rate a speed, dependent coordinates free and all constraints closing; None
+            where it
             is the same.
         declared: the rates that follow from declared speeds, and where these do not determine them.
     """
 
     motion: Motion
     loads: Loads
-    ties: Ties
+    constraints: Constraints
     modes: ContactModes = field(default_factory=dict)
     elimination: Elimination | None = None
     free: System | None = None
@@ -87,17 +88,17 @@ class System:
     def symbols(self) -> Symbols:
         """The symbols of the model, one multiplier for each closing row included."""
         symbols = self.scope.symbols
-        lam = tuple(symbols.graph.symbol(row.label) for row in self.ties.closing)
+        lam = tuple(symbols.graph.symbol(row.label) for row in self.constraints.closing)
         return replace(symbols, lam=lam)
 
 
 def system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
 ) -> System:
-    """Motion, loads and ties of a model, dependent coordinates eliminated.
+    """Motion, loads and constraints of a model, dependent coordinates eliminated.
 
     Args:
-        modes: how contacts are that can end, slide or stick, by tie.
+        modes: how contacts are that can end, slide or stick, by constraint.
         begun_as: the system of the same start whose model this one was, before something in it was let go: what stands
             as it did at the start stands as it does there.
         with_laws: for print: long rates and accelerations of driven coordinates are names (`Scope.laws`).
@@ -112,15 +113,15 @@ def system_of(
 def free_system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
 ) -> System:
-    """Motion, loads and ties of a model in which dependent coordinates are as free as others."""
+    """Motion, loads and constraints of a model in which dependent coordinates are as free as others."""
     motion = motion_of(scope_of(model, with_laws=with_laws))
-    ties = ties_of(motion, modes=modes)
+    constraints = constraints_of(motion, modes=modes)
     begun: Mapping[Node, Scalar] = {}
     if begun_as is not None:
         begun = _carried_places(begun_as, motion.scope)
     elif any(force.of_the_start for force in model.forces.values()):
-        begun = begun_places(ties)
-    return System(motion, loads_of(motion, begun), ties, modes or {})
+        begun = begun_places(constraints)
+    return System(motion, loads_of(motion, begun), constraints, modes or {})
 
 
 def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:
@@ -135,17 +136,17 @@ def reduced_system(free: System) -> System:
     """The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared.
 
     Raises:
-        DerivationError: a dependent coordinate that no tie determines.
+        DerivationError: a dependent coordinate that no constraint determines.
         ModelError: declared speeds that do not determine the rates.
     """
-    elimination = elimination_of(free.ties) if dependent_coordinates(free.scope) else None
+    elimination = elimination_of(free.constraints) if dependent_coordinates(free.scope) else None
     scope = free.scope if elimination is None else elimination.scope
     solved: tuple[Solved, ...] = ()
     if scope.model.speeds:
         scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
     motion = motion_of(scope)
-    ties = ties_of(motion, {} if elimination is None else elimination.used, free.modes)
-    return System(motion, loads_of(motion, free.loads.begun), ties, free.modes, elimination, free, solved)
+    constraints = constraints_of(motion, {} if elimination is None else elimination.used, free.modes)
+    return System(motion, loads_of(motion, free.loads.begun), constraints, free.modes, elimination, free, solved)
 
 
 # -------- work ------------------------------------------------------------------------------------------------
@@ -275,7 +276,7 @@ class EquationsOfMotion:
     """The equations of motion: q' = N u + nu,  M a + c = Q + J^T lam,  J a + gamma = 0.
 
     Args:
-        system: whose motion, loads and ties they are put together from.
+        system: whose motion, loads and constraints they are put together from.
         N, nu: kinematic matrix, nq rows of nu entries, and bias, nq.
         M: mass matrix, nu rows of nu entries.
         c: inertia terms left when a = 0, nu.
@@ -336,7 +337,7 @@ def assembled(
     system: System, *, M: tuple[ScalarRow, ...], c: ScalarRow, Q: ScalarRow, T: Scalar, forcing: ScalarRow | None = None
 ) -> EquationsOfMotion:
     """The formulation's M, c, Q and T with what all formulations share: kinematics, closing rows, V."""
-    scope, ties = system.scope, system.ties
+    scope, constraints = system.scope, system.constraints
     if forcing is None:
         forcing = tuple(force - inertia for force, inertia in zip(Q, c, strict=True))
     return EquationsOfMotion(
@@ -347,10 +348,10 @@ def assembled(
         c,
         Q,
         forcing,
-        ties.J,
-        ties.sigma,
-        ties.gamma,
-        ties.phi,
+        constraints.J,
+        constraints.sigma,
+        constraints.gamma,
+        constraints.phi,
         T,
         system.loads.potential_energy,
         alike=_alike(system),
@@ -358,9 +359,9 @@ def assembled(
 
 
 def _alike(system: System) -> tuple[int, ...]:
-    if len(system.ties.closing) < 2:
+    if len(system.constraints.closing) < 2:
         return ()
     if rows_alike not in system.found:
-        system.found[rows_alike] = rows_alike(system.ties)
+        system.found[rows_alike] = rows_alike(system.constraints)
     found: tuple[int, ...] = system.found[rows_alike]
     return found

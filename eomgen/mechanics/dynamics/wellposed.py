@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, from_potential
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
@@ -67,8 +67,8 @@ def why_not_conservative(equations: EquationsOfMotion) -> str:
     pushed = [f"'{each.name}' has no potential" for each in loads.applied if each.potential is None and each.loads]
     turned = [f"something drives or brakes the joint of '{e.body}'" for e in loads.efforts if not is_zero(e.drive)]
     rubbed = ["contacts rub"] if equations.friction else []
-    rows = zip(equations.system.ties.closing, equations.sigma, strict=True)
-    moving = [f"'{row.tie}' moves by itself" for row, sigma in rows if not is_zero(sigma)]
+    rows = zip(equations.system.constraints.closing, equations.sigma, strict=True)
+    moving = [f"'{row.constraint}' moves by itself" for row, sigma in rows if not is_zero(sigma)]
     found = tuple(dict.fromkeys((*carried, *pushed, *turned, *rubbed, *moving)))
     return ", ".join(found) or "something drives, brakes or carries the model"
 
@@ -97,13 +97,12 @@ def _massless(equations: EquationsOfMotion, k: int) -> Problem:
         return Problem(
             f"speeds.{q}",
             f"the speed '{q}' moves no mass, so it has no derivative",
-            mend="give the bodies that it moves a mass",
+            fix="give the bodies that it moves a mass",
         )
     return Problem(
         f"coordinates.{q}",
         f"the free coordinate '{q}' moves no mass, so it has no acceleration",
-        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`"
-        + _by_its_balance(equations, k),
+        fix="give the bodies that it moves a mass, or drive the coordinate by `motion`" + _by_its_balance(equations, k),
     )
 
 
@@ -114,22 +113,22 @@ def _by_its_balance(equations: EquationsOfMotion, k: int) -> str:
     if q is None or is_zero(force) or text_size(force) > LONG or not depends_on(force, (q, u)):
         return ""
     field = "rate" if depends_on(force, equations.symbols.u) else "gap"
-    tie = f'kind = "equation", {field} = "{to_text(force)}"'
-    return f"; where springs and dampers alone push it, mark it `dependent` and give its balance: {{ {tie} }}"
+    constraint = f'kind = "equation", {field} = "{to_text(force)}"'
+    return f"; where springs and dampers alone push it, mark it `dependent` and give its balance: {{ {constraint} }}"
 
 
 # -- motions that move no mass -----------------------------------------------------------------------
 
 
 def _idle(equations: EquationsOfMotion) -> tuple[Problem, ...]:
-    """A motion that the ties allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
+    """A motion that the constraints allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
     system = equations.system
     if not equations.M or _is_full(system):
         return ()
     try:
-        if _has_energy(equations, scattered_state(system.ties)):
+        if _has_energy(equations, scattered_state(system.constraints)):
             return ()
-        state = generic_state(system.ties)
+        state = generic_state(system.constraints)
         u = _without_energy(equations, state)
         return () if u is None else (_idle_problem(system, u, state),)
     except (MissingValues, DerivationError, NoValue):
@@ -151,7 +150,7 @@ def _is_lean(system: System, link: BodyLink) -> bool:
 
 
 def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
-    """Whether all motions have, those that the ties forbid too: M is regular."""
+    """Whether all motions have, those that the constraints forbid too: M is regular."""
     values = {node: float(x) for node, x in state.items()}
     M = np.array(evaluate([x for row in equations.M for x in row], values, FLOAT)).reshape(len(equations.M), -1)
     sizes = np.diag(M)
@@ -187,11 +186,11 @@ def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Prob
     for link in system.motion.links:
         if max(abs(w) for w in _spin(link, u, state)) > SHARE:
             what = f"body '{link.name}' can turn about an axis about which it has no inertia"
-            mend = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
-            return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", mend=mend)
+            fix = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
+            return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", fix=fix)
     what = f"the free coordinates {names} can move together without moving a mass"
-    mend = "give the bodies that they move a mass, or leave out what moves nothing of its own"
-    return Problem("coordinates", f"{what}: nothing determines their accelerations", mend=mend)
+    fix = "give the bodies that they move a mass, or leave out what moves nothing of its own"
+    return Problem("coordinates", f"{what}: nothing determines their accelerations", fix=fix)
 
 
 def _spin(link: BodyLink, u: Mapping[Node, float], state: State) -> list[float]:
@@ -202,7 +201,7 @@ def _spin(link: BodyLink, u: Mapping[Node, float], state: State) -> list[float]:
 
 
 # -------- no value --------------------------------------------------------------------------------------------
-# System, a state in which its equations have no value -> what has none there: a force, a joint, a tie, an input.
+# System, a state in which its equations have no value -> what has none there: a force, a joint, a constraint, an input.
 
 
 REASONS = {
@@ -263,9 +262,9 @@ def _parts(system: System) -> Iterator[tuple[str, str, Any]]:
         yield f"forces.{force.name}", f"force '{force.name}'", force.loads
     for effort in system.loads.efforts:
         yield f"bodies.{effort.body}.joint", f"the joint of body '{effort.body}'", effort.effort
-    for row in system.ties.rows:
-        yield f"constraints.{row.tie}", f"constraint '{row.tie}'", (row.gap, row.velocity, row.wrenches)
-        yield f"constraints.{row.tie}", f"the friction of '{row.tie}'", (row.friction, row.shares)
+    for row in system.constraints.rows:
+        yield f"constraints.{row.constraint}", f"constraint '{row.constraint}'", (row.gap, row.velocity, row.wrenches)
+        yield f"constraints.{row.constraint}", f"the friction of '{row.constraint}'", (row.friction, row.shares)
 
 
 def _scalars(part: Any) -> Iterator[Scalar]:

@@ -1,4 +1,4 @@
-"""Static equations -> the coordinates that may be chosen where velocity ties let a system rest in many places.
+"""Static equations -> the coordinates that may be chosen where velocity constraints let a system rest in many places.
 
 A knife edge or a wheel holds velocities and no positions: where Q + J^T lam = 0, phi = 0 hold at one place they hold
 beside it too. With A the derivatives of these equations by (lam, q), the coordinates whose columns of A follow from the
@@ -13,10 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import is_guess
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import place_near
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric import dense
@@ -24,7 +24,7 @@ from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.tolerances import RANK, SAME_PLACE, SUMMED
 from eomgen.symbolic.solve.solving import vanishes
 
-ASIDE = 0.01  # by which a place of rest beside the first is sought
+ASIDE = 0.01  # by which an equilibrium beside the first is sought
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class Chosen:
 
     Args:
         coordinates: those that may be anything near where they start.
-        smooth: whether places of rest beside one another have the same freedom: they make up one family.
+        smooth: whether equilibria beside one another have the same freedom: they make up one family.
         indifferent: coordinates that no equation holds.
     """
 
@@ -43,7 +43,7 @@ class Chosen:
 
 
 def holds_velocities(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> bool:
-    """Whether a tie holds velocities without a relation between positions: d phi/dq has less rank than J."""
+    """Whether a constraint holds velocities without a relation between positions: d phi/dq has less rank than J."""
     aside = guess + ASIDE * np.random.default_rng(3).uniform(1, 2, len(guess))
     floats = {node: float(x) for node, x in values.items()}
     relations = jacobian(statics.phi, statics.q) if statics.phi else ()
@@ -58,7 +58,7 @@ def unheld(statics: StaticEquations) -> tuple[Node, ...]:
 
 
 def chosen_coordinates(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> Chosen:
-    """The coordinates that may be chosen near the place of rest that is reached from a guess.
+    """The coordinates that may be chosen near the equilibrium that is reached from a guess.
 
     Args:
         values: of the parameters, with 50 digits.

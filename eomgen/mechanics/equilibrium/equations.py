@@ -11,9 +11,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rank import freedoms
-from eomgen.mechanics.constraints.rows import ties_of
+from eomgen.mechanics.constraints.rank import degrees_of_freedom
+from eomgen.mechanics.constraints.rows import constraints_of
 from eomgen.mechanics.dynamics.system import (
     System,
     acting,
@@ -30,7 +31,6 @@ from eomgen.model.contacts import rough_contacts
 from eomgen.model.fields import Table
 from eomgen.model.part import altered
 from eomgen.model.values import exact_parameters, quaternions_of
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
@@ -50,7 +50,7 @@ from eomgen.symbolic.solve.solving import vanishes
 #
 # over all coordinates that are not driven, dependent ones among them. sigma is what a velocity row J u + sigma = 0
 # asks for at rest: of z' = r - x that x = r. Relations between positions that a velocity row gives by itself (a wheel
-# that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more tie.
+# that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more constraint.
 
 
 MOST_TERMS = 1000  # of all forces together, when they are written out: they share their parts as they come
@@ -68,7 +68,8 @@ class StaticEquations:
         Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
         J: of each closing row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
-        sigma: what velocity rows leave where no speed is: a tie that runs on at any place has none at which it rests.
+        sigma: what velocity rows leave where no speed is: a constraint that runs on at any place has none at which it
+            rests.
         norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
         beside: what balances along coordinates that need not be sought, as no equation depends on them.
         nowhere: (coordinate, force along it) of the forces that the values of the parameters make vanish everywhere.
@@ -147,7 +148,7 @@ class StaticEquations:
                     raise DerivationError(
                         f"nothing balances the force along '{q.name}': it is at rest nowhere",
                         f"coordinates.{q.name}",
-                        "hold it by a spring or a tie, or take away what pushes it",
+                        "hold it by a spring or a constraint, or take away what pushes it",
                     )
                 beside.append(force)
         kept = [k for k, q in enumerate(self.q) if q not in dropped]
@@ -204,7 +205,8 @@ def static_equations(system: System) -> StaticEquations:
     """The equations of the system at rest, its drives held.
 
     Raises:
-        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a tie that
+        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a
+            constraint that
             runs on wherever the system is.
     """
     _refuse_dry_friction(system)
@@ -214,7 +216,7 @@ def static_equations(system: System) -> StaticEquations:
     driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
     q = tuple(x for x in scope.symbols.q if x not in driven)
     given = _given(free, driven)
-    rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.ties.J]
+    rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.constraints.J]
     standing = standing_system(free)  # a damper at a seat that moves by an explicit time does not pull at rest
     loads = (standing.free or standing).loads
     forces = generalized_forces(loads)
@@ -244,7 +246,8 @@ def static_equations(system: System) -> StaticEquations:
 
 
 def with_norms(statics: StaticEquations) -> StaticEquations:
-    """The equations with a tie for the norm of each quaternion that something holds: Q + 2 e lam = 0, e . e = 1."""
+    """The equations with a constraint for the norm of each quaternion that something holds: Q + 2 e lam = 0, e . e =
+    1."""
     scope, indifferent = statics.system.scope, statics.indifferent
     turning = [
         (four, part)
@@ -263,7 +266,7 @@ def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
 
 
 def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
-    """What the ties say of positions; constants that only the start fixes are taken from it."""
+    """What the constraints say of positions; constants that only the start fixes are taken from it."""
     from eomgen.mechanics.integrals.laws import position_equations
 
     found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
@@ -276,23 +279,25 @@ def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node])
     Raises:
         DerivationError: a row that no place satisfies at rest.
     """
-    rows = [row for row in free.ties.closing if row.gap is None]
+    rows = [row for row in free.constraints.closing if row.gap is None]
     left = substituted(tuple(row.velocity for row in rows), given)
     for row, x in zip(rows, left, strict=True):
         if not depends_on(x, q) and not is_zero(x) and not vanishes(x):
-            what = f"'{row.tie}' runs on wherever the system is, and nothing is at rest beside it"
-            raise DerivationError(what, f"constraints.{row.tie}", "seek a steady motion: linearize --about steady")
+            what = f"'{row.constraint}' runs on wherever the system is, and nothing is at rest beside it"
+            raise DerivationError(
+                what, f"constraints.{row.constraint}", "seek a steady motion: linearize --about steady"
+            )
     return tuple(x for x in left if depends_on(x, q))
 
 
 # -- what is held ------------------------------------------------------------------------------------
 
 
-def has_freedoms(system: System) -> bool:
-    """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
+def has_degrees_of_freedom(system: System) -> bool:
+    """Whether anything is free to find its rest: a coordinate that no constraint, drive or unknown load holds."""
     unknowns = system.symbols.unknowns.values()
     forces = generalized_forces(system.loads)
-    return freedoms(system.ties) > 0 and not depends_on_any(forces, unknowns)
+    return degrees_of_freedom(system.constraints) > 0 and not depends_on_any(forces, unknowns)
 
 
 def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
@@ -347,8 +352,8 @@ def _at_rest(forces: ScalarRow, given: State, free: System) -> ScalarRow:
             return False
 
         what = f"{acting(free.loads, has_none) or 'a force'} has no value where nothing moves: {error.what}"
-        mend = "write it so that it has one at rest: w/sqrt(w^2 + eps^2) in place of w/abs(w)"
-        raise DerivationError(what, mend=mend) from error
+        fix = "write it so that it has one at rest: w/sqrt(w^2 + eps^2) in place of w/abs(w)"
+        raise DerivationError(what, fix=fix) from error
 
 
 def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
@@ -358,7 +363,7 @@ def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
         if node.op == "sign" and any(depends_on(a, u) for a in node.args):
             raise DerivationError(
                 "a force jumps with the sign of a rate: at rest it may have any value in between",
-                mend="leave it out where rest is sought",
+                fix="leave it out where rest is sought",
             )
 
 
@@ -387,7 +392,7 @@ def standing_system(system: System) -> System:
     places = [x for link in free.motion.links for x in (*link.pose.p, *(y for row in link.pose.R for y in row))]
     given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
     biases = [x for x, driven in zip(scope.nu, given, strict=True) if not driven]
-    if not depends_on_any((*places, *biases, *(row.velocity for row in free.ties.rows)), t):
+    if not depends_on_any((*places, *biases, *(row.velocity for row in free.constraints.rows)), t):
         return system
     names = {name: substituted((x,), {t[0]: 0})[0] if type(x) is Node else x for name, x in scope.names.items()}
     return _made_of(free, replace(scope, names=names))
@@ -397,5 +402,5 @@ def _made_of(free: System, scope: Scope) -> System:
     """The system of another scope over the rates, dependent coordinates eliminated."""
     scope = replace(scope, model=altered(scope.model, speeds=Table({})))
     motion = motion_of(scope)
-    made = System(motion, loads_of(motion, free.loads.begun), ties_of(motion, modes=free.modes), free.modes)
+    made = System(motion, loads_of(motion, free.loads.begun), constraints_of(motion, modes=free.modes), free.modes)
     return reduced_system(made) if dependent_coordinates(scope) else made

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.kinematics.motion import Motion
@@ -18,7 +19,6 @@ from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.mechanics.kinematics.scene import start_value
 from eomgen.model.units import in_own_unit
 from eomgen.model.values import first_guesses, start_values
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
 from eomgen.symbolic.expression.derivative import (
     depends_on,
@@ -43,7 +43,7 @@ from eomgen.symbolic.solve.linear import LinearSystem, Solution, general_solutio
 from eomgen.symbolic.solve.solving import has_period, outside_of_turns, vanishes
 
 # -------- rest places -----------------------------------------------------------------------------------------
-# Static equations -> the places of rest in numbers, and whether those are all.
+# Static equations -> the equilibria in numbers, and whether those are all.
 
 
 MOST_ISOLATED = 3  # coordinates of equations whose roots are isolated
@@ -79,7 +79,7 @@ class Places:
 
 
 def places_of_rest(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> Places:
-    """Every place of rest that is found.
+    """Every equilibrium that is found.
 
     Args:
         values: of the parameters, with 50 digits.
@@ -89,7 +89,7 @@ def places_of_rest(statics: StaticEquations, values: Mapping[Node, Any], guess: 
 
 
 def place_near(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> np.ndarray | None:
-    """One place of rest, coordinates and multipliers: that reached from the guess, else from places about it."""
+    """One equilibrium, coordinates and multipliers: that reached from the guess, else from places about it."""
     return _Search(statics, values, guess).one()
 
 
@@ -173,7 +173,8 @@ class _Search:
 
     @cached_property
     def _reduced(self) -> tuple[Scalar, ...] | None:
-        """As many equations as coordinates, free of multipliers: the forces; with one freedom left by ties, that the
+        """As many equations as coordinates, free of multipliers: the forces; with one freedom left by constraints,
+        that the
         force has no part along it, det [Q; J] = 0; None where there are none."""
         statics = self.statics
         n, relations = len(statics.q), (*statics.phi, *statics.sigma)
@@ -278,7 +279,7 @@ class _Search:
         return found.reshape(len(q), len(rows), len(rows[0]) if rows else 0)
 
     def _is_held(self, z: np.ndarray) -> bool:
-        """False near places where the ties are singular, and would need forces without limit to hold it."""
+        """False near places where the constraints are singular, and would need forces without limit to hold it."""
         n = len(self.statics.q)
         J = self.statics.slopes(self.statics.J, z[:n], self.floats)
         if not J.size or not np.all(np.isfinite(J)):
@@ -332,13 +333,13 @@ def _balancing(J: np.ndarray, Q: np.ndarray) -> np.ndarray:
 
 
 # -------- closed rest -----------------------------------------------------------------------------------------
-# A place of rest in numbers -> the same in closed form, where the equations hold there exactly.
+# An equilibrium in numbers -> the same in closed form, where the equations hold there exactly.
 #
-# Tried are round places (quarter turns, zeros, the start), then what the ties and the balance say of the other
+# Tried are round places (quarter turns, zeros, the start), then what the constraints and the balance say of the other
 # coordinates. What is found is taken only where all equations hold at it as functions of the parameters.
 
 
-MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
+MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that constraints give at once
 LONGEST = 600  # characters of these equations
 PATIENCE = 2  # places without a closed form, before equations are no more tried at others
 HALF = Fraction(1, 2)
@@ -359,7 +360,7 @@ class Held:
 
 @dataclass(frozen=True)
 class ClosedForms:
-    """The places of rest of a system in closed form.
+    """The equilibria of a system in closed form.
 
     Args:
         statics: the equations.
@@ -401,7 +402,7 @@ class ClosedForms:
     def _closed_ways(
         self, simple: Mapping[Node, Scalar]
     ) -> Iterator[tuple[ScalarRow, tuple[Node, ...], Mapping[Node, Scalar]]]:
-        """(equations, unknowns, what is known): the ties from coordinates at simple places, or all equations."""
+        """(equations, unknowns, what is known): the constraints from coordinates at simple places, or all equations."""
         statics = self.statics
         left = tuple(q for q in statics.q if q not in simple)
         relations = (*statics.phi, *statics.sigma)
@@ -500,7 +501,7 @@ def _short_turn(x: Scalar, number: float, turning: bool) -> Scalar:
 
 
 # -------- guesses ---------------------------------------------------------------------------------------------
-# System, values by name -> where places of rest are sought first: as asked, else `near`, else the start.
+# System, values by name -> where equilibria are sought first: as asked, else `near`, else the start.
 #
 # And in what unit lengths are measured while they are sought: one of the model's own size.
 
@@ -517,7 +518,7 @@ class Guess:
 
     system: System
     values: Mapping[Node, Any]
-    asked: Mapping[str, float]
+    requested: Mapping[str, float]
 
     def of(self, coordinates: Sequence[Node]) -> np.ndarray:
         """Numbers of coordinates.
@@ -531,18 +532,18 @@ class Guess:
         """One as a scalar of the parameters."""
         scope = self.system.scope
         near = scope.model.coordinates[q.name].near
-        if q.name in self.asked:
-            return Fraction(self.asked[q.name])
+        if q.name in self.requested:
+            return Fraction(self.requested[q.name])
         return start_value(scope, q) if near is None else scope.value(near)
 
     @cached_property
     def _numbers(self) -> dict[str, float]:
         model = self.system.scope.model
-        unknown = [name for name in self.asked if name not in model.coordinates]
+        unknown = [name for name in self.requested if name not in model.coordinates]
         if unknown:
-            raise UsageError(f"no coordinate '{unknown[0]}'", mend=f"one of {', '.join(model.coordinates)}")
+            raise UsageError(f"no coordinate '{unknown[0]}'", fix=f"one of {', '.join(model.coordinates)}")
         trial = {name: float(self.values[x]) for name, x in self.system.symbols.parameters.items()}
-        return {**start_values(model, trial)[0], **first_guesses(model, trial), **self._near, **self.asked}
+        return {**start_values(model, trial)[0], **first_guesses(model, trial), **self._near, **self.requested}
 
     @property
     def _near(self) -> dict[str, float]:

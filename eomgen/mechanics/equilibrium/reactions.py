@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from random import Random
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium
@@ -13,7 +14,6 @@ from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_re
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.start.exact import values_of_parameters, values_where_at_rest
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -24,12 +24,12 @@ from eomgen.symbolic.solve.linear import LinearSystem, Solution, general_solutio
 from eomgen.symbolic.solve.solving import vanishes
 
 # -------- resting reactions -----------------------------------------------------------------------------------
-# A place of rest -> every reaction there, by the balance of the bodies.
+# An equilibrium -> every reaction there, by the balance of the bodies.
 
 
 @dataclass(frozen=True)
 class RestingReaction:
-    """One reaction at a place of rest.
+    """One reaction at an equilibrium.
 
     Args:
         named: what it is.
@@ -57,7 +57,7 @@ def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
 
 
 def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, ...]]:
-    """Every reaction of joints and ties.
+    """Every reaction of joints and constraints.
 
     Raises:
         DerivationError: a force acts at no place, so that reactions do not follow.
@@ -85,7 +85,7 @@ def reactions_or_why(place: Equilibrium) -> ReactionsOrWhy:
     try:
         return *reactions_at(place), ""
     except DerivationError as error:
-        return None, (), f"{error.what}; {error.mend}" if error.mend else error.what
+        return None, (), f"{error.what}; {error.fix}" if error.fix else error.what
 
 
 # -------- loads at rest ---------------------------------------------------------------------------------------
@@ -102,7 +102,7 @@ class Holding:
         statics: the equations of rest.
         place: every coordinate at the start, exact.
         unknowns: the value of each unknown of the loads.
-        lam: the multipliers of closing ties that have a single value.
+        lam: the multipliers of closing constraints that have a single value.
     """
 
     statics: StaticEquations
@@ -122,7 +122,7 @@ def holding_of(system: System) -> Holding:
     if not statics.loaded:
         raise DerivationError(
             "no unknown load does work when the system moves: none can hold it",
-            mend="write one of [unknowns] into a force on what moves",
+            fix="write one of [unknowns] into a force on what moves",
         )
     state = values_where_at_rest(statics.system)
     place = {q: state[q] for q in statics.system.symbols.q}
@@ -166,14 +166,14 @@ def _refuse_undetermined(statics: StaticEquations, solution: Solution) -> None:
     open_ = [p.name for j, p in enumerate(statics.loaded) if not solution.determined(j)]
     if open_:
         raise DerivationError(
-            f"rest does not determine '{open_[0]}': there are more unknowns than freedoms",
+            f"rest does not determine '{open_[0]}': there are more unknowns than degrees of freedom",
             f"unknowns.{open_[0]}",
             "give a value to some of them",
         )
     if not all(is_zero(x) or vanishes(x) for x in solution.left):
         names = ", ".join(f"'{p.name}'" for p in statics.loaded)
-        freedoms = ", ".join(u.name.removesuffix("'") for u in statics.system.symbols.u)
+        degrees_of_freedom = ", ".join(u.name.removesuffix("'") for u in statics.system.symbols.u)
         raise DerivationError(
             f"{names} alone cannot hold the system where it starts: something moves on",
-            mend=f"the freedoms are {freedoms}; let an unknown act on each",
+            fix=f"the degrees of freedom are {degrees_of_freedom}; let an unknown act on each",
         )

@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rows import Ties
+from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibrium.equations import StaticEquations, static_equations
@@ -27,7 +28,6 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.start.exact import known_exactly, shown_numbers, values_of_parameters
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on_any, jacobian, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRows, State
 from eomgen.symbolic.expression.rational import Fraction
@@ -53,14 +53,15 @@ from eomgen.symbolic.numeric.tolerances import (
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """One place of rest.
+    """One equilibrium.
 
     Args:
         statics: the equations that hold there.
-        exact: coordinates, and multipliers of closing ties, as scalars of the parameters; those that are known so.
+        exact: coordinates, and multipliers of closing constraints, as scalars of the parameters; those that are known
+            so.
         numbers: all of them as numbers; {} without values of all parameters.
         stability: whether it stays there when it is disturbed.
-        curve: of places of rest, of which it is one; None where it is alone.
+        curve: of equilibria, of which it is one; None where it is alone.
     """
 
     statics: StaticEquations
@@ -76,7 +77,7 @@ class Equilibrium:
 
     @cached_property
     def pulling(self) -> tuple[str, ...]:
-        """The one-sided ties that would have to pull there; () where that is not known."""
+        """The one-sided constraints that would have to pull there; () where that is not known."""
         system = self.statics.system
         state: dict[Node, Scalar] = {system.symbols.t: 0, **dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)}
         state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
@@ -99,7 +100,7 @@ class Equilibrium:
 
 @dataclass(frozen=True)
 class Equilibria:
-    """The places of rest of a system.
+    """The equilibria of a system.
 
     Args:
         statics: the equations.
@@ -107,7 +108,7 @@ class Equilibria:
         complete: whether there are no others, where `where` says.
         where: in which range they were sought, in words.
         indifferent: coordinates that no force holds anywhere: they stay where they start.
-        chosen: coordinates that velocity ties let it rest at any value of, near the start: they stay there.
+        chosen: coordinates that velocity constraints let it rest at any value of, near the start: they stay there.
     """
 
     statics: StaticEquations
@@ -118,13 +119,13 @@ class Equilibria:
     chosen: tuple[Node, ...] = ()
 
     def nearest(self, guess: Mapping[str, float] | None = None) -> Equilibrium:
-        """The place of rest that is reached from a guess (None: from the start).
+        """The equilibrium that is reached from a guess (None: from the start).
 
         Raises:
             DerivationError: there is none.
         """
         if not self.found:
-            raise nowhere(self.complete, self.statics.system.ties)
+            raise nowhere(self.complete, self.statics.system.constraints)
         return self.found[0]
 
 
@@ -132,24 +133,28 @@ NO_PLACE = "no place was found at which all forces balance"
 MOST_NAMED = 4  # coordinates
 
 
-def nowhere(complete: bool, ties: Ties) -> DerivationError:
-    """That there is no place of rest, that none was found, or that ties do not close anywhere near."""
+def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
+    """That there is no equilibrium, that none was found, or that constraints do not close anywhere near."""
     try:
-        generic_state(ties)
+        generic_state(constraints)
     except DerivationError as error:
         return error
     except MissingValues:  # whether they close cannot be told without values
         pass
-    free = [q.name for q in ties.motion.scope.symbols.q if not ties.motion.scope.model.coordinates[q.name].driven]
+    free = [
+        q.name
+        for q in constraints.motion.scope.symbols.q
+        if not constraints.motion.scope.model.coordinates[q.name].driven
+    ]
     along = "".join(f" along '{name}'" for name in free) if len(free) == 1 else ""
     along = f" (of {', '.join(map(repr, free[:MOST_NAMED]))})" if free[1:] else along
     what = f"{NO_PLACE}{along}{': there is none' if complete else ''}"
-    mend = "hold by a spring or a tie what nothing balances, or say by `near` where it rests"
-    return DerivationError(what, "coordinates", mend)
+    fix = "hold by a spring or a constraint what nothing balances, or say by `near` where it rests"
+    return DerivationError(what, "coordinates", fix)
 
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
-    """Every place of rest that is found, and whether there are others; the nearest to the guess first.
+    """Every equilibrium that is found, and whether there are others; the nearest to the guess first.
 
     Args:
         guess: values of coordinates in place of `near` and `start`.
@@ -183,7 +188,7 @@ def nearest_equilibrium(statics: StaticEquations, guess: Mapping[str, float] | N
 def _search(statics: StaticEquations, guess: Mapping[str, float] | None) -> _Search:
     if statics.loaded:
         what = f"the forces hold the unknown '{statics.loaded[0].name}': it is what holds the system where it starts"
-        raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek places of rest")
+        raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek equilibria")
     return _Search(statics.at_the_values(), dict(guess or {}))
 
 
@@ -231,7 +236,7 @@ class _Search:
 
     @cached_property
     def _slides(self) -> bool:
-        """Whether velocity ties leave it free to go where none of its coordinates says."""
+        """Whether velocity constraints leave it free to go where none of its coordinates says."""
         return bool(self.whole.J) and holds_velocities(self.whole, self.values, self._guess.of(self.whole.q))
 
     @cached_property
@@ -287,7 +292,7 @@ class _Search:
         each = (self._equilibrium(z, self._forms) for z in self._places.found)
         found = next((place for place in each if place is not None), None)
         if found is None:
-            raise nowhere(self._places.complete, self.system.ties)
+            raise nowhere(self._places.complete, self.system.constraints)
         return found
 
     def equilibria(self) -> Equilibria:
@@ -398,11 +403,11 @@ def _numbers(scalars: Any, state: State) -> np.ndarray:
 
 
 # -------- one sided -------------------------------------------------------------------------------------------
-# A place of rest -> the contacts that would have to pull there: it is no place of rest.
+# An equilibrium -> the contacts that would have to pull there: it is no equilibrium.
 
 
 def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
-    """The one-sided ties whose reaction is negative at a state.
+    """The one-sided constraints whose reaction is negative at a state.
 
     Args:
         state: exact scalars of everything that moves.
@@ -435,7 +440,7 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
 # -------- families --------------------------------------------------------------------------------------------
 # Places of rest -> each once: e and -e are one orientation, and of a body that may turn freely one place is enough.
 #
-# Where the second variation K vanishes in some direction, places of rest can make up a whole family: a body on a ball
+# Where the second variation K vanishes in some direction, equilibria can make up a whole family: a body on a ball
 # joint hangs at any angle about the vertical, a sleigh stands at any angle. Two places of one family have the same V
 # and the same spectrum of K. Of a family that is a curve the way along it is gone, in both directions:
 #
@@ -517,7 +522,7 @@ CORRECTIONS = 6  # back onto it
 
 @dataclass(frozen=True)
 class _Way:
-    """Along curves of places of rest."""
+    """Along curves of equilibria."""
 
     statics: StaticEquations
     floats: Mapping[Node, float]
@@ -548,7 +553,7 @@ class _Way:
         return np.asarray(t / np.linalg.norm(t[: len(self.statics.q)]))
 
     def _onto(self, z: np.ndarray, t: np.ndarray) -> np.ndarray | None:
-        """The place of rest that is reached across t; None where there is none."""
+        """The equilibrium that is reached across t; None where there is none."""
         start, n = z, len(self.statics.q)
         unit = np.where(np.arange(len(z)) < n, 1.0, np.maximum(np.abs(z), 1.0))  # multipliers change as they are large
         for _ in range(CORRECTIONS):
@@ -610,7 +615,7 @@ def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.nd
 
 
 def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
-    """V, and the eigenvalues of K along the ties, by size."""
+    """V, and the eigenvalues of K along the constraints, by size."""
     n = len(statics.q)
     J = statics.slopes(statics.J, z[:n], values)
     H = -np.array(evaluate([x for row in slopes for x in row], values, FLOAT), dtype=float).reshape(n, n)

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.rank import rank_of_ties
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted
@@ -37,7 +37,7 @@ from eomgen.symbolic.solve.linear import LinearSystem, general_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 # -------- stability -------------------------------------------------------------------------------------------
-# A place of rest -> whether it is stable: the second variation of the potential energy along the ties.
+# An equilibrium -> whether it is stable: the second variation of the potential energy along the constraints.
 #
 #     K = Z^T H Z,   H = -d(Q + J^T lam)/dq,   J Z = 0
 #
@@ -46,7 +46,7 @@ from eomgen.symbolic.solve.solving import vanishes
 # derivatives decide. With several, and forces without a potential, K has another sense and decides nothing.
 
 
-MOST_EXACT = 6  # freedoms of a K that is written exactly
+MOST_EXACT = 6  # degrees of freedom of a K that is written exactly
 
 StiffnessRows = tuple[tuple[Any, ...], ...]
 """Of scalars, or of floats where they are not known exactly."""
@@ -54,12 +54,12 @@ StiffnessRows = tuple[tuple[Any, ...], ...]
 
 @dataclass(frozen=True)
 class Stability:
-    """Whether a place of rest is stable.
+    """Whether an equilibrium is stable.
 
     Args:
         kind: "stable", "unstable", "indifferent", "depends on the parameters", "undecided" or "no potential energy".
         why: in words.
-        along: the coordinates whose variations are free; the others follow by the ties.
+        along: the coordinates whose variations are free; the others follow by the constraints.
         K: exact where the place is, else numbers; () where there is none.
         minors: det of the leading parts of K, exact, where they decide; else ().
     """
@@ -78,13 +78,14 @@ def stability_of(
     values: Mapping[Node, Any] | None,
     chosen: Chosen | None = None,
 ) -> Stability:
-    """The stability of a place of rest.
+    """The stability of an equilibrium.
 
     Args:
         exact: coordinates and multipliers in closed form, as far as they are known.
         numbers: all of them, and the parameters.
         values: of the parameters with 50 digits; None: some have none, and K is judged by the signs of its terms.
-        chosen: where ties hold velocities and no positions, what they leave open: K d = 0 for d to rest beside it.
+        chosen: where constraints hold velocities and no positions, what they leave open: K d = 0 for d to rest beside
+            it.
     """
     if not statics.q:
         return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
@@ -121,9 +122,9 @@ class _Place:
         J = self._numbers(statics.J)
         along = self._independent(J)
         if along is None:
-            return Stability("undecided", "the ties are singular there")
+            return Stability("undecided", "the constraints are singular there")
         if not along:
-            return Stability(INDIFFERENT, "the ties leave no freedom")
+            return Stability(INDIFFERENT, "the constraints leave no freedom")
         if statics.sigma:
             return Stability(
                 "undecided", "constraints of velocities move on beside it; linearize tells what comes back"
@@ -133,7 +134,7 @@ class _Place:
         shown: StiffnessRows = K if K is not None else _as_exact(self._numeric_K(J, along), self._size_of_terms)
         minors = _minors(K) if K is not None and self.values is None else ()
         if len(along) > 1 and not self._has_potential(along):
-            why = "velocity ties push there" if self._is_conservative else "forces without a potential act"
+            why = "velocity constraints push there" if self._is_conservative else "forces without a potential act"
             return Stability("no potential energy", f"{why}, and K is not symmetric", nodes, shown)
         if self.values is None:
             kind, why = self._by_terms(K, minors)
@@ -141,7 +142,7 @@ class _Place:
             kind, why = self._by_numbers(self._numeric_K(J, along), len(along) == 1)
         return Stability(kind, why, nodes, shown, minors)
 
-    # -- the ties ------------------------------------------------------------------------------------
+    # -- the constraints ------------------------------------------------------------------------------------
 
     def _numbers(self, rows: Sequence[Sequence[Scalar]]) -> np.ndarray:
         flat = evaluate([x for row in rows for x in row], self.state, fifty_digits())
@@ -166,7 +167,8 @@ class _Place:
     def _late(self, k: int) -> tuple[bool, float, int]:
         """Of what follows first: what is marked dependent, then of a quaternion the largest of its four.
 
-        Where velocity ties leave places open, what no force holds comes before the rest, and what is declared last.
+        Where velocity constraints leave places open, what no force holds comes before the rest, and what is declared
+        last.
         """
         q, scope = self.statics.q[k], self.statics.system.scope
         own = not scope.model.coordinates[q.name].dependent
@@ -177,12 +179,12 @@ class _Place:
 
     @cached_property
     def _generic_rank(self) -> int:
-        """Of J where the ties are not in a special position."""
+        """Of J where the constraints are not in a special position."""
         if self.statics.beside:  # J is without some of its columns
             rng = Random(6)
             away = np.array([self.numbers[q] + rng.uniform(0.1, 0.3) for q in self.statics.q])
             return rank(self.statics.slopes(self.statics.J, away, self.numbers))
-        return rank_of_ties((self.statics.system.free or self.statics.system).ties) + self.statics.norms
+        return rank_of_constraints((self.statics.system.free or self.statics.system).constraints) + self.statics.norms
 
     @cached_property
     def _H(self) -> StiffnessRows:
@@ -234,7 +236,7 @@ class _Place:
             rows = [{j: row[k] for j, k in enumerate(others)} for row in J]
             solution = general_solution(LinearSystem(rows, [-row[a] for row in J], len(others), digits_at(values)))
             if len(solution.constants) < len(others):
-                raise NoValue("the ties do not determine the other coordinates there")
+                raise NoValue("the constraints do not determine the other coordinates there")
             for j, k in enumerate(others):
                 Z[k][column] = solution.constants[j]
             moved = (sum((x * Z[k][column] for k, x in enumerate(row)), start=0) for row in J)
@@ -305,11 +307,11 @@ class _Place:
         return max(found)
 
 
-def _drifting(neutral: int, freedoms: int) -> tuple[str, str]:
-    """Of a place in a family of places of rest, where V falls nowhere."""
-    if neutral == freedoms:
-        return INDIFFERENT, "it rests wherever the ties let it go"
-    return STABLE, "V rises in every motion that leaves the places of rest"
+def _drifting(neutral: int, degrees_of_freedom: int) -> tuple[str, str]:
+    """Of a place in a family of equilibria, where V falls nowhere."""
+    if neutral == degrees_of_freedom:
+        return INDIFFERENT, "it rests wherever the constraints let it go"
+    return STABLE, "V rises in every motion that leaves the equilibria"
 
 
 def _as_exact(K: np.ndarray, size: float) -> StiffnessRows:
@@ -323,15 +325,15 @@ def _minors(K: StiffnessRows) -> tuple[Scalar, ...]:
 
 
 # -------- higher derivatives ----------------------------------------------------------------------------------
-# A place of rest of one freedom at which V'' = 0 -> whether it is stable, by the next derivatives of V.
+# An equilibrium of one freedom at which V'' = 0 -> whether it is stable, by the next derivatives of V.
 #
-# The force along the way that the ties leave is P = Q . w with J w = 0; V' = -P, and d/ds is w . d/dq.
+# The force along the way that the constraints leave is P = Q . w with J w = 0; V' = -P, and d/ds is w . d/dq.
 
 
 HIGHEST = 8  # derivative of V that is looked at
 MULTIPLE = 4  # from this derivative on a place where the lower ones vanish is known to a part of its digits only
 AWAY = (-0.3, 0.2, 0.4)  # [SI] where what vanishes at the place has its usual size
-MOST_COORDINATES = 6  # of ties along which derivatives are taken
+MOST_COORDINATES = 6  # of constraints along which derivatives are taken
 
 STABLE, UNSTABLE, INDIFFERENT = "stable", "unstable", "indifferent"
 
@@ -374,7 +376,7 @@ class _Way:
         return INDIFFERENT, f"the first {HIGHEST} derivatives of V vanish"
 
     def _way(self) -> tuple[Scalar, ...] | None:
-        """A vector along the ties: its entries are the minors of J, with signs; 1 without ties."""
+        """A vector along the constraints: its entries are the minors of J, with signs; 1 without constraints."""
         J, n = self.statics.J, len(self.statics.q)
         if n == 1:
             return (1,)

@@ -7,6 +7,7 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.rows import holds_identically, slide_power
 from eomgen.mechanics.dynamics.system import System, generalized_forces
@@ -22,10 +23,9 @@ from eomgen.mechanics.free_bodies.wrenches import (
 from eomgen.mechanics.kinematics.inertia import kinetic_energy
 from eomgen.mechanics.kinematics.loads import weights
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.model.driven import driven_coordinates, driving_ties
+from eomgen.model.driven import driven_coordinates, driving_constraints
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.formula import inner
@@ -53,7 +53,7 @@ from eomgen.symbolic.solve.linear import Solution
 #     sum of reactions + sum of applied forces = inertia:   f = m a_C,   n = d/dt (I w) about the mass centre
 #
 # In the plane two forces and one moment a body, in ground axes; in space three and three, in the body's axes. The
-# unknowns are the components of all reactions, of joints and of ties; what drives a given motion is one of them.
+# unknowns are the components of all reactions, of joints and of constraints; what drives a given motion is one of them.
 
 
 DIRECTIONS = ("x", "y", "z", "moment x", "moment y", "moment z")
@@ -123,7 +123,7 @@ def balance_of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Bal
     Args:
         sizes: |N| of the bilateral contacts with friction.
     Raises:
-        DerivationError: a force, an energy or a tie that acts at no place, named.
+        DerivationError: a force, an energy or a constraint that acts at no place, named.
     """
     if sizes:
         return _balance(system, sizes)
@@ -155,7 +155,7 @@ def refuse_placeless(system: System) -> None:
         DerivationError: it is named.
     """
     _refuse_placeless_forces(system)
-    _refuse_placeless_ties(system)
+    _refuse_placeless_constraints(system)
     for link in system.motion.links:
         if _seat_moves_others(system, link):
             raise _moved_inside(f"the joint of body '{link.name}'", f"bodies.{link.name}.joint")
@@ -171,22 +171,24 @@ def _refuse_placeless_forces(system: System) -> None:
             raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
 
 
-def _refuse_placeless_ties(system: System) -> None:
-    drives = {tie for ties in driving_ties(system.scope.model).values() for tie in ties}  # whose place is a joint
+def _refuse_placeless_constraints(system: System) -> None:
+    drives = {
+        constraint for constraints in driving_constraints(system.scope.model).values() for constraint in constraints
+    }  # whose place is a joint
     idle = _idle_rows(system)
-    for row in (row for row in system.ties.rows if row.tie not in drives and row.label not in idle):
+    for row in (row for row in system.constraints.rows if row.constraint not in drives and row.label not in idle):
         points = (push for push in row.pushes if isinstance(push, PointForce))
         slide = sum((slide_power(system.motion, push) for push in points), start=0)
         seen_alike = row.carrier is None and not is_zero(row.direct)
         own = row.direct - slide if seen_alike else 0  # a row of material points sees no slide
         if row.status != "identical" and (not row.pushes or _pushes_along(system, own)):
             raise DerivationError(
-                f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",
-                f"constraints.{row.tie}",
-                "give it as a tie between bodies",
+                f"the constraint '{row.constraint}' acts on coordinates and at no place: reactions do not follow",
+                f"constraints.{row.constraint}",
+                "give it as a constraint between bodies",
             )
         if row.pushes and _pushes_along(system, row.direct):
-            raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
+            raise _moved_inside(f"the constraint '{row.constraint}'", f"constraints.{row.constraint}")
 
 
 def _idle_rows(system: System) -> set[str]:
@@ -194,13 +196,13 @@ def _idle_rows(system: System) -> set[str]:
 
     Along such a coordinate the row alone acts: lam = 0.
     """
-    if all(row.pushes for row in system.ties.rows):
+    if all(row.pushes for row in system.constraints.rows):
         return set()
     free = system.free or system
     Q = generalized_forces(free.loads)
     moved = [any(not is_zero(B[i][k]) for B in free.motion.B for i in range(6)) for k in range(len(Q))]
     alone = [k for k, force in enumerate(Q) if is_zero(force) and not moved[k]]
-    left = {row.label: line for row, line in zip(free.ties.closing, free.ties.J, strict=True)}
+    left = {row.label: line for row, line in zip(free.constraints.closing, free.constraints.J, strict=True)}
     found = balances_of_nodes(free)
     left = {label: line for label, line in left.items() if label not in found}
     while more := {
@@ -218,14 +220,16 @@ def _idle_rows(system: System) -> set[str]:
 
 def balances_of_nodes(free: System) -> set[str]:
     """The labels of rows that say 0 = Q_k of coordinates that move no mass: nothing else acts along these, lam = 0."""
-    T, Q, ties = kinetic_energy(free.motion), generalized_forces(free.loads), free.ties
+    T, Q, constraints = kinetic_energy(free.motion), generalized_forces(free.loads), free.constraints
     idle = [k for k, u in enumerate(free.symbols.u) if is_zero(derivative(T, u)) and not is_zero(Q[k])]
     rows: dict[int, str] = {}
-    for row, line, sigma in zip(ties.closing, ties.J, ties.sigma, strict=True) if idle else ():
+    for row, line, sigma in zip(constraints.closing, constraints.J, constraints.sigma, strict=True) if idle else ():
         rate = sum((x * u for x, u in zip(line, free.symbols.u, strict=True)), start=sigma)
         law = rate if row.gap is None else row.gap
         rows |= {k: row.label for k in idle if not row.pushes and k not in rows and holds_identically(law - Q[k])}
-    others = [line for row, line in zip(ties.closing, ties.J, strict=True) if row.label not in rows.values()]
+    others = [
+        line for row, line in zip(constraints.closing, constraints.J, strict=True) if row.label not in rows.values()
+    ]
     touched = {k for k in rows if any(not is_zero(line[k]) for line in others)}
     return set() if touched else set(rows.values())
 
@@ -364,13 +368,13 @@ def refuse_friction(balance: Balance) -> None:
 
 
 def is_balanced(balance: Balance, solution: Solution) -> bool:
-    """Whether what the unknowns and reactions cannot change vanishes, wherever the ties hold."""
+    """Whether what the unknowns and reactions cannot change vanishes, wherever the constraints hold."""
     left = solution.left
     if all(holds_identically(x) for x in left):
         return True
     if not balance.system.symbols.q:
         return False
-    state = generic_state(balance.system.ties)
+    state = generic_state(balance.system.constraints)
     try:
         sizes = [abs(x) for x in evaluate(left, state, fifty_digits())]
     except NoValue:
@@ -379,10 +383,14 @@ def is_balanced(balance: Balance, solution: Solution) -> bool:
 
 
 def unbalanced(balance: Balance, solution: Solution) -> DerivationError:
-    """No equilibrium: more freedoms than the unknowns can hold."""
+    """No equilibrium: more degrees of freedom than the unknowns can hold."""
     names = ", ".join(f"'{p.name}'" for p in balance.unknowns)
-    freedoms = len(balance.system.symbols.u) - len(balance.system.ties.closing)
-    how_many = f"; there are {freedoms} freedoms for {len(balance.unknowns)}" if freedoms > 0 else ""
+    degrees_of_freedom = len(balance.system.symbols.u) - len(balance.system.constraints.closing)
+    how_many = (
+        f"; there are {degrees_of_freedom} degrees of freedom for {len(balance.unknowns)}"
+        if degrees_of_freedom > 0
+        else ""
+    )
     return DerivationError(
         f"the bodies are not in balance at rest, whatever {names} may be{how_many}",
         "unknowns",
@@ -393,7 +401,8 @@ def unbalanced(balance: Balance, solution: Solution) -> DerivationError:
 # -------- ground balance --------------------------------------------------------------------------------------
 # Balance -> the force equations of bodies that no joint holds, along the ground's axes.
 #
-# The axes of a body spin with it. Where ties alone push it, along directions that do not, its force equations are
+# The axes of a body spin with it. Where constraints alone push it, along directions that do not, its force equations
+# are
 # short in the ground's axes, R (sum of forces) = R m a, and their solutions divide by nothing that vanishes as the
 # body turns.
 
@@ -404,7 +413,7 @@ def along_ground(balance: Balance, rows: list[SparseRow], needed: list[Scalar]) 
     if balance.system.scope.model.space == "plane" or any(c.frictional for c in balance.components):
         return rows, needed
     for i, link in enumerate(balance.system.motion.links):
-        if not _held_by_ties_alone(balance, i):
+        if not _held_by_constraints_alone(balance, i):
             continue
         three = [n for n, e in enumerate(balance.equations) if e.body == link.name and e.direction < 3]
         if len(three) == 3:
@@ -412,9 +421,9 @@ def along_ground(balance: Balance, rows: list[SparseRow], needed: list[Scalar]) 
     return rows, needed
 
 
-def _held_by_ties_alone(balance: Balance, i: int) -> bool:
+def _held_by_constraints_alone(balance: Balance, i: int) -> bool:
     kinds = {c.kind for c in balance.components if any(effect.link == i for effect in c.effects)}
-    return kinds == {"tie"}
+    return kinds == {"constraint"}
 
 
 def _turn(link: BodyLink, three: Sequence[int], rows: list[SparseRow], needed: list[Scalar]) -> None:
@@ -442,7 +451,7 @@ def _work(scalars: Iterable[Scalar]) -> int:
 #     F_i = f_i + sum of R_j F_j,    N_i = n_i - arm x f_i + sum of (R_j N_j + p_j x R_j F_j)      j: the bodies on i
 #
 # In these what acts between bodies that are carried is absent: a joint's own reaction stands there alone, along axes
-# that do not turn against it, beside ties with other bodies. So elimination finds numbers where the equations of
+# that do not turn against it, beside constraints with other bodies. So elimination finds numbers where the equations of
 # single bodies have sines and cosines, which vanish at some state.
 
 
@@ -518,7 +527,7 @@ def _carried(links: Sequence[BodyLink]) -> list[frozenset[int]]:
 
 def _is_inside(balance: Balance, j: int, bodies: Iterable[int]) -> bool:
     """Whether a joint's component acts between two of these bodies: with one another it has no force and no moment."""
-    if not 0 <= j < len(balance.components) or balance.components[j].kind == "tie":
+    if not 0 <= j < len(balance.components) or balance.components[j].kind == "constraint":
         return False
     touched = {effect.link for effect in balance.components[j].effects}
     return len(touched) == 2 and touched <= {*bodies}

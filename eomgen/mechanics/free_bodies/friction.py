@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_factors, regular_rows
 from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
@@ -21,7 +22,6 @@ from eomgen.mechanics.free_bodies.solution import (
     values_at_a_state,
 )
 from eomgen.mechanics.free_bodies.wrenches import Component, joint_friction, normals_of_round, sliding_friction
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.formula import function, inner, over, selected, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
@@ -47,7 +47,7 @@ class FrictionContact:
     """A contact with friction.
 
     Args:
-        name: the tie, or the body on a path.
+        name: the constraint, or the body on a path.
         component: index of its normal reaction among the components of the reactions; of a
             bilateral contact that of its friction.
         along: generalized force for a unit of friction, dv/du.
@@ -114,7 +114,7 @@ def push_sizes(system: System) -> dict[str, Scalar]:
 
 def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
     """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line."""
-    rows = [row for row in system.ties.rows if row.shares and row.friction is not None]
+    rows = [row for row in system.constraints.rows if row.shares and row.friction is not None]
     speeds = [row.sliding for row in rows if type(row.sliding) is Node and row.sliding.op == "sqrt"]
     return substituted(tuple(scalars), {v: function("max", v, LEAST) for v in speeds}) if speeds else tuple(scalars)
 
@@ -126,7 +126,7 @@ def has_friction(system: System) -> bool:
 
 def frictions(system: System) -> list[tuple[str, Scalar, Scalar]]:
     """(contact, the friction of a unit of N, the sliding velocity) of every contact with friction."""
-    found = [(row.tie, row.friction, row.sliding) for row in system.ties.rows]
+    found = [(row.constraint, row.friction, row.sliding) for row in system.constraints.rows]
     for link in system.motion.links:
         found.append((link.name, joint_friction(system, link), link.s_rate[0] if link.s_rate else 0))
     return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
@@ -147,7 +147,7 @@ def friction_contacts(system: System, components: Sequence[Component]) -> list[F
 
 def round_symbols(system: System) -> dict[str, Node]:
     """A symbol for |N| of every bilateral contact with friction, by its name."""
-    on_lines = [row.tie for row in system.ties.rows if row.round and row.friction is not None]
+    on_lines = [row.constraint for row in system.constraints.rows if row.round and row.friction is not None]
     if system.scope.model.space == "space":
         on_lines += [link.name for link in system.motion.links if joint_friction(system, link) is not None]
     return {name: system.scope.graph.symbol(f"|N|({name})") for name in on_lines}
@@ -314,14 +314,16 @@ def _multiplier(system: System, component: Component, name: str, kept: Sequence[
     Raises:
         DerivationError: its row follows from others, so that it is indeterminate.
     """
-    closing, label = system.ties.closing, (component.owner, component.number)
-    rows = [i for i, row in enumerate(closing) if component.kind == "tie" and (row.tie, row.number) == label]
+    closing, label = system.constraints.closing, (component.owner, component.number)
+    rows = [
+        i for i, row in enumerate(closing) if component.kind == "constraint" and (row.constraint, row.number) == label
+    ]
     if not rows:
         return None
     if rows[0] not in kept:
         raise DerivationError(
             f"the normal reaction of '{name}', which has friction, is indeterminate",
-            mend="take a redundant constraint away, or its friction",
+            fix="take a redundant constraint away, or its friction",
         )
     return kept.index(rows[0])
 

@@ -10,16 +10,16 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import is_placed
 from eomgen.mechanics.constraints.rows import Row, holds_identically
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, efforts_of
 from eomgen.mechanics.kinematics.loads import in_ground_axes
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
-from eomgen.model.constraints.link import ends_asked
+from eomgen.model.constraints.link import ends_requested
 from eomgen.model.constraints.row import AXIS_NAMES
 from eomgen.model.forces.load import PointForce
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative
 from eomgen.symbolic.expression.formula import Call, Expression, Reference
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -37,7 +37,7 @@ class NamedReaction:
 
     Args:
         name: as an output asks for it.
-        owner: the tie, or the body whose joint it is.
+        owner: the constraint, or the body whose joint it is.
         unit: FORCE or COUPLE.
         combination: {index of the component: factor}.
         given: what drive, spring, damper and rotor of the joint do; of a drive, less what forces do on points that
@@ -59,7 +59,7 @@ def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
 
 def name_of(call: Call, names: Container[str]) -> str:
     """The name in a table by which it is asked for: the ends of a member in either order."""
-    ends = ends_asked(call) if call.name == "tension" and call.args else None
+    ends = ends_requested(call) if call.name == "tension" and call.args else None
     either = () if ends is None else (ends, ends[::-1])
     written = (f"tension({argument_name(call.args[0])}, {a}-{b})" for a, b in either)
     return next((name for name in written if name in names), str(call))
@@ -72,15 +72,17 @@ def argument_name(argument: Reference | Expression) -> str:
 
 def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
-    ties = [(j, c) for j, c in mine if c.kind != "drive"]
+    constraints = [(j, c) for j, c in mine if c.kind != "drive"]
     plane = balance.system.scope.model.space == "plane"
-    wrenches = any(c.is_wrench for _, c in ties)
-    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y") and not c.is_wrench)]
-    if len(apart) < len(ties):
+    wrenches = any(c.is_wrench for _, c in constraints)
+    apart = [
+        (j, c) for j, c in constraints if c.label in OWN or (plane and c.label not in ("x", "y") and not c.is_wrench)
+    ]
+    if len(apart) < len(constraints):
         along = (0, 1) if plane else (0, 1, 2)
-        for side in dict.fromkeys(("", *(c.side for _, c in ties))):
+        for side in dict.fromkeys(("", *(c.side for _, c in constraints))):
             yield from _vector(balance, owner, side, "", FORCE, along)
-        if not plane and any(_has_couple(c) for _, c in ties):
+        if not plane and any(_has_couple(c) for _, c in constraints):
             yield from _vector(balance, owner, "", "couple_", COUPLE, along)
         if plane and wrenches:
             (about_z,) = _vector(balance, owner, "", "couple_", COUPLE, (2,))
@@ -145,24 +147,25 @@ def _name(balance: Balance, component: Component) -> str:
 
 
 def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]:
-    """What drives a coordinate q: the work of all reactions on the bodies as q alone changes, that of ties left out.
+    """What drives a coordinate q: the work of all reactions on the bodies as q alone changes, that of constraints left
+    out.
 
     sum over joints of D_k ds_k/dq, s_k the variable of the joint; of joints whose seat it moves what the seat takes;
     of what is placed all that its place takes;
-    of ties sum f . dp/dq - dphi/dq, what acts on places that it moves and that belong to no body.
+    of constraints sum f . dp/dq - dphi/dq, what acts on places that it moves and that belong to no body.
     """
     if not component.side:
         return {j: 1}
     motion = balance.system.motion
     (q,) = (x for x in motion.scope.symbols.q if x.name == component.side)
-    rows = {(row.tie, row.number): row for row in balance.system.ties.rows if row.gap is not None}
+    rows = {(row.constraint, row.number): row for row in balance.system.constraints.rows if row.gap is not None}
     found: dict[int, Scalar] = {}
     for i, c in enumerate(balance.components):
         if c.kind == "drive" and c.side == q.name:
             found[i] = derivative(motion.link(c.owner).s[c.number - 1], q)
         elif c.kind == "joint" and (is_placed(link := motion.link(c.owner)) or _moves_seat(link, q)):
             found[i] = _work(motion, c.effects, q)
-        elif c.kind == "tie" and c.bilateral_friction is None and (c.owner, c.number) in rows:
+        elif c.kind == "constraint" and c.bilateral_friction is None and (c.owner, c.number) in rows:
             found[i] = _left_out(balance, rows, rows[c.owner, c.number], q)
     return {i: k for i, k in found.items() if not is_zero(k)}
 
@@ -192,7 +195,8 @@ def _left_out(balance: Balance, rows: Mapping[tuple[str, int], Row], row: Row, q
         return _left_of_row(balance, row, q)
     k, R = AXIS_NAMES.index(row.component), balance.system.motion.link(row.carrier).pose.R
     beside = (
-        rows.get((row.tie, row.number - k + n)) for n in range(2 if balance.system.scope.model.space == "plane" else 3)
+        rows.get((row.constraint, row.number - k + n))
+        for n in range(2 if balance.system.scope.model.space == "plane" else 3)
     )
     parts = ((R[k][n], _left_of_row(balance, each, q)) for n, each in enumerate(beside) if each is not None)
     return sum((x * left for x, left in parts if not is_zero(left)), start=0)

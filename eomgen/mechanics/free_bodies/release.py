@@ -1,7 +1,9 @@
-"""System, tie -> Model without it: the next phase of a motion in which a contact has ended.
+"""System, constraint -> Model without it: the next phase of a motion in which a contact has ended.
 
-Where the coordinates satisfy the tie by themselves they cannot describe what follows. Then the body that the tie held,
-which stands where it is `placed`, is freed along the tie's push: a new coordinate, the displacement from the contact.
+Where the coordinates satisfy the constraint by themselves they cannot describe what follows. Then the body that the
+constraint held,
+which stands where it is `placed`, is freed along the constraint's push: a new coordinate, the displacement from the
+contact.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ from __future__ import annotations
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rows import Row, holds_identically
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
@@ -17,7 +20,6 @@ from eomgen.model.fields import Table
 from eomgen.model.forces.load import PointForce
 from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate, Model
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.formula import Expression, over
 from eomgen.symbolic.expression.node import is_zero
@@ -29,34 +31,38 @@ DISPLACEMENTS = {"n": "gap", "tension": "gap", "t": "slip", "s": "slip"}
 """What a body can do along a row of forces that has ended."""
 
 
-def released(system: System, tie: str) -> tuple[Model, ContactModes]:
-    """The model and the modes of the phase after the tie has ended; the coordinates keep their names.
+def released(system: System, constraint: str) -> tuple[Model, ContactModes]:
+    """The model and the modes of the phase after the constraint has ended; the coordinates keep their names.
 
-    The tie stays in the model, open. New coordinates, if they are needed, start at 0 and stand last.
+    The constraint stays in the model, open. New coordinates, if they are needed, start at 0 and stand last.
 
     Raises:
-        DerivationError: nothing that is `placed` can be freed from the tie.
+        DerivationError: nothing that is `placed` can be freed from the constraint.
     """
-    rows = [row for row in system.ties.rows if row.tie == tie]
+    rows = [row for row in system.constraints.rows if row.constraint == constraint]
     model = _with_free_coordinates(system.scope.model, [row.eliminates for row in rows if row.eliminates])
     for row in rows:
         if row.identical and row.component in DISPLACEMENTS:
             model = _freed(system, model, row)
-    modes = {name: mode for name, mode in system.modes.items() if name != tie}
-    return model, {**modes, tie: ContactMode(closed=False)}
+    modes = {name: mode for name, mode in system.modes.items() if name != constraint}
+    return model, {**modes, constraint: ContactMode(closed=False)}
 
 
 def _with_free_coordinates(model: Model, names: list[str]) -> Model:
-    """The model with dependent coordinates free that only the ended tie determined."""
+    """The model with dependent coordinates free that only the ended constraint determined."""
     table = {
         name: altered(part, dependent=False) if name in names else part for name, part in model.coordinates.items()
     }
     return altered(model, coordinates=Table(table)) if names else model
 
 
-def stays_straight(system: System, tie: str) -> bool:
-    """Whether each displacement that releases the tie is along its own push, whatever else is released."""
-    rows = [row for row in system.ties.rows if row.tie == tie and row.identical and row.component in DISPLACEMENTS]
+def stays_straight(system: System, constraint: str) -> bool:
+    """Whether each displacement that releases the constraint is along its own push, whatever else is released."""
+    rows = [
+        row
+        for row in system.constraints.rows
+        if row.constraint == constraint and row.identical and row.component in DISPLACEMENTS
+    ]
     return all(_placed(system, row).straight for row in rows)
 
 
@@ -80,7 +86,7 @@ class Leave:
 def _freed(system: System, model: Model, row: Row) -> Model:
     """The model in which the body that the row pushes is displaced where the row alone kept it from going."""
     leave = _placed(system, row)
-    model, name = _with_coordinate(model, row.tie, DISPLACEMENTS[row.component])
+    model, name = _with_coordinate(model, row.constraint, DISPLACEMENTS[row.component])
     joint: Any = model.bodies[leave.link.name].joint
     at = joint.at or (Expression.number(0),) * (2 if model.space == "plane" else 3)
     changes: dict[str, Any] = {
@@ -90,20 +96,20 @@ def _freed(system: System, model: Model, row: Row) -> Model:
         )
     }
     if leave.turns:
-        model, turn = _with_coordinate(model, row.tie, "turn")
+        model, turn = _with_coordinate(model, row.constraint, "turn")
         changes["angle"] = as_expression(turn if joint.angle is None else f"({joint.angle.text}) + {turn}")
     body = altered(model.bodies[leave.link.name], joint=altered(joint, **changes))
     return altered(model, bodies=Table({**model.bodies, leave.link.name: body}))
 
 
-def _with_coordinate(model: Model, tie: str, what: str) -> tuple[Model, str]:
+def _with_coordinate(model: Model, constraint: str, what: str) -> tuple[Model, str]:
     """The model with a displacement from a contact that has ended, and its name."""
     taken = {*model.parameters, *model.coordinates, *model.speeds, *model.inputs, *model.unknowns}
-    name = f"{tie}_{what}"
+    name = f"{constraint}_{what}"
     while name in taken:
         name += "_"
     zero = Expression.number(0)
-    displaced = Coordinate(start=zero, speed=zero, about=f"displacement from {tie}, which has ended")
+    displaced = Coordinate(start=zero, speed=zero, about=f"displacement from {constraint}, which has ended")
     return altered(model, coordinates=Table({**model.coordinates, name: displaced})), name
 
 
@@ -111,14 +117,15 @@ def _placed(system: System, row: Row) -> Leave:
     """The placed body by which the row can be opened, and its displacement.
 
     d is the push n of the row less its part along what else holds the body identically, with n . d = 1. Where nothing
-    of it is left (two parallel wires) the body goes along n and turns, and the other ties hold it by multipliers.
+    of it is left (two parallel wires) the body goes along n and turns, and the other constraints hold it by
+    multipliers.
     """
     pushed = _pushed(system, row)
     for link, n in pushed:
         others = [
             m
-            for other in system.ties.rows
-            if other.identical and other.tie != row.tie
+            for other in system.constraints.rows
+            if other.identical and other.constraint != row.constraint
             for on, m in _pushed(system, other)
             if on is link
         ]
@@ -131,8 +138,8 @@ def _placed(system: System, row: Row) -> Leave:
         if system.scope.model.space == "plane":
             return Leave(link, vector_of(readable_all(n)), straight=False, turns=True)
     raise DerivationError(
-        f"'{row.tie}' ends, and no body can leave it: the coordinates describe contact only",
-        f"constraints.{row.tie}",
+        f"'{row.constraint}' ends, and no body can leave it: the coordinates describe contact only",
+        f"constraints.{row.constraint}",
         "place the body by coordinates that can leave the contact",
     )
 

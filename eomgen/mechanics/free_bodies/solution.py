@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rank import rank_of_ties
+from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.balance import (
@@ -137,7 +137,7 @@ def combined_reaction(balance: Balance, solution: Solution, combination: Combina
         raise Indeterminate(
             f"{name} is statically indeterminate: the balance of rigid bodies leaves it open"
             + (", together with " + ", ".join(partners) if partners else ""),
-            mend="take a redundant tie away, or let something give",
+            fix="take a redundant constraint away, or let something give",
         )
     return total
 
@@ -201,18 +201,23 @@ def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
         return lambda scalars, state=state: evaluate(scalars, state, fifty_digits())
     raise DerivationError(
         f"no state with values for the reactions was found in {TRIES} tries",
-        mend="give a start, and parameters, at which they have values",
+        fix="give a start, and parameters, at which they have values",
     )
 
 
 def _generic_state(system: System, seed: int) -> dict[Node, Any]:
-    """A state off any special position, parameters off any special value unless the ties are redundant for these alone.
+    """A state off any special position, parameters off any special value unless the constraints are redundant for
+    these alone.
 
     Two cranks are a parallelogram only where they have one length: then the values are the model's.
     """
-    own = generic_state(system.ties, seed)
+    own = generic_state(system.constraints, seed)
     try:
-        shaken = generic_state(system.ties, seed, shaken=True)
-        return shaken if rank_of_ties(system.ties, shaken) == rank_of_ties(system.ties, own) else own
+        shaken = generic_state(system.constraints, seed, shaken=True)
+        return (
+            shaken
+            if rank_of_constraints(system.constraints, shaken) == rank_of_constraints(system.constraints, own)
+            else own
+        )
     except (DerivationError, NoValue):
         return own

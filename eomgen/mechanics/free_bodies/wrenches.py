@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.rank import is_placed
 from eomgen.mechanics.constraints.rows import Row
@@ -19,7 +20,6 @@ from eomgen.mechanics.kinematics.scene import CLOSED, friction_factor
 from eomgen.model.driven import driven_coordinates
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, State, is_zero
@@ -43,7 +43,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 
 # -------- unit wrenches ---------------------------------------------------------------------------------------
-# Motion -> Effects: what forces, couples, joints and ties do to each body, in the axes of its equations.
+# Motion -> Effects: what forces, couples, joints and constraints do to each body, in the axes of its equations.
 #
 # The axes are the ground's in the plane, the body's own in space.
 
@@ -130,7 +130,7 @@ def joint_effects(system: System) -> list[Effect]:
 
 
 def efforts_of(system: System, body: str) -> list[Effect]:
-    """What drive, spring, damper and rotor of a body's joint do, on the body first; a tie has none."""
+    """What drive, spring, damper and rotor of a body's joint do, on the body first; a constraint has none."""
     if body not in system.motion.index:
         return []
     axes = Axes(system.motion)
@@ -204,7 +204,7 @@ def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]
 
 
 # -------- components ------------------------------------------------------------------------------------------
-# System -> Components: every scalar reaction of joints and ties, and what a unit of it does to the bodies.
+# System -> Components: every scalar reaction of joints and constraints, and what a unit of it does to the bodies.
 
 
 EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -230,10 +230,10 @@ class Component:
     """One scalar reaction.
 
     Args:
-        owner: the tie, or the body whose joint it is.
-        kind: "tie", "joint", or "drive": what moves a driven coordinate at a joint.
+        owner: the constraint, or the body whose joint it is.
+        kind: "constraint", "joint", or "drive": what moves a driven coordinate at a joint.
         label: "x", "y", "z", "n", "t", "couple", "couple x", "wrench 1", "tension", "drive"; "" of a row of no place.
-        number: its row in the tie, or its place among the joint's components, from 1.
+        number: its row in the constraint, or its place among the joint's components, from 1.
         effects: of a unit of it, on the child or the first-named body first.
         friction: along each direction in which its contact slides.
         side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
@@ -279,8 +279,8 @@ class Component:
 
 
 def components_of(system: System, axes: Axes) -> tuple[Component, ...]:
-    """All of them: those of the joints, what drives given motions, those of the ties."""
-    return (*_joint_components(system, axes), *_tie_components(system, axes))
+    """All of them: those of the joints, what drives given motions, those of the constraints."""
+    return (*_joint_components(system, axes), *_constraint_components(system, axes))
 
 
 # -- of joints -------------------------------------------------------------------------------------
@@ -384,7 +384,7 @@ def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
     carries = any(other.parent == motion.index[link.name] for other in motion.links)
     if shape is None or not shape.is_point or carries or link.point != ZERO:
         return False
-    loads = (*system.loads.placed, *(push for row in system.ties.rows for push in (*row.pushes, *row.tangent)))
+    loads = (*system.loads.placed, *(push for row in system.constraints.rows for push in (*row.pushes, *row.tangent)))
     mine = [load for load in loads if link.name == (load.body if isinstance(load, Couple) else load.place[0])]
     return all(is_zero(effect.six[5]) for load in mine for effect in effects_of_load(axes, load))
 
@@ -418,25 +418,27 @@ def sliding_friction(system: System, component: Component) -> tuple[Scalar, Scal
         factor, sliding = joint_friction(system, link), link.s_rate[0]
     else:
         number = component.number - 1 if component.bilateral_friction is not None else component.number
-        row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, number))
+        row = next(r for r in system.constraints.rows if (r.constraint, r.number) == (component.owner, number))
         factor, sliding = row.friction, row.sliding
     assert factor is not None, "what has an effect of friction has its factor"
     return factor, sliding
 
 
-# -- of ties ---------------------------------------------------------------------------------------
+# -- of constraints ---------------------------------------------------------------------------------------
 
 
-def _tie_components(system: System, axes: Axes) -> list[Component]:
+def _constraint_components(system: System, axes: Axes) -> list[Component]:
     found = []
-    for row in system.ties.rows:
-        effects = _tie_effects(axes, row)
+    for row in system.constraints.rows:
+        effects = _constraint_effects(axes, row)
         if not effects:
             continue
-        found.append(_of_tie(system, row, effects, () if row.round else _friction(axes, row)))
+        found.append(_of_constraint(system, row, effects, () if row.round else _friction(axes, row)))
         if row.round and row.friction is not None:
             along = tuple(e for push in row.tangent for e in effects_of_load(axes, push))
-            found.append(Component(row.tie, "tie", "t", row.number + 1, along, bilateral_friction=row.friction))
+            found.append(
+                Component(row.constraint, "constraint", "t", row.number + 1, along, bilateral_friction=row.friction)
+            )
     return found
 
 
@@ -446,15 +448,15 @@ def seen_by_carriers(system: System) -> dict[int, tuple[str, Component]]:
     if motion.scope.model.space == "plane":
         return {}
     seen: dict[tuple[str, int], tuple[str, Component]] = {}
-    for row in system.ties.rows:
+    for row in system.constraints.rows:
         if row.carrier is not None and row.component in ("x", "y", "z"):
-            effects = _tie_effects(Axes(motion.seen_from(row.carrier)), row)
-            seen[row.tie, row.number] = (row.carrier, _of_tie(system, row, effects, ()))
-    rows = [(c.owner, c.number) if c.kind == "tie" else ("", 0) for c in components_of(system, Axes(motion))]
+            effects = _constraint_effects(Axes(motion.seen_from(row.carrier)), row)
+            seen[row.constraint, row.number] = (row.carrier, _of_constraint(system, row, effects, ()))
+    rows = [(c.owner, c.number) if c.kind == "constraint" else ("", 0) for c in components_of(system, Axes(motion))]
     return {j: seen[row] for j, row in enumerate(rows) if row in seen}
 
 
-def _tie_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
+def _constraint_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
     return tuple(e for push in row.pushes for e in effects_of_load(axes, push))
 
 
@@ -475,7 +477,9 @@ def _friction(axes: Axes, row: Row) -> tuple[FrictionShare, ...]:
     )
 
 
-def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[FrictionShare, ...]) -> Component:
+def _of_constraint(
+    system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[FrictionShare, ...]
+) -> Component:
     """The component; of a hinge of several bodies, the force on the one that the row adds.
 
     Where the first-named point is the ground's, it is the force on the body.
@@ -483,18 +487,19 @@ def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tup
     first = row.pushes[0]
     held = row.component in ("x", "y", "z")
     from_ground = isinstance(first, PointForce) and first.place[0] is None
-    points = getattr(system.scope.model.constraints.get(row.tie), "points", None) or ()
+    points = getattr(system.scope.model.constraints.get(row.constraint), "points", None) or ()
     if held and (len(points) > 2 or from_ground):
         side = system.motion.links[effects[-1].link].name if len(points) > 2 else ""
         opposite = tuple(e.times(-1) for e in effects)
-        return Component(row.tie, "tie", row.component, row.number, opposite, (), side)
-    return Component(row.tie, "tie", row.component, row.number, effects, friction, row.part)
+        return Component(row.constraint, "constraint", row.component, row.number, opposite, (), side)
+    return Component(row.constraint, "constraint", row.component, row.number, effects, friction, row.part)
 
 
 # -------- placements ------------------------------------------------------------------------------------------
 # System, what else reacts -> Components: the wrenches that hold bodies which are placed by given motions.
 #
-# What is `placed` is geometry: where its places hold free coordinates alone, ties that are named hold it. Where they
+# What is `placed` is geometry: where its places hold free coordinates alone, constraints that are named hold it. Where
+# they
 # move with time, something moves it as given. That is a wrench which does no work along any free coordinate q,
 #
 #     w = sum c_k d_k,   d_k the wrench that does work on the variable s_k alone,   sum c_k ds_k/dq = 0
@@ -511,14 +516,14 @@ def placements_of(system: System, axes: Axes, others: Sequence[Component]) -> tu
     """Those of every body that is placed by a given motion.
 
     Args:
-        others: the reactions of all joints and ties.
+        others: the reactions of all joints and constraints.
     Raises:
-        MissingValues, DerivationError: the ties do not close near the start.
+        MissingValues, DerivationError: the constraints do not close near the start.
     """
     given = {link.name: ways for link in axes.motion.links if (ways := _free_of_work(system, link))}
     if not given:
         return ()
-    numbers = _Numbers(axes, generic_state(system.ties))
+    numbers = _Numbers(axes, generic_state(system.constraints))
     held = numbers.columns([(*c.effects, *c.friction_effects) for c in others])
     found: list[Component] = []
     for name, ways in given.items():

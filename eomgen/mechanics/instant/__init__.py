@@ -1,1 +1,1 @@
-"""Mechanisms at one instant: freed bodies under their ties, given velocities, centres of rotation."""
+"""Mechanisms at one instant: freed bodies under their constraints, given velocities, centres of rotation."""

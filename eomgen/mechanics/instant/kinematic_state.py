@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import is_particle
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.instant.mechanism import FoundPoint, Mechanism, PointPair, constructed
@@ -26,7 +27,6 @@ from eomgen.mechanics.kinematics.motion import (
 )
 from eomgen.mechanics.start.exact import Worth
 from eomgen.model.trusses import is_node
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.formula import sqrt
@@ -57,10 +57,10 @@ class KinematicState:
     """How a system moves at one instant, by scalars of the parameters.
 
     Args:
-        system: its bodies and ties.
+        system: its bodies and constraints.
         moving: what stands in place of coordinates, speeds, time and inputs.
         accelerated: the same, the accelerations too; {} where they are not known.
-        freedoms: how many there are by rank.
+        degrees of freedom: how many there are by rank.
         formula: the same by counting, a number and its text.
         when: the instant in words.
         given: what is given of velocities and accelerations, as it was written.
@@ -74,7 +74,7 @@ class KinematicState:
     system: System
     moving: State
     accelerated: State
-    freedoms: int
+    degrees_of_freedom: int
     formula: tuple[int, str]
     when: str
     given: tuple[str, ...] = ()

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import combinations
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import is_particle
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.system import System
@@ -21,7 +22,6 @@ from eomgen.mechanics.kinematics.motion import field_of
 from eomgen.mechanics.start.exact import Worth
 from eomgen.model.part import leaves_of
 from eomgen.model.trusses import is_node
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.formula import over
@@ -133,7 +133,7 @@ class Mechanism:
 # -------- construction ----------------------------------------------------------------------------------------
 # Mechanism -> Found: how a drawing finds its centres of rotation, one after the other, as two lines that meet.
 #
-# A tie between two bodies that pushes along a line lets them turn about points of that line only: the power of a
+# A constraint between two bodies that pushes along a line lets them turn about points of that line only: the power of a
 # force (f_x, f_y) with moment tau about the origin is l . c with l = (-f_y : f_x : tau), so the centre c is on l. A
 # pure couple is the line at infinity. And of three bodies the three centres are on one line (Aronhold, Kennedy). All
 # is projective: lines may meet at infinity.
@@ -150,7 +150,7 @@ class LineOf:
 
     Args:
         line: homogeneous.
-        owner: the tie or joint that makes it, "" where it joins two centres.
+        owner: the constraint or joint that makes it, "" where it joins two centres.
         kind: of the component: "x", "y", "n", "tension", "couple", ...
         through: the two centres that it joins.
     """
@@ -181,7 +181,7 @@ class FoundPoint:
 
     @property
     def hinge(self) -> str:
-        """The one tie or joint that holds the point; "" where two lines of different origin meet."""
+        """The one constraint or joint that holds the point; "" where two lines of different origin meet."""
         owners = {line.owner for line in self.lines}
         plain = all(line.kind != "couple" for line in self.lines)
         return owners.pop() if len(owners) == 1 and plain and self.lines[0].owner else ""
@@ -250,7 +250,7 @@ class _Search:
 
     @cached_property
     def own_lines(self) -> dict[PointPair, list[LineOf]]:
-        """The lines along which ties and joints push two blocks."""
+        """The lines along which constraints and joints push two blocks."""
         found: dict[PointPair, list[LineOf]] = {}
         axes = Axes(self.mechanism.system.motion)
         for component in components_of(self.mechanism.system, axes):
@@ -265,7 +265,8 @@ class _Search:
         return found
 
     def _wanders(self, component: Component) -> bool:
-        """Whether the seat of a joint, or a point that a tie names, moves in its body as the model says, or a tie has
+        """Whether the seat of a joint, or a point that a constraint names, moves in its body as the model says, or a
+        constraint has
         rates beside those of the bodies.
 
         There no point of the body is held, and the line of the push says nothing of velocities.
@@ -274,11 +275,11 @@ class _Search:
         if component.kind == "joint":
             link = motion.link(component.owner)
             return motion.moves((*link.before.p, *link.point))
-        rows = [row for row in self.mechanism.system.ties.rows if row.tie == component.owner]
+        rows = [row for row in self.mechanism.system.constraints.rows if row.constraint == component.owner]
         if any(row.number == component.number and not holds_identically(row.direct) for row in rows):
             return True
-        tie = motion.scope.model.constraints[component.owner]
-        points = (leaf.value for leaf in leaves_of(tie, ()) if getattr(leaf.rule, "of", "") == "point")
+        constraint = motion.scope.model.constraints[component.owner]
+        points = (leaf.value for leaf in leaves_of(constraint, ()) if getattr(leaf.rule, "of", "") == "point")
         return any(motion.moves(motion.place(point)[1]) for point in points)
 
     def _is_point(self, block: str) -> bool:

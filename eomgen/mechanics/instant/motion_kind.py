@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits
-from eomgen.mechanics.constraints.rank import freedoms
+from eomgen.mechanics.constraints.rank import degrees_of_freedom
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import VelocityField, axis_point, field_of, rotation_center
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.formula import over, sqrt
@@ -102,7 +102,7 @@ class Kinds:
         """The kind of motion of one body.
 
         Raises:
-            DerivationError: the ties do not close, or the motion is singular near the start.
+            DerivationError: the constraints do not close, or the motion is singular near the start.
         """
         field, vanish = field_of(self.system.motion, body), self.possible.vanish
         if vanish(*field.w):
@@ -219,10 +219,10 @@ def finite_center(field: VelocityField, whose: str) -> Vector:
         return rotation_center(field)
     if all(vanishes(x) for x in field.v):
         raise DerivationError(
-            f"{whose} is at rest: every point is a centre of rotation", mend="ask while the body turns"
+            f"{whose} is at rest: every point is a centre of rotation", fix="ask while the body turns"
         )
     raise DerivationError(
-        f"{whose} translates{_along(field.v)}: its centre of rotation is at infinity", mend="ask while the body turns"
+        f"{whose} translates{_along(field.v)}: its centre of rotation is at infinity", fix="ask while the body turns"
     )
 
 
@@ -319,15 +319,15 @@ class Constants:
         return (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
 
     def _states(self, moving: tuple[Node, ...]) -> Iterator[dict[Node, Scalar]]:
-        """Exact states: those with the coordinates of the start, and where nothing ties them any others."""
+        """Exact states: those with the coordinates of the start, and where nothing constraints them any others."""
         symbols = self.possible.system.symbols
         of_place = (symbols.t, *symbols.q)
         rates = [x for x in moving if x not in of_place]
-        tied = bool(self.possible.system.ties.closing) or self.possible.system.free is not None
+        constrained = bool(self.possible.system.constraints.closing) or self.possible.system.free is not None
         for value in TRIED[1:]:
             if all(q in self.start for q in symbols.q):
                 yield {**{x: self.start.get(x, 0) for x in of_place}, **dict.fromkeys(rates, value)}
-        if not tied:
+        if not constrained:
             for value in TRIED:
                 yield {**dict.fromkeys(of_place, value), **dict.fromkeys(rates, 1)}
 
@@ -368,7 +368,7 @@ def _turning(n: Vector, possible: Possible) -> tuple[Scalar, ...]:
 
 
 # -------- possible --------------------------------------------------------------------------------------------
-# System -> Possible: motions that the ties allow, to the third order, in numbers of 50 digits.
+# System -> Possible: motions that the constraints allow, to the third order, in numbers of 50 digits.
 #
 #     phi = 0,   J u + sigma = 0,   J a + gamma = 0,   J a' + d/dt(J a + gamma) at a' = 0 = 0
 #
@@ -412,7 +412,7 @@ class Possible:
         """Whether all of them are zero along every motion.
 
         Raises:
-            DerivationError: the ties do not close, or there is no state at which the scalars have values.
+            DerivationError: the constraints do not close, or there is no state at which the scalars have values.
         """
         left = [x for x in scalars if type(x) is Node or x != 0]
         return not left or all(self._vanish_at(left, state) for state in self.states)
@@ -422,7 +422,7 @@ class Possible:
             values = evaluate(scalars, state, fifty_digits())
         except (NoValue, ZeroDivisionError):
             raise DerivationError(
-                "the motion is singular near the start", "coordinates", mend="start apart from the dead centre"
+                "the motion is singular near the start", "coordinates", fix="start apart from the dead centre"
             ) from None
         return bool(max(map(abs, values)) < ZERO_AT_50)
 
@@ -432,11 +432,11 @@ class Possible:
         return tuple(self._state(Random(seed)) for seed in SEEDS)
 
     def _state(self, rng: Random) -> State:
-        ties, symbols = self.system.ties, self.system.symbols
-        state = generic_state(ties, rng, shaken=self.shaken)
+        constraints, symbols = self.system.constraints, self.system.symbols
+        state = generic_state(constraints, rng, shaken=self.shaken)
         state |= {node: of_50_digits(rng.uniform(-1, 1)) for node in self.jerks}
-        rows = tuple(row.velocity for row in ties.closing)
-        J = tuple(x for row in ties.J for x in row)
+        rows = tuple(row.velocity for row in constraints.closing)
+        J = tuple(x for row in constraints.J for x in row)
         for unknowns in (symbols.u, symbols.a, self.jerks):
             state = _closed(J, rows, unknowns, state)
             rows = self.rate(rows)
@@ -451,7 +451,7 @@ def _closed(J: Sequence[Scalar], rows: Sequence[Scalar], unknowns: Sequence[Node
     found = CORRECTED.root(_LinearRows(tuple(rows), slopes, tuple(unknowns)), state)
     if math.isnan(found.left):
         raise DerivationError(
-            "the motion is singular near the start", "coordinates", mend="start apart from the dead centre"
+            "the motion is singular near the start", "coordinates", fix="start apart from the dead centre"
         )
     return found.x
 
@@ -536,10 +536,11 @@ def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
 
 
 def parameters(kinds: Kinds) -> int:
-    """How many parameters move a system: its freedoms by rank, and the time where something moves as given."""
-    return freedoms(kinds.system.ties, kinds.possible.states[0]) + moves_by_itself(kinds.system)
+    """How many parameters move a system: its degrees of freedom by rank, and the time where something moves as
+    given."""
+    return degrees_of_freedom(kinds.system.constraints, kinds.possible.states[0]) + moves_by_itself(kinds.system)
 
 
 def moves_by_itself(system: System) -> bool:
     """Whether coordinates move as given."""
-    return not all(is_zero(x) for x in (*system.scope.nu, *system.ties.sigma))
+    return not all(is_zero(x) for x in (*system.scope.nu, *system.constraints.sigma))

@@ -7,6 +7,7 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import System, generalized_forces
 from eomgen.mechanics.free_bodies.balance import refuse_placeless
@@ -32,7 +33,6 @@ from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce,
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import GROUND
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, tangent
 from eomgen.symbolic.expression.formula import Call, Expression
@@ -47,13 +47,13 @@ from eomgen.symbolic.numeric.work import Work
 # hold the symbols a, in which they are linear.
 
 
-def asks_motion(formula: Expression) -> bool:
+def requests_motion(formula: Expression) -> bool:
     """Whether velocities or accelerations stand in a formula: functions of them, or rates of coordinates."""
     moves = any(call.name in FUNCTIONS and FUNCTIONS[call.name].moves for call in formula.calls)
     return moves or any(name.endswith("'") for name in formula.names)
 
 
-def asks_of(formula: Expression, source: str) -> bool:
+def requests_of(formula: Expression, source: str) -> bool:
     """Whether a formula calls functions that are found from this source."""
     return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)
 
@@ -81,7 +81,7 @@ class Quantities:
         if call.name not in FUNCTIONS:
             raise DerivationError(
                 f"'{call}': there is no function '{call.name}'",
-                mend="see docs/reference/outputs.md",
+                fix="see docs/reference/outputs.md",
             )
         return FUNCTIONS[call.name].value(self, call)
 
@@ -270,7 +270,7 @@ class Quantities:
         if effort is None:
             raise DerivationError(
                 f"force '{force}' acts neither between two points nor between two bodies",
-                mend="ask of a spring or a damper",
+                fix="ask of a spring or a damper",
             )
         return effort
 
@@ -293,15 +293,16 @@ class Quantities:
 
     def is_truss(self, name: str) -> bool:
         """Whether a name is that of a truss."""
-        tie = self.system.scope.model.constraints.get(name)
-        return tie is not None and tie.table == "trusses"
+        constraint = self.system.scope.model.constraints.get(name)
+        return constraint is not None and constraint.table == "trusses"
 
-    def multiplier(self, tie: str) -> Scalar:
-        """lam of a tie of one row; where it or another action has no place, as it stands in the equations of motion."""
-        rows = [row for row in self.system.ties.rows if row.tie == tie]
+    def multiplier(self, constraint: str) -> Scalar:
+        """lam of a constraint of one row; where it or another action has no place, as it stands in the equations of
+        motion."""
+        rows = [row for row in self.system.constraints.rows if row.constraint == constraint]
         if any(row.pushes for row in rows) and not self._acts_at_no_place:
-            return self.reactions.multiplier(tie)
-        return multiplier(self.system, tie)
+            return self.reactions.multiplier(constraint)
+        return multiplier(self.system, constraint)
 
     @cached_property
     def _acts_at_no_place(self) -> bool:
@@ -320,7 +321,7 @@ class Quantities:
         """The section forces along a body."""
         if body not in self.system.motion.index:
             raise DerivationError(
-                f"'{body}' is no body with section forces", mend="declare it as a rail or a beam: an axis and its ends"
+                f"'{body}' is no body with section forces", fix="declare it as a rail or a beam: an axis and its ends"
             )
         if body not in self._sections:
             self._sections[body] = section_forces(self.reactions, body)
@@ -350,11 +351,11 @@ class Quantities:
         if coordinate in turning:
             raise DerivationError(
                 f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no freedom",
-                mend="ask it of the speeds that the joint's `omega` names",
+                fix="ask it of the speeds that the joint's `omega` names",
             )
         raise DerivationError(
             f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom",
-            mend="ask for drive(...) of it",
+            fix="ask for drive(...) of it",
         )
 
     def _carried(self, system: System, scalar: Scalar) -> Scalar:
@@ -390,7 +391,7 @@ def energy_of_force(system: System, name: str | None = None) -> Scalar:
     if name in system.scope.model.forces:
         (force,) = (f for f in loads.applied if f.name == name)
         if force.potential is None:
-            raise DerivationError(f"force '{name}' has no potential energy", mend="ask for its power or its work")
+            raise DerivationError(f"force '{name}' has no potential energy", fix="ask for its power or its work")
         return force.potential
     total: Scalar = sum((_share(system, force, name) for force in loads.applied), start=0)
     return sum((_effort_share(system, effort, name) for effort in loads.efforts), start=total)
@@ -411,7 +412,7 @@ def _share(system: System, force: Applied, body: str) -> Scalar:
         else:
             raise DerivationError(
                 f"the potential of force '{force.name}' belongs to more than body '{body}'",
-                mend=f"ask potential_energy({force.name})",
+                fix=f"ask potential_energy({force.name})",
             )
     return share
 
@@ -424,7 +425,7 @@ def _effort_share(system: System, effort: JointEffort, body: str) -> Scalar:
     if sharing != [body]:
         raise DerivationError(
             f"the spring in the joint of body '{effort.body}' belongs to more than body '{body}'",
-            mend="ask for the potential energy of the whole: potential",
+            fix="ask for the potential energy of the whole: potential",
         )
     return effort.potential
 

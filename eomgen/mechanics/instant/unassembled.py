@@ -1,12 +1,14 @@
-"""Model -> Model in which every body that only ties can hold is free to move.
+"""Model -> Model in which every body that only constraints can hold is free to move.
 
 A body without joint, or `placed` by constants, stands still by declaration: nothing of it can move. For velocities the
-ties alone say what it can do. So it gets displacements from where it stands, 0 at the start: x, y and a turn in the
-plane; x, y, z and three turns about its own successive axes in space. Then the ties are rows in their rates.
+constraints alone say what it can do. So it gets displacements from where it stands, 0 at the start: x, y and a turn in
+the
+plane; x, y, z and three turns about its own successive axes in space. Then the constraints are rows in their rates.
 """
 
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.fields import Table
 from eomgen.model.joints.ball import rotation_by, turning_columns
 from eomgen.model.joints.base import (
@@ -28,7 +30,6 @@ from eomgen.model.kinds import Coordinates, ValueOf
 from eomgen.model.part import PartRule, altered, part_of_values
 from eomgen.model.parts import Body, Coordinate, Model
 from eomgen.model.trusses import in_parts
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, plus, product, rotation, transposed, vector_of
 
@@ -94,7 +95,7 @@ class DisplacedJoint(Joint):
 
 
 def freed(model: Model) -> Model:
-    """The model in which what only ties can hold has displacements; the other bodies keep their joints.
+    """The model in which what only constraints can hold has displacements; the other bodies keep their joints.
 
     Trusses are taken apart. Everything that names a body means the same body; the new coordinates have names that no
     file can write.

@@ -2,7 +2,7 @@
 
 Model, [given] -> Snapshot: velocities and accelerations of all bodies at one configuration.
 
-    J u + sigma = 0,   J a + gamma = 0        the ties, bodies that only ties hold displaced (`loose`)
+    J u + sigma = 0,   J a + gamma = 0        the constraints, bodies that only constraints hold displaced (`loose`)
     left - right = 0                          what is given, linear in u or in a and in the unknowns
 
 Both are solved exactly at the configuration. What they leave free stays as a symbol, so that whatever does not depend
@@ -19,6 +19,7 @@ from random import Random
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.system import System, free_system_of, reduced_system
@@ -31,7 +32,6 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.trusses import is_node
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import collected_in, legible, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import Expression
@@ -50,7 +50,7 @@ LONG = 400  # characters from which a value is no easier to read than it came
 
 
 class Undetermined(DerivationError):
-    """A value that the ties and what is given leave open."""
+    """A value that the constraints and what is given leave open."""
 
 
 @dataclass(frozen=True)
@@ -60,25 +60,25 @@ class Known:
     Args:
         values: of the velocities (or accelerations) and unknowns; those that stay free stand in them.
         free: what stays free.
-        freedoms: how many freedoms the ties leave.
+        degrees of freedom: how many degrees of freedom the constraints leave.
         unknowns: how many unknowns stand in the given equations.
         given: how many of both the given equations take.
     """
 
     values: State
     free: tuple[Node, ...]
-    freedoms: int
+    degrees_of_freedom: int
     unknowns: int
     given: int
 
     @property
     def missing(self) -> int:
         """How many equations would determine the rest."""
-        return self.freedoms + self.unknowns - self.given
+        return self.degrees_of_freedom + self.unknowns - self.given
 
 
 @dataclass(frozen=True)
-class Snapshot:
+class InstantKinematics:
     """A system at one configuration.
 
     Args:
@@ -107,23 +107,23 @@ class Snapshot:
         """u, and the unknowns among the velocities.
 
         Raises:
-            DerivationError: given velocities that contradict one another or the ties.
+            DerivationError: given velocities that contradict one another or the constraints.
         """
         symbols = self.system.symbols
-        ties = tie_lines(self.system, self.places)
+        constraints = constraint_lines(self.system, self.places)
         given = speed_lines(self.system, self.speeds, self.places)
         given += given_lines(self.system, self.places, self.velocity, symbols.u, "velocity")
         for text, symbol in self.assumed.items():
             gap = self._at(parse(text, references=True), self.places) - symbol
             given.append(linear_line(f"'{text}'", gap, symbols.u, "given"))
-        return self._known(ties, given, symbols.u, self.places)
+        return self._known(constraints, given, symbols.u, self.places)
 
     @cached_property
     def accelerations(self) -> Known:
         """a, and the unknowns among the accelerations, the velocities put in.
 
         Raises:
-            DerivationError: given accelerations that contradict one another or the ties.
+            DerivationError: given accelerations that contradict one another or the constraints.
         """
         symbols, state = self.system.symbols, self.moving
         given = given_lines(self.system, state, self.acceleration, symbols.a, "acceleration")
@@ -139,10 +139,10 @@ class Snapshot:
         """Places, velocities and accelerations."""
         return {**self.moving, **self.accelerations.values}
 
-    def _known(self, ties: list[GivenRow], given: list[GivenRow], rates: Sequence[Node], state: State) -> Known:
+    def _known(self, constraints: list[GivenRow], given: list[GivenRow], rates: Sequence[Node], state: State) -> Known:
         unknowns = [x for x in self.system.symbols.unknowns.values() if x not in state]
         standing = [x for x in unknowns if any(x in line.entries for line in given)]
-        solution, ranks = solution_of(self.system, ties, given, (*rates, *standing), self._near)
+        solution, ranks = solution_of(self.system, constraints, given, (*rates, *standing), self._near)
         values = {node: self.simple(x) for node, x in solution.items()}
         free = tuple(node for node in (*rates, *standing) if node not in values)
         return Known(values, free, len(rates) - ranks[0], len(standing), ranks[1] - ranks[0])
@@ -158,7 +158,7 @@ class Snapshot:
         """A formula of the model here, as a function of the parameters.
 
         Raises:
-            Undetermined: it depends on what ties and given equations leave open.
+            Undetermined: it depends on what constraints and given equations leave open.
             DerivationError: it has no value here.
         """
         scalar = self.raw(formula)
@@ -182,19 +182,19 @@ class Snapshot:
         return legible(x, Work.ANSWER, self.system.scope.positive, LONG)
 
     def refuse_impossible(self) -> None:
-        """Refuse velocities that redundant ties allow to first order, as at a change point, and no motion has.
+        """Refuse velocities that redundant constraints allow to first order, as at a change point, and no motion has.
 
         Raises:
             DerivationError: J a + gamma = 0 has no solution.
         """
         symbols, known = self.system.symbols, self.velocities
-        rank = len(symbols.u) - known.freedoms
+        rank = len(symbols.u) - known.degrees_of_freedom
         if rank < len(self._bending) and not known.free:
             solution_of(self.system, self._bending, (), symbols.a, self._near)
 
     @cached_property
     def _bending(self) -> list[GivenRow]:
-        return tie_lines(self.system, self.moving, accelerations=True)
+        return constraint_lines(self.system, self.moving, accelerations=True)
 
     # -- what is left open ---------------------------------------------------------------------------
 
@@ -222,7 +222,7 @@ class Snapshot:
                 )
 
     def _open(self, known: Known, order: str, noun: str) -> Undetermined:
-        many = "1 freedom" if known.freedoms == 1 else f"{known.freedoms} freedoms"
+        many = "1 freedom" if known.degrees_of_freedom == 1 else f"{known.degrees_of_freedom} degrees of freedom"
         if known.unknowns:
             many += f" and {known.unknowns} unknown{'s' if known.unknowns > 1 else ''}"
             noun = "equation"
@@ -236,9 +236,9 @@ class Snapshot:
     def _offered(self, known: Known, order: str) -> str:
         """A quantity that is still open: the spin of a body, or the velocity of a point."""
         state = self.moving if order == "velocity" else self.state
-        for asked in self._quantities(order):
-            if depends_on(self._at(parse(asked, references=True), state), known.free):
-                return asked
+        for requested in self._quantities(order):
+            if depends_on(self._at(parse(requested, references=True), state), known.free):
+                return requested
         return "omega(...)" if order == "velocity" else "epsilon(...)"
 
     def _quantities(self, order: str) -> Iterator[str]:
@@ -253,10 +253,10 @@ class Snapshot:
 
     @property
     def open_rate(self) -> str:
-        """A velocity that the ties and what is given leave open; "" where there is none."""
+        """A velocity that the constraints and what is given leave open; "" where there is none."""
         return self._offered(self.velocities, "velocity") if self.velocities.free else ""
 
-    def assuming(self, rate: str, symbol: Node) -> Snapshot:
+    def assuming(self, rate: str, symbol: Node) -> InstantKinematics:
         """The same with a velocity that is this symbol."""
         return replace(self, assumed={**self.assumed, rate: symbol})
 
@@ -270,19 +270,20 @@ class Snapshot:
             raise self._open(self.velocities, "velocity", "rate")
 
 
-def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
+def instant_kinematics_of(model: Model, *, by_coordinates: bool = False) -> InstantKinematics:
     """The model at its start, with what it gives of velocities and accelerations.
 
     Start speeds that the model says count as given.
 
     Args:
-        by_coordinates: coordinates that the ties place in no short closed form stay symbols; else they are numbers.
+        by_coordinates: coordinates that the constraints place in no short closed form stay symbols; else they are
+            numbers.
     Raises:
-        DerivationError: ties that do not close at the start.
+        DerivationError: constraints that do not close at the start.
     """
     free = free_system_of(freed(model))
     places, numbers = _places(free)
-    located = {q: numbers[q.name] for q in fixed_by_position(free.ties) if numbers and q not in places}
+    located = {q: numbers[q.name] for q in fixed_by_position(free.constraints) if numbers and q not in places}
     exact = by_coordinates or not located
     still = (
         _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
@@ -297,13 +298,13 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
     }
     speeds |= {name: part.start for name, part in model.speeds.items() if part.start is not None}
     velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
-    return Snapshot(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})
+    return InstantKinematics(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})
 
 
 def _places(free: System) -> tuple[State, Mapping[str, float]]:
     """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
     system = reduced_system(free)
-    sought, found = fixed_by_position(system.ties), State()
+    sought, found = fixed_by_position(system.constraints), State()
     if not sought:
         return {}, {}
     try:
@@ -333,12 +334,12 @@ def _still(system: System, state: State) -> State:
 
 
 def mobility_of(model: Model) -> int:
-    """In how many ways the bodies of a model can move at its start, those that only ties hold included.
+    """In how many ways the bodies of a model can move at its start, those that only constraints hold included.
 
     Raises:
-        DerivationError: ties that do not close at the start.
+        DerivationError: constraints that do not close at the start.
     """
-    return snapshot_of(altered(model, given=None)).velocities.freedoms
+    return instant_kinematics_of(altered(model, given=None)).velocities.degrees_of_freedom
 
 
 # -------- given rows ------------------------------------------------------------------------------------------
@@ -365,18 +366,18 @@ class GivenRow:
 # -- the equations -----------------------------------------------------------------------------------
 
 
-def tie_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool = False) -> list[GivenRow]:
+def constraint_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool = False) -> list[GivenRow]:
     """J u = - sigma, or J a = - gamma, of every closing row at a state."""
-    ties, symbols = system.ties, system.symbols
-    rates, right = (symbols.a, ties.gamma) if accelerations else (symbols.u, ties.sigma)
+    constraints, symbols = system.constraints, system.symbols
+    rates, right = (symbols.a, constraints.gamma) if accelerations else (symbols.u, constraints.sigma)
     width = len(rates)
-    placed = substituted((*(x for row in ties.J for x in row), *right), state)
+    placed = substituted((*(x for row in constraints.J for x in row), *right), state)
     flat = readable_all(placed, Work.ANSWER, system.scope.positive)
     lines = []
-    for k, row in enumerate(ties.closing):
+    for k, row in enumerate(constraints.closing):
         entries = zip(rates, flat[k * width : (k + 1) * width], strict=True)
         kept = {node: x for node, x in entries if not is_zero(x)}
-        lines.append(GivenRow(f"the tie '{row.tie}'", kept, -flat[len(ties.closing) * width + k]))
+        lines.append(GivenRow(f"the constraint '{row.constraint}'", kept, -flat[len(constraints.closing) * width + k]))
     return [*_norm_lines(system, state, accelerations=accelerations), *lines]
 
 
@@ -436,9 +437,9 @@ def _refuse_other_order(system: System, equation: WrittenEquation, gap: Scalar, 
     if depends_on(gap, (*symbols.a, *unknowns, *(symbols.u if order == "velocity" else ()))):
         return
     if depends_on(gap, (*symbols.u, *symbols.q)):
-        mend = "put it under `velocity`" if depends_on(gap, symbols.u) else "places are where points and starts are"
-        asked = "velocities" if order == "velocity" else "accelerations"
-        raise DerivationError(f"'{equation.text}' says nothing of {asked}", where, mend)
+        fix = "put it under `velocity`" if depends_on(gap, symbols.u) else "places are where points and starts are"
+        requested = "velocities" if order == "velocity" else "accelerations"
+        raise DerivationError(f"'{equation.text}' says nothing of {requested}", where, fix)
 
 
 def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) -> GivenRow:
@@ -458,19 +459,19 @@ def linear_line(text: str, gap: Scalar, unknowns: Sequence[Node], where: str) ->
 
 
 def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
-    """Refuse ties whose points do not meet at a configuration.
+    """Refuse constraints whose points do not meet at a configuration.
 
     Raises:
-        DerivationError: the tie is named.
+        DerivationError: the constraint is named.
     """
-    rows = [(row, row.gap) for row in system.ties.closing if row.gap is not None]
+    rows = [(row, row.gap) for row in system.constraints.closing if row.gap is not None]
     gaps = substituted([gap for _, gap in rows], places)
     for (row, _), gap in zip(rows, gaps, strict=True):
         if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > COMPUTED:
             along = f" along {row.component}" if row.component in ("x", "y", "z") else ""
             raise DerivationError(
-                f"'{row.tie}' does not close at the start: it is open by {value:.4g}{along}",
-                f"constraints.{row.tie}",
+                f"'{row.constraint}' does not close at the start: it is open by {value:.4g}{along}",
+                f"constraints.{row.constraint}",
                 "put its points where they meet",
             )
 
@@ -484,23 +485,23 @@ def _at_own_values(system: System, x: Scalar) -> float:
 
 def solution_of(
     system: System,
-    ties: Sequence[GivenRow],
+    constraints: Sequence[GivenRow],
     given: Sequence[GivenRow],
     unknowns: Sequence[Node],
     near: Mapping[Node, float] | None = None,
 ) -> tuple[dict[Node, Scalar], tuple[int, int]]:
-    """(each unknown that the equations determine, with the free ones in it; ranks of the ties and of all).
+    """(each unknown that the equations determine, with the free ones in it; ranks of the constraints and of all).
 
     Args:
         near: where symbols of the configuration are, in rounded numbers: what nearly vanishes there does.
     Raises:
         DerivationError: equations that contradict one another.
     """
-    lines = [*ties, *given]
+    lines = [*constraints, *given]
     scalars = [x for line in lines for x in (*line.entries.values(), line.right)]
     own, shaken = (values_for(system.scope, scalars, near, shaken=shaken) for shaken in (False, True))
     matrix = _matrix(lines, unknowns, own)
-    _refuse_contradiction(lines, matrix, len(ties))
+    _refuse_contradiction(lines, matrix, len(constraints))
     rank = _rank(matrix)
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
@@ -513,7 +514,7 @@ def solution_of(
     for j, constant in found.constants.items():
         shares = [share * unknowns[f] for f, share in found.shares[j].items()]
         result[unknowns[j]] = constant - sum(shares, start=0)
-    return result, (_rank(matrix[: len(ties)]), rank)
+    return result, (_rank(matrix[: len(constraints)]), rank)
 
 
 def _matrix(lines: Sequence[GivenRow], unknowns: Sequence[Node], values: State) -> np.ndarray:
@@ -535,11 +536,11 @@ def _rank(matrix: np.ndarray) -> int:
     return len(independent_rows(matrix[:, :-1], RANK))
 
 
-def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, ties: int) -> None:
+def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, constraints: int) -> None:
     """Refuse equations of which one contradicts others.
 
     Args:
-        ties: how many of them are ties.
+        constraints: how many of them are constraints.
     Raises:
         DerivationError: all of them are named.
     """
@@ -558,7 +559,7 @@ def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, ties: i
                 if abs(share) > RANK and lines[kept[k]].said != UNSAID
             )
             against = f" contradicts {', '.join(others)}" if others else " cannot hold: nothing there can move so"
-            if i < ties:
+            if i < constraints:
                 raise DerivationError(
                     f"no motion has these velocities: {line.said}{against}",
                     "given",

@@ -8,7 +8,8 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres, scattered_state
+from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_norms, scattered_state
 from eomgen.mechanics.constraints.rows import hold_identically
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, division_of
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
@@ -18,7 +19,6 @@ from eomgen.mechanics.kinematics.motion import GROUND, velocity_of
 from eomgen.mechanics.kinematics.symbols import integral_from_zero
 from eomgen.mechanics.mass_properties import angular_momentum, shapeless
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state, real_values
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, gradient
@@ -209,9 +209,9 @@ def _alone(rate: Scalar, vanishes: bool, others: Sequence[Node]) -> Scalar | Non
 
 def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[bool]:
     """Of each rate whether it is another one, by 50 digits, where the others are and t is not."""
-    state, rng = scattered_state(system.ties), Random(2)
+    state, rng = scattered_state(system.constraints), Random(2)
     moved = state | {x: state[x] + of_50_digits(rng.uniform(0.1, 0.4)) for x in others}
-    moved |= on_unit_spheres(system.scope.quaternions, moved)
+    moved |= on_unit_norms(system.scope.quaternions, moved)
     try:
         here, there = (evaluate(rates, each, fifty_digits()) for each in (state, moved))
     except NoValue:
@@ -261,7 +261,7 @@ class Constant:
 def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
     """Of each function of q, u and t whether it stays constant along every motion, in every piece.
 
-    Where ties close or there is friction none is said to be, nor where the prime field cannot tell.
+    Where constraints close or there is friction none is said to be, nor where the prime field cannot tell.
     """
     return tuple(held.everywhere for held in where_constant(equations, functions))
 
@@ -276,38 +276,38 @@ def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) ->
         return (NOWHERE,) * len(functions)
     slopes = [gradient(f, equations.symbols.u) for f in functions]
     rows = [[*row, force] for row, force in zip(equations.M, equations.forcing, strict=True)]
-    asked = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
-    flat = [x for row in (*rows, *asked) for x in row]
+    requested = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
+    flat = [x for row in (*rows, *requested) for x in row]
     division = division_of(equations, flat)
     if division is None:
-        return tuple(EVERYWHERE if yes else NOWHERE for yes in _following(rows, asked))
+        return tuple(EVERYWHERE if yes else NOWHERE for yes in _following(rows, requested))
     known: dict[Choices, tuple[bool, ...]] = {}
 
     def found(piece: Choices) -> tuple[bool, ...]:
         if piece not in known:
             values = iter(as_chosen(flat, division.nodes, piece))
-            table = [[next(values) for _ in row] for row in (*rows, *asked)]
+            table = [[next(values) for _ in row] for row in (*rows, *requested)]
             known[piece] = _following(table[: len(rows)], table[len(rows) :])
         return known[piece]
 
     return tuple(division.where(lambda piece, k=k: found(piece)[k]) for k in range(len(functions)))  # type: ignore[misc]
 
 
-def _following(rows: Sequence[Sequence[Scalar]], asked: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
+def _following(rows: Sequence[Sequence[Scalar]], requested: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
     """Of each row asked whether it follows from the rows, at random states: exact ones, or else of 50 digits."""
-    flat = [x for row in (*rows, *asked) for x in row]
+    flat = [x for row in (*rows, *requested) for x in row]
     for follow, values_of in ((follows, _exact_values), (dense.follows_in_digits, _real_values)):
-        rng, found = Random(5), [True] * len(asked)
+        rng, found = Random(5), [True] * len(requested)
         try:
             for _ in range(STATES):
                 values = iter(values_of(flat, rng))
-                table = [[next(values) for _ in row] for row in (*rows, *asked)]
+                table = [[next(values) for _ in row] for row in (*rows, *requested)]
                 known, others = table[: len(rows)], table[len(rows) :]
                 found = [yes and follow(known, row) for yes, row in zip(found, others, strict=True)]
             return tuple(found)
         except (NoMeaning, NoValue, ValueError, DerivationError):
             continue
-    return (False,) * len(asked)
+    return (False,) * len(requested)
 
 
 def _exact_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:

@@ -7,13 +7,13 @@ from itertools import combinations
 from random import Random
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion, waves
 from eomgen.mechanics.integrals.speeds import Relations, rates_of, relations_of
 from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.mechanics.kinematics.symbols import integral_from_zero, primitive
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
@@ -315,7 +315,7 @@ def _determinant(A: ScalarRows) -> Scalar:
 # System, condition, its place in numbers -> the state at an instant in closed form.
 #
 # By the laws of motion: the condition is an equation in t. By the integrals: speeds are functions of the coordinates,
-# and the condition with the ties is a set of equations between coordinates. What is found is taken only where it
+# and the condition with the constraints is a set of equations between coordinates. What is found is taken only where it
 # agrees with the numbers.
 
 
@@ -369,7 +369,7 @@ class ClosedInstant:
         return named, {symbol: node for node, symbol in names.items()}
 
     def by_integrals(self) -> State:
-        """Coordinates by the condition and the ties, speeds by the integrals; those that have a closed form."""
+        """Coordinates by the condition and the constraints, speeds by the integrals; those that have a closed form."""
         speeds = self._rates({})
         equations = list(substituted((self.condition,), speeds))
         equations += position_equations(self.equations.system, self.start, self._relations({}))
@@ -446,12 +446,12 @@ def constant_sums(scalars: Sequence[Scalar], moving: Sequence[Node]) -> list[Nod
 def position_equations(
     system: System, start: Mapping[Node, Scalar], relations: Relations | None = None
 ) -> list[Scalar]:
-    """What is known of positions: the ties' gaps, and rates that can be integrated from the start.
+    """What is known of positions: the constraints' gaps, and rates that can be integrated from the start.
 
     Args:
-        relations: what momenta and ties say of the speeds.
+        relations: what momenta and constraints say of the speeds.
     """
-    rows = [row for row in system.ties.rows if not row.identical]
+    rows = [row for row in system.constraints.rows if not row.identical]
     gaps = [row.gap for row in rows if row.gap is not None]
     return gaps + _integrated_rates(system, start) + _integrated_relations(system, start, relations)
 
@@ -488,7 +488,7 @@ def _integrated_rates(system: System, start: Mapping[Node, Scalar]) -> list[Scal
     placed = _placed_by_gaps(system)
     rates = [(q, row) for q, row in rows if q not in own.values() and q in start and q.name not in placed]
     combinations = [(q - start[q], row) for q, row in rates]
-    closing = [row for row in system.ties.closing if row.gap is None and not depends_on(row.velocity, moving)]
+    closing = [row for row in system.constraints.closing if row.gap is None and not depends_on(row.velocity, moving)]
     combinations += [(0, gradient(row.velocity, symbols.u)) for row in closing]
     for left, row in combinations:
         gained = [_gained(a, own.get(u), start, moving) for a, u in zip(row, symbols.u, strict=True) if not is_zero(a)]
@@ -498,10 +498,10 @@ def _integrated_rates(system: System, start: Mapping[Node, Scalar]) -> list[Scal
 
 
 def _placed_by_gaps(system: System) -> frozenset[str]:
-    """The dependent coordinates that ties of positions alone determine."""
-    of_velocities = {row.tie for row in system.ties.rows if row.gap is None}
+    """The dependent coordinates that constraints of positions alone determine."""
+    of_velocities = {row.constraint for row in system.constraints.rows if row.gap is None}
     blocks = () if system.elimination is None else system.elimination.blocks
-    return frozenset(name for block in blocks if not of_velocities & {*block.ties} for name in block.coordinates)
+    return frozenset(name for block in blocks if not of_velocities & {*block.constraints} for name in block.coordinates)
 
 
 def _gained(a: Scalar, q: Node | None, start: Mapping[Node, Scalar], moving: Sequence[Node]) -> Scalar | None:

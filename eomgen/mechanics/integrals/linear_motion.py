@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import integral_from_zero
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.formula import function, over, sqrt

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, Extent
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
@@ -13,7 +14,6 @@ from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.kinematics.symbols import primitive, primitive_over_bends
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
@@ -323,11 +323,11 @@ def _solved(
     Parameters are off any special value, m1 - m2 is 0 at m1 = m2 alone, unless the rows determine less for these.
     """
     try:
-        own = general_solution(LinearSystem(rows, right, unknowns, digits_at(generic_state(system.ties))))
+        own = general_solution(LinearSystem(rows, right, unknowns, digits_at(generic_state(system.constraints))))
     except (DerivationError, MissingValues):
         return None
     with suppress(DerivationError, MissingValues):
-        shaken = generic_state(system.ties, shaken=True)
+        shaken = generic_state(system.constraints, shaken=True)
         found = general_solution(LinearSystem(rows, right, unknowns, digits_at(shaken)))
         return found if len(found.free) == len(own.free) else own
     return own
@@ -344,6 +344,6 @@ def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symb
     left = [x.name for x in (*symbols.q, *symbols.u) if depends_on(value, (x,))]
     if left:
         raise DerivationError(
-            f"the start has no closed form: {', '.join(left)}", mend="give them as numbers in [coordinates]"
+            f"the start has no closed form: {', '.join(left)}", fix="give them as numbers in [coordinates]"
         )
     return value

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion, made_of, spin_between
 from eomgen.mechanics.kinematics.symbols import Scope
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import derivative, gradient, jacobian, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.formula import Expression, inner
 from eomgen.symbolic.expression.node import Scalar, ScalarRow, is_zero
@@ -51,7 +51,7 @@ def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) ->
         raise ModelError(
             f"the inertia of body '{body}' has {len(values)} values",
             f"bodies.{body}.inertia",
-            mend="give 1, 3 or 6 of them",
+            fix="give 1, 3 or 6 of them",
         )
     xx, yy, zz, xy, yz, xz = (*values, 0, 0, 0)[:6] if len(values) == 3 else values
     return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))

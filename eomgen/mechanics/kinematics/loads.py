@@ -11,10 +11,10 @@ from dataclasses import field
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -65,7 +65,7 @@ class Loads:
     """All that is applied to the system.
 
     Args:
-        begun: where coordinates start that the ties place, for springs of the start's length.
+        begun: where coordinates start that the constraints place, for springs of the start's length.
     """
 
     motion: Motion
@@ -117,7 +117,7 @@ def loads_of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Load
             raise NotYet(
                 f"forces of kind '{force.kind}' are not derived yet",
                 f"forces.{name}",
-                mend="declare it by forces that are: see eomgen schema",
+                fix="declare it by forces that are: see eomgen schema",
             )
         loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
         applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
@@ -134,14 +134,14 @@ def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[
             raise DerivationError(
                 "a force cannot depend on accelerations",
                 f"forces.{force.name}",
-                mend="write the inertia as a body's mass, or by a coordinate of its own",
+                fix="write the inertia as a body's mass, or by a coordinate of its own",
             )
     for effort in efforts:
         if accelerations and depends_on(effort.effort, accelerations):
             raise DerivationError(
                 "a joint's drive cannot depend on accelerations",
                 f"bodies.{effort.body}.joint",
-                mend="write the inertia as a rotor of the joint",
+                fix="write the inertia as a rotor of the joint",
             )
 
 

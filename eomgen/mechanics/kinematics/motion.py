@@ -8,11 +8,11 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError, NotYet
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope, shorter
 from eomgen.model.composite import Composite, PlacedPiece, composite_of
 from eomgen.model.joints.base import Z, oriented
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.formula import cos, function, over, sin, sqrt
@@ -108,7 +108,7 @@ class Motion:
 
     @cached_property
     def decided(self) -> dict[Node, None]:
-        """The scalars whose numbers at the start have decided what loads and ties are (`SystemScene.worth`)."""
+        """The scalars whose numbers at the start have decided what loads and constraints are (`SystemScene.worth`)."""
         return {}
 
     @cached_property
@@ -197,7 +197,7 @@ def parents_first(model: Any) -> list[str]:
         if not ready:
             raise DerivationError(
                 f"bodies hang on one another in a ring: {', '.join(waiting)}",
-                mend="hang one of them on the ground, and close the loop by a constraint",
+                fix="hang one of them on the ground, and close the loop by a constraint",
             )
         for name in ready:
             done[name] = None
@@ -231,7 +231,7 @@ def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int])
         raise NotYet(
             f"the joint '{joint.kind}' is not derived yet",
             f"bodies.{name}.joint",
-            mend="declare it by joints that are: see eomgen schema",
+            fix="declare it by joints that are: see eomgen schema",
         )
     plane = scope.model.space == "plane"
     if joint is None:
@@ -488,7 +488,7 @@ def rotation_center(field: VelocityField) -> Vector:
     if vanishes(field.w[2]):
         state = "rests" if all(vanishes(x) for x in field.v) else "translates"
         raise DerivationError(
-            f"the body {state}: it has no centre of rotation at a finite place", mend="ask while the body turns"
+            f"the body {state}: it has no centre of rotation at a finite place", fix="ask while the body turns"
         )
     return plus(field.p, times(over(1, field.w[2]), cross(UP, field.v)))
 
@@ -503,7 +503,7 @@ def acceleration_pole(field: VelocityField) -> Vector:
     if vanishes(w) and vanishes(e):
         raise DerivationError(
             "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
-            mend="ask while the body turns",
+            fix="ask while the body turns",
         )
     arm = plus(times(w * w, field.a), cross(field.e, field.a))
     return plus(field.p, times(over(1, w * w * w * w + e * e), arm))
@@ -531,7 +531,7 @@ def least_speed(field: VelocityField, start: Vector, end: Vector, short: Callabl
     along = minus(end, start)
     if all(vanishes(x) for x in along):
         raise DerivationError(
-            "the two points are the same: they have no segment between them", mend="name two points that are apart"
+            "the two points are the same: they have no segment between them", fix="name two points that are apart"
         )
     v_start, v_end = field.velocity(start), field.velocity(end)
     planar = vanishes(field.w[0]) and vanishes(field.w[1]) and vanishes(along[2]) and vanishes(field.v[2])

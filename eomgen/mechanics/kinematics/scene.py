@@ -7,16 +7,16 @@ from dataclasses import field
 from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import GROUND, Motion, ground_place
 from eomgen.mechanics.kinematics.symbols import Scope, parameters_of_zero, primitive
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint
 from eomgen.model.kinds import Resistance
 from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate
 from eomgen.model.values import exact_parameters, no_orientation, quaternions_of
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
@@ -30,12 +30,12 @@ from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 
 # -------- system scene ----------------------------------------------------------------------------------------
-# Motion -> SystemScene: what force laws and ties ask of a system; where coordinates start.
+# Motion -> SystemScene: what force laws and constraints ask of a system; where coordinates start.
 
 
 @dataclass(frozen=True)
 class SystemScene:
-    """What the force laws and the ties ask of a system in motion.
+    """What the force laws and the constraints ask of a system in motion.
 
     Args:
         where: the part that asks, for messages.
@@ -261,7 +261,8 @@ def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node,
 
 
 # -------- contact modes ---------------------------------------------------------------------------------------
-# Contacts: ties and paths that can end, slide or stick. A mode says how each of them is in one phase of the motion.
+# Contacts: constraints and paths that can end, slide or stick. A mode says how each of them is in one phase of the
+# motion.
 #
 # Coulomb:  friction = -mu |N| sign(v) along the contact, N the contact's own reaction, v its sliding velocity;
 # viscous:  -c |N| v.  While a contact sticks, its sliding velocity is held at 0 by a row of its own.
@@ -283,13 +284,13 @@ class ContactMode:
 
 
 ContactModes = Mapping[str, ContactMode]
-"""By the name of the tie, or of the body on a path. What is not named is closed and slides by the law."""
+"""By the name of the constraint, or of the body on a path. What is not named is closed and slides by the law."""
 
 CLOSED = ContactMode()
 
 
-def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: ContactMode) -> tuple[TieRow, ...]:
-    """The rows that a tie has in a mode: none while it is open, one more while it sticks (on a surface two)."""
+def rows_in_mode(constraint: Any, rows: tuple[ConstraintRow, ...], mode: ContactMode) -> tuple[ConstraintRow, ...]:
+    """The rows that a constraint has in a mode: none while it is open, one more while it sticks (on a surface two)."""
     if not mode.closed:
         return ()
     law = getattr(constraint, "friction", None)
@@ -299,7 +300,7 @@ def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: ContactMode) -
     pairs = (
         (name, row, push) for row in with_friction for name, push in (("t", row.tangent), ("s", row.cross_tangent))
     )
-    held = (TieRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
+    held = (ConstraintRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
     return (*rows, *held)
 
 

@@ -9,13 +9,13 @@ from functools import cached_property
 from math import isfinite
 
 from eomgen.errors import DerivationError, EomgenError, ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.composite import Composite
 from eomgen.model.joints.ball import rate_matrix_of, spin_of_quaternion
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.trusses import in_parts
 from eomgen.model.values import exact_parameters, quaternions_of, start_values
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import cancelled, readable
 from eomgen.symbolic.expression.derivative import depends_on, derivative, jacobian, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.formula import Expression, combined, function, inner, over, through_samples
@@ -34,7 +34,8 @@ from eomgen.symbolic.solve import cramer
 # Model -> Scope: the symbols of one derivation, and what every name of an expression stands for.
 #
 # q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero row of N and its
-# given rate in nu; a dependent one has the row that the ties give, and is free until then. Declared speeds take the
+# given rate in nu; a dependent one has the row that the constraints give, and is free until then. Declared speeds take
+# the
 # place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
 
 
@@ -129,7 +130,7 @@ class Scope:
         if inputs and any(depends_on(x, inputs) for x in outputs):
             raise DerivationError(
                 "an input stands where a time derivative is needed, and a caller may replace it by anything",
-                mend="let inputs act in forces and torques only; drive a coordinate by `motion`",
+                fix="let inputs act in forces and torques only; drive a coordinate by `motion`",
             )
         return tangent(outputs, self.flow)
 
@@ -527,10 +528,10 @@ def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node
     what = f"{len(declared)} speed{' is' if len(declared) == 1 else 's are'} declared for {rates}"
     named = ", ".join(x.name for x in replaced) or "none"
     if len(declared) < len(replaced):
-        mend = (
+        fix = (
             "declare one speed for each rate that stands in them, or leave out those that keep their rate; "
-            "a coordinate that ties determine may be `dependent`"
+            "a coordinate that constraints determine may be `dependent`"
         )
     else:
-        mend = "one for each freedom: leave out what follows from the others"
-    raise ModelError(f"{what} ({named})", "speeds", mend)
+        fix = "one for each freedom: leave out what follows from the others"
+    raise ModelError(f"{what} ({named})", "speeds", fix)

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Mapping, Sequence
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.loads import Loads, body_wrench, in_ground_axes
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, shortened_twist
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of, tangent
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction

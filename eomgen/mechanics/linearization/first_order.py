@@ -12,13 +12,13 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.wellposed import refuse_massless
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.integrals.laws import position_equations
 from eomgen.mechanics.kinematics.scene import start_values
 from eomgen.mechanics.linearization.reference import ReferenceMotion
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.formula import inner, over
@@ -42,7 +42,7 @@ class Choice:
 
     Args:
         q, dq: coordinates that stay, and those that follow by the rows `relations`.
-        u, du: speeds that stay, and those that follow by the closing rows `ties`.
+        u, du: speeds that stay, and those that follow by the closing rows `constraints`.
         standing: whether small turns of bodies that spin are about axes that stand still; else about their own.
     """
 
@@ -51,7 +51,7 @@ class Choice:
     relations: tuple[int, ...]
     u: tuple[int, ...]
     du: tuple[int, ...]
-    ties: tuple[int, ...]
+    constraints: tuple[int, ...]
     standing: bool = False
 
 
@@ -133,10 +133,11 @@ class FirstOrder:
 
     @cached_property
     def _unmoved(self) -> dict[Node, Scalar]:
-        """Accelerations that are 0 in every state that is looked at: all of them at rest, where no tie asks for one."""
+        """Accelerations that are 0 in every state that is looked at: all of them at rest, where no constraint asks
+        for one."""
         e, s = self.equations, self.system.symbols
-        asked = substituted(e.gamma, dict.fromkeys(s.u, 0))
-        return dict.fromkeys(s.a, 0) if self.at_rest and all(map(is_zero, asked)) else {}
+        requested = substituted(e.gamma, dict.fromkeys(s.u, 0))
+        return dict.fromkeys(s.a, 0) if self.at_rest and all(map(is_zero, requested)) else {}
 
 
 def first_order_of(system: System) -> FirstOrder:
@@ -181,12 +182,12 @@ def choice_of(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[st
     elsewhere = Numbers(_elsewhere(reference))
     G_there, J_there = (_floats(at(elsewhere, rows), len(columns)) for rows, columns in _rows(first))
     relations, dq = determined(G, [late(q.name, stays) for q, stays in zip(symbols.q, _same(G, G_there), strict=True)])
-    ties, du = determined(
+    constraints, du = determined(
         J, [late(u.name.removesuffix("'"), stays) for u, stays in zip(symbols.u, _same(J, J_there), strict=True)]
     )
     q = tuple(k for k in range(len(symbols.q)) if k not in dq)
     u = tuple(k for k in range(len(symbols.u)) if k not in du)
-    return Choice(q, dq, relations, u, du, ties)
+    return Choice(q, dq, relations, u, du, constraints)
 
 
 def _rows(first: FirstOrder) -> tuple[tuple[ScalarRows, Sequence[Node]], ...]:
@@ -380,7 +381,7 @@ def matrix_solution(field: NumberField, A: Entries, B: Entries) -> Entries:
         rows[k], rows[pivot] = rows[pivot], rows[k]
         if is_zero(rows[k][k]):
             what = "linearize: something moves no mass at the place of reference: its accelerations are not determined"
-            raise DerivationError(what, mend="take coordinates that are regular there, or another place")
+            raise DerivationError(what, fix="take coordinates that are regular there, or another place")
         rows[k] = [field.tidy(over(x, rows[k][k])) for x in rows[k]]
         for i, row in enumerate(rows):
             if i != k and not is_zero(row[k]):
@@ -395,11 +396,12 @@ def matrix_solution(field: NumberField, A: Entries, B: Entries) -> Entries:
 
 
 def slopes_at(first: FirstOrder, state: Mapping[Node, Any], *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """(d x'/d x, d x'/d w) at a state, x = (q, u); where ties follow from others their multipliers are the least.
+    """(d x'/d x, d x'/d w) at a state, x = (q, u); where constraints follow from others their multipliers are the
+    least.
 
     Args:
         state: t, parameters, inputs, q and u as floats.
-        single: nan where a change opens ties that follow from others: no acceleration then closes them all.
+        single: nan where a change opens constraints that follow from others: no acceleration then closes them all.
     """
     e, s = first.equations, first.system.symbols
     nq, nu, k, w = len(s.q), len(s.u), len(e.J), len(s.inputs)
@@ -420,8 +422,8 @@ def slopes_at(first: FirstOrder, state: Mapping[Node, Any], *, single: bool = Fa
     return both[:, : nq + nu], both[:, nq + nu :]
 
 
-def _solved(K: np.ndarray, right: np.ndarray, ties: int) -> np.ndarray:
-    found: np.ndarray = np.linalg.lstsq(K, right, rcond=None)[0] if ties else np.linalg.solve(K, right)
+def _solved(K: np.ndarray, right: np.ndarray, constraints: int) -> np.ndarray:
+    found: np.ndarray = np.linalg.lstsq(K, right, rcond=None)[0] if constraints else np.linalg.solve(K, right)
     return found
 
 

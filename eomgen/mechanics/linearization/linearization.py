@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import fork_at
 from eomgen.mechanics.constraints.elimination import refuse_undetermined
 from eomgen.mechanics.dynamics.system import System, acting
@@ -57,7 +58,6 @@ from eomgen.mechanics.linearization.reference import (
 from eomgen.mechanics.linearization.steady import family_of, steady_start
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on_any, substituted
 from eomgen.symbolic.expression.node import Node, ScalarRow
 from eomgen.symbolic.expression.traversal import operations, order
@@ -80,7 +80,7 @@ class SmallMotions:
     """The equations of small motions about a reference.
 
     Args:
-        reference: the place of rest or the steady motion.
+        reference: the equilibrium or the steady motion.
         numbers: the equations in floats; where parameters have no values, at values to try.
         exact: the same as scalars of the parameters; None where the reference is not known so, or it is too much work.
         whole: those in floats of every coordinate and speed, of which `numbers` are a part.
@@ -117,7 +117,7 @@ class SmallMotions:
 
     @property
     def forced(self) -> bool:
-        """Whether forces change with t about a place of rest: they are taken as they are at t = 0."""
+        """Whether forces change with t about an equilibrium: they are taken as they are at t = 0."""
         equations = self.first.equations
         rows = (*equations.forcing, *equations.gamma, *equations.sigma)
         return self.reference.at_rest and depends_on_any(rows, (self.first.system.symbols.t,))
@@ -152,7 +152,7 @@ def small_motions_of(
         wanted: the coordinates in which they are asked; () for all.
         guess: values of coordinates in place of `near` and `start`.
     Raises:
-        DerivationError: no place of rest; the start is no steady motion; nothing can move; the coordinates asked do not
+        DerivationError: no equilibrium; the start is no steady motion; nothing can move; the coordinates asked do not
             move by themselves.
     """
     refuse_motion(system.scope.model)
@@ -160,7 +160,7 @@ def small_motions_of(
         raise DerivationError(
             "nothing is free to move: there are no small motions",
             "coordinates",
-            mend="leave a coordinate free: neither `driven` nor 0 by a constraint",
+            fix="leave a coordinate free: neither `driven` nor 0 by a constraint",
         )
     reference, first = _balanced(system, about, guess, wanted)
     return _about(first, reference, wanted)
@@ -188,7 +188,7 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError(
-            "the ties leave no freedom: there are no small motions", "coordinates", mend="take a constraint away"
+            "the constraints leave no freedom: there are no small motions", "coordinates", fix="take a constraint away"
         )
     choice, raw, kept = _steady_equations(first, choice, reference, wanted)
     refuse_corners(first.looked_at(at_rest=False), choice, reference, raw, kept)
@@ -207,22 +207,25 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
 
 
 def _refuse_fork(reference: ReferenceMotion) -> None:
-    """A place at which ties depend on one another that do not beside it: what they leave to first order is no motion.
+    """A place at which constraints depend on one another that do not beside it: what they leave to first order is no
+    motion.
 
     Raises:
         DerivationError: it is one.
     """
     try:
-        fork = fork_at(reference.system.ties, dict(reference.numbers))
-    except (DerivationError, MissingValues):  # the ties close nowhere near: there is but this place
+        fork = fork_at(reference.system.constraints, dict(reference.numbers))
+    except (DerivationError, MissingValues):  # the constraints close nowhere near: there is but this place
         return
     if fork is not None:
         what = f"the place is {fork.words}: beside it there are no small motions of one kind"
-        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give `near` values that lead to another place")
+        raise DerivationError(
+            what, f"constraints.{fork.constraints[0]}", "give `near` values that lead to another place"
+        )
 
 
 def _stiffness_beside(small: SmallMotions) -> np.ndarray:
-    """How large the entries of K are beside a place of rest that is known in numbers only."""
+    """How large the entries of K are beside an equilibrium that is known in numbers only."""
     largest, reference = np.zeros_like(floats(small.numbers.K)), small.reference
     if reference.place is None or reference.is_exact:
         return largest
@@ -265,7 +268,7 @@ def _refuse_unvalued(reference: ReferenceMotion) -> None:
     missing = [f"'{name}'" for name in reference.system.symbols.parameters if name not in exact_parameters(model)]
     if missing:
         what = f"the reference, or the equations about it, have no closed form: {', '.join(missing)} need values"
-        raise DerivationError(what, "parameters", mend="give them values in [parameters]")
+        raise DerivationError(what, "parameters", fix="give them values in [parameters]")
 
 
 def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) -> LinearEquations:
@@ -285,11 +288,11 @@ def _without_value(reference: ReferenceMotion) -> DerivationError:
     lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
     part = None if lost else valueless(reference.system, {x: float(y) for x, y in reference.numbers.items()})
     if part is not None:
-        mend = "let what acts be regular there, or start elsewhere"
-        return DerivationError(f"{part.what}, the place of reference", part.where, mend)
+        fix = "let what acts be regular there, or start elsewhere"
+        return DerivationError(f"{part.what}, the place of reference", part.where, fix)
     what = lost[0] if lost else "the equations of motion, or their derivatives, have no value"
-    mend = "describe the motion by coordinates, speeds and forces that are regular there"
-    return DerivationError(f"{what} at the place of reference", "linearize", mend)
+    fix = "describe the motion by coordinates, speeds and forces that are regular there"
+    return DerivationError(f"{what} at the place of reference", "linearize", fix)
 
 
 def _exact_field(reference: ReferenceMotion, first: FirstOrder, choice: Choice) -> Exact | None:
@@ -309,7 +312,7 @@ def _balanced(
 ) -> tuple[ReferenceMotion, FirstOrder]:
     """The reference, at which forces and inertia balance, and the equations of its system.
 
-    Where no place of rest can be sought, or there are many, it is the start if all is at rest there.
+    Where no equilibrium can be sought, or there are many, it is the start if all is at rest there.
     """
     if about in (START, STEADY):
         reference = at_the_start(system, at_rest=False)
@@ -332,7 +335,7 @@ def _balanced(
 def _near(
     system: System, first: FirstOrder, start: ReferenceMotion, wrong: str, wanted: Sequence[str]
 ) -> tuple[ReferenceMotion, FirstOrder]:
-    """The place of rest, or of a start that moves the steady motion, near a start that is none.
+    """The equilibrium, or of a start that moves the steady motion, near a start that is none.
 
     Raises:
         DerivationError: the start is told, and what is nearest to it where that is far away, or not found.
@@ -340,23 +343,23 @@ def _near(
     what = f"the start is no steady motion: '{wrong}' is accelerated there"
     symbols, number = system.symbols, {x: float(value) for x, value in start.numbers.items()}
     at_rest = not start.moving and all(number[u] == 0 for u in symbols.u)
-    kind = "place of rest" if at_rest else "steady motion"
+    kind = "equilibrium" if at_rest else "steady motion"
     try:
         found = (
             place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
         )
         first = first_order_of(found.system)
         if _accelerated(first, found):
-            raise DerivationError(what, mend="start from a place of rest, or a steady motion")
+            raise DerivationError(what, fix="start from an equilibrium, or a steady motion")
     except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
-        mend = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
-        raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", mend) from error
+        fix = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", fix) from error
     shown = (*found.system.symbols.q, *(() if at_rest else found.system.symbols.u))
     away = {x: float(found.numbers[x]) - number[x] for x in shown}
     if any(abs(d) > NEARBY * max(1.0, abs(number[x])) for x, d in away.items()):
         values = ", ".join(f"{x.name} = {float(found.numbers[x]):.6g} ({d:+.6g})" for x, d in away.items() if d)
-        mend = f'start there, or ask about = "{EQUILIBRIUM if at_rest else STEADY}"'
-        raise DerivationError(f"{what}; the {kind} nearest to it is not near: {values}", "linearize.about", mend)
+        fix = f'start there, or ask about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        raise DerivationError(f"{what}; the {kind} nearest to it is not near: {values}", "linearize.about", fix)
     return replace(found, beside={x: number[x] for x in shown}), first
 
 
@@ -415,7 +418,7 @@ def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
 
 
 # -------- dependent values ------------------------------------------------------------------------------------
-# Reference -> the same with what its ties say of coordinates and speeds that nobody stated, in closed form.
+# Reference -> the same with what its constraints say of coordinates and speeds that nobody stated, in closed form.
 
 
 MOST = 8  # dependent speeds that are taken out exactly

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.first_order import Entries, MatrixEntry, Numbers
 from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside, state_matrix_of
 from eomgen.mechanics.linearization.polynomial import (
@@ -26,7 +27,6 @@ from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -214,7 +214,7 @@ class Modes:
         for name, known in zip(names, (rows, columns), strict=True):
             if name not in known:
                 what = f"{function}({', '.join(names)}): '{name}' is no coordinate of the linearized system"
-                raise DerivationError(what, mend=f"one of {', '.join(known)}")
+                raise DerivationError(what, fix=f"one of {', '.join(known)}")
         return rows[names[0]], columns[names[1]]
 
     def frequency(self, k: int) -> Frequency:
@@ -227,7 +227,7 @@ class Modes:
         if not 1 <= k <= len(found):
             n = len(found)
             have = "one small motion oscillates" if n == 1 else f"{n or 'no'} small motions oscillate"
-            raise DerivationError(f"frequency({k}): {have}", mend="ask for one of those")
+            raise DerivationError(f"frequency({k}): {have}", fix="ask for one of those")
         return found[k - 1]
 
     @property
@@ -426,7 +426,7 @@ def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
 
 
 def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
-    """Two zeros are one rigid motion of a place of rest; of a steady motion they lead to its neighbours."""
+    """Two zeros are one rigid motion of an equilibrium; of a steady motion they lead to its neighbours."""
     pairs = len(shapes) // 2 if small.is_second_order and small.reference.about == EQUILIBRIUM else 0
     rigid = [Mode(0j, True, shape) for shape in shapes[: 2 * pairs : 2]]
     return rigid + [Mode(0j, False, shape) for shape in shapes[2 * pairs :]]

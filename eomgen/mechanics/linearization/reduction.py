@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.linearization.first_order import (
     Choice,
@@ -27,7 +28,6 @@ from eomgen.mechanics.linearization.first_order import (
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.model.joints.ball import rotation_of
 from eomgen.model.values import quaternions_of
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Matrix, apply, vector_of
@@ -36,7 +36,7 @@ from eomgen.symbolic.numeric.evaluation import fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
 
 # -------- reduction -------------------------------------------------------------------------------------------
-# Reference -> LinearEquations: the equations of motion to first order, ties and dependent speeds taken out.
+# Reference -> LinearEquations: the equations of motion to first order, constraints and dependent speeds taken out.
 #
 # With a' the accelerations and lam the multipliers of the reference, small motions satisfy
 #
@@ -46,7 +46,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
 #     J da + A_q dq + A_u du = 0,                      J a + gamma = 0
 #     G dq = 0,                                        relations between positions
 #
-# R_q holds M_q a and the curvature of the ties, -lam d2phi. With independent dq_i and du_i
+# R_q holds M_q a and the curvature of the constraints, -lam d2phi. With independent dq_i and du_i
 #
 #     dq = P dq_i,   du = Z du_i + Y dq_i,   da = Z da_i + X_q dq_i + X_u du_i,   J Z = 0
 #
@@ -100,7 +100,7 @@ class Reducing:
     @cached_property
     def J(self) -> Entries:
         """The closing rows that are looked at; the others follow from them."""
-        return at(self.field, [self.first.equations.J[i] for i in self.choice.ties])
+        return at(self.field, [self.first.equations.J[i] for i in self.choice.constraints])
 
     @cached_property
     def M(self) -> Entries:
@@ -118,14 +118,14 @@ class Reducing:
     @cached_property
     def a(self) -> list[MatrixEntry]:
         """Accelerations, the independent ones 0: J a + gamma = 0."""
-        if not self.choice.ties:
+        if not self.choice.constraints:
             return [0] * len(self.first.system.symbols.u)
-        gamma = self.field.of([self.first.equations.gamma[i] for i in self.choice.ties])
+        gamma = self.field.of([self.first.equations.gamma[i] for i in self.choice.constraints])
         return [row[0] for row in self.following([[x] for x in gamma])]
 
     @cached_property
     def forces(self) -> list[MatrixEntry]:
-        """M a - forcing: what the ties must push."""
+        """M a - forcing: what the constraints must push."""
         forcing = self.field.of(self.first.equations.forcing)
         return [self.field.tidy(inner(row, self.a) - x) for row, x in zip(self.M, forcing, strict=True)]
 
@@ -135,7 +135,7 @@ class Reducing:
         choice = self.choice
         J_d = [[row[k] for row in self.J] for k in choice.du]
         found = matrix_solution(self.field, J_d, [[self.forces[k]] for k in choice.du]) if choice.du else []
-        by_row = dict(zip(choice.ties, (row[0] for row in found), strict=True))
+        by_row = dict(zip(choice.constraints, (row[0] for row in found), strict=True))
         return [by_row.get(i, 0) for i in range(len(self.first.equations.J))]
 
     @cached_property
@@ -157,13 +157,13 @@ class Reducing:
 
     def _closing(self, name: str) -> Entries:
         rows = self.first.derivatives[name]
-        return at(self._whole, [rows[i] for i in self.choice.ties])
+        return at(self._whole, [rows[i] for i in self.choice.constraints])
 
     @cached_property
     def Z(self) -> Entries:
         """du = Z du_i: J Z = 0."""
         n, kept = len(self.first.system.symbols.u), self.choice.u
-        found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.ties else []
+        found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.constraints else []
         place = {k: j for j, k in enumerate(kept)}
         return [[int(place[k] == j) for j in range(len(kept))] if k in place else found[k] for k in range(n)]
 
@@ -187,7 +187,7 @@ class Reducing:
         R_q, R_u = self.derivative("R_q"), self.derivative("R_u")
         Y = [[0] * len(choice.q)] * n
         X_q, X_u = Y, [[0] * len(choice.u)] * n
-        if choice.ties:
+        if choice.constraints:
             A_u = self._closing("A_u")
             Y = self.following(matrix_product(field, self._closing("V_q"), P))
             X_q = self.following(
@@ -218,11 +218,11 @@ class Reducing:
 
 def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> dict[Node, MatrixEntry]:
     """The dependent speeds by J u + sigma = 0, from the independent ones of the state."""
-    if not choice.ties:
+    if not choice.constraints:
         return {}
     there, u = Reducing(first, choice, field), first.system.symbols.u
     independent = [[x] for x in field.of([u[k] for k in choice.u])]
-    sigma = field.of([first.equations.sigma[i] for i in choice.ties])
+    sigma = field.of([first.equations.sigma[i] for i in choice.constraints])
     pushed = matrix_product(field, [[row[k] for k in choice.u] for row in there.J], independent)
     found = there.following([[field.tidy(x[0] + s)] for x, s in zip(pushed, sigma, strict=True)])
     return {u[k]: found[k][0] for k in choice.du}
@@ -398,7 +398,7 @@ def restricted(
         strange = [name for name in wanted if name not in names]
         what = f"'{strange[0]}' is not free to move by itself" if strange else "coordinates without a speed are left"
         raise DerivationError(
-            f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates", mend="take those"
+            f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates", fix="take those"
         )
     c = [names.index(name) for name in wanted]
     o = [j for j in range(len(names)) if j not in c]

@@ -9,6 +9,7 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.rows import Row
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
@@ -21,7 +22,6 @@ from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.mechanics.start.state import refuse_lost, start_state
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
 from eomgen.symbolic.expression.traversal import holds_many_digits
@@ -29,7 +29,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 # -------- reference -------------------------------------------------------------------------------------------
-# System -> Reference: the place of rest, or the steady motion, about which small motions are sought.
+# System -> Reference: the equilibrium, or the steady motion, about which small motions are sought.
 
 
 EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
@@ -40,11 +40,11 @@ class ReferenceMotion:
     """The state about which the equations are linearized.
 
     Args:
-        system: of the model; about a place of rest its drives are held.
+        system: of the model; about an equilibrium its drives are held.
         about: EQUILIBRIUM, START or STEADY.
         exact: t, q, u and inputs as scalars of the parameters, as far as they are known so.
         numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
-        place: the place of rest, where it was sought.
+        place: the equilibrium, where it was sought.
         family: the steady motions that one belongs to, where it was sought and they could be written.
         beside: the start, which was asked and is none, and to which this one is near; None where none was asked.
     """
@@ -86,7 +86,7 @@ class ReferenceMotion:
 
 
 def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
-    """The place of rest nearest to the guess.
+    """The equilibrium nearest to the guess.
 
     Args:
         guess: values of coordinates in place of `near` and `start`.
@@ -119,7 +119,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
         raise DerivationError(
             "rest beside drives is sought of coordinates that are all free or driven",
             "coordinates",
-            mend='ask about = "start"',
+            fix='ask about = "start"',
         )
     statics = StaticEquations(
         system,
@@ -149,19 +149,19 @@ def _place(place: Equilibrium) -> ReferenceMotion:
 
 
 def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | None = None) -> ReferenceMotion:
-    """The start of the model, without its speeds where it is to be a place of rest.
+    """The start of the model, without its speeds where it is to be an equilibrium.
 
     Args:
         given: coordinates and speeds in place of the model's.
     Raises:
-        DerivationError: a tie that does not hold there.
+        DerivationError: a constraint that does not hold there.
     """
     symbols, scope, model = system.symbols, system.scope, system.scope.model
     trial = values_of_parameters(scope, Random(3))
     parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
     state = start_state(system, parameters, given)
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
-    sought = fixed_by_position(system.ties)
+    sought = fixed_by_position(system.constraints)
     exact = {symbols.t: 0} | start_values(scope, (q for q in symbols.q if q not in sought))
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
@@ -173,7 +173,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
         },
         scope.positive,
     )
-    gaps = [gap for row in system.ties.rows if (gap := _gap(row)) is not None]
+    gaps = [gap for row in system.constraints.rows if (gap := _gap(row)) is not None]
     exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
     exact = exact if symbols.parameters.keys() - exact_parameters(model).keys() else _short(exact)

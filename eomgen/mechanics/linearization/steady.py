@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import movable, nearest_root
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import places_of_rest
@@ -17,7 +18,6 @@ from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.mechanics.linearization.first_order import Choice, Exact, FirstOrder, Numbers, choice_of, determined
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, dependent_speeds, floats, unsettled
 from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
@@ -68,7 +68,7 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
     """
     choice = choice_of(first, reference, wanted)
     if not choice.u:
-        what = "the ties leave no motion free, so none is steady"
+        what = "the constraints leave no motion free, so none is steady"
         raise DerivationError(what, "linearize.about", 'leave a freedom, or ask about = "equilibrium"')
     free = _free(first, choice)
     for mask in (free > STATED, np.ones(len(free), dtype=bool)):
@@ -200,7 +200,7 @@ class Here:
 
     @property
     def slopes(self) -> np.ndarray:
-        """Their derivatives by (q_i, u_i) along the ties."""
+        """Their derivatives by (q_i, u_i) along the constraints."""
         e = self.equations
         upper = np.hstack([floats(e.K), floats(e.C)])
         return np.vstack([upper, np.hstack([floats(e.F), floats(e.E)])[self.still]])
@@ -230,18 +230,18 @@ class Here:
         """After a step of the independent ones, the others following.
 
         Raises:
-            NoValue: the ties do not close there.
+            NoValue: the constraints do not close there.
         """
         symbols, number = self.first.system.symbols, fifty_digits().number(1)
         n = len(self.choice.q)
         dq = floats(self.equations.P) @ step[:n]
         state = {**self.state, **{q: self.state[q] + number * d for q, d in zip(symbols.q, dq, strict=True)}}
         state |= {symbols.u[k]: state[symbols.u[k]] + number * d for k, d in zip(self.choice.u, step[n:], strict=True)}
-        moved = movable(self.first.system.ties)
+        moved = movable(self.first.system.constraints)
         following = [q for q in (symbols.q[k] for k in self.choice.dq) if q in moved]
         found = nearest_root(self.first.relations, state, following) if following else state
         if found is None:
-            raise NoValue("the ties do not close")
+            raise NoValue("the constraints do not close")
         return self.at(self.first, self.choice, self._with_speeds(found))
 
     def _with_speeds(self, state: State) -> State:
@@ -262,7 +262,7 @@ class Here:
 
 
 MOST_OPERATIONS = 600  # of the equations of motion that are written as conditions
-MOST_OF_TIES = 250  # of the rows by which speeds are taken out
+MOST_OF_CONSTRAINTS = 250  # of the rows by which speeds are taken out
 MOST_FOLLOWING = 4  # dependent coordinates and speeds
 LONGEST = 1_200  # characters of conditions that are solved
 MOST_SOUGHT = 2  # unknowns of which all values are sought
@@ -292,8 +292,8 @@ def _is_small(first: FirstOrder, choice: Choice) -> bool:
     driven = sum(part.driven for part in first.system.scope.model.coordinates.values())
     if len(choice.dq) - driven + len(choice.du) > MOST_FOLLOWING or operations(first.residual).total > MOST_OPERATIONS:
         return False
-    rows = [x for i in choice.ties for x in (*first.equations.J[i], first.equations.gamma[i])]
-    return operations(rows).total <= MOST_OF_TIES
+    rows = [x for i in choice.constraints for x in (*first.equations.J[i], first.equations.gamma[i])]
+    return operations(rows).total <= MOST_OF_CONSTRAINTS
 
 
 @dataclass(frozen=True)

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.first_order import Entries, Exact, matrix_solution
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.linearization.reduction import LinearEquations
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.terms import TooLarge
@@ -173,4 +173,4 @@ def _output(name: str, states: tuple[str, ...], A: Entries, B: Entries) -> tuple
     if name.endswith("'") and name[:-1] in states:
         k = states.index(name[:-1])
         return list(A[k]), list(B[k])
-    raise UsageError(f"no output '{name}' of small motions", mend=f"{', '.join(states)}, or the rate of one of them")
+    raise UsageError(f"no output '{name}' of small motions", fix=f"{', '.join(states)}, or the rate of one of them")

@@ -19,6 +19,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.balance import DIRECTIONS, Balance
 from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect, joint_effects
@@ -27,7 +28,6 @@ from eomgen.mechanics.kinematics.loads import in_ground_axes, weights
 from eomgen.mechanics.kinematics.motion import GROUND
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.expression.spatial import (
@@ -167,7 +167,7 @@ def _of_pairs(wrenches: _Wrenches) -> str:
 def _takes_a_couple(system: System, component: Component) -> bool:
     """What the model has no bearing for: of a gear's frame, and of strands that keep their direction."""
     forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
-    if component.kind != "tie":
+    if component.kind != "constraint":
         return False
     side = component.label == "n" and bool(system.scope.model.constraints[component.owner].strand_rows())
     return side or not forces
@@ -177,11 +177,13 @@ def _is_inner(system: System, component: Component) -> bool:
     """Whether the component acts between bodies, nothing of it on the ground."""
     if len({effect.link for effect in component.effects}) < 2:
         return False
-    if component.kind != "tie":
+    if component.kind != "constraint":
         return True
     if system.scope.model.constraints[component.owner].leans_on_ground():
         return False
-    rows = [row for row in system.ties.rows if (row.tie, row.number) == (component.owner, component.number)]
+    rows = [
+        row for row in system.constraints.rows if (row.constraint, row.number) == (component.owner, component.number)
+    ]
     return all(_body(push) is not None for row in rows for push in row.pushes)
 
 
@@ -242,7 +244,8 @@ def _momenta(system: System) -> Iterable[tuple[Vector, Vector]]:
 
 
 # -------- sides -----------------------------------------------------------------------------------------------
-# Balance -> reactions by the balance of all bodies on one side of a joint or tie, which hold together by it alone.
+# Balance -> reactions by the balance of all bodies on one side of a joint or constraint, which hold together by it
+# alone.
 #
 # Cut it through: the side without the ground is held by nothing else, so that what acts at the cut is
 #
@@ -258,14 +261,15 @@ MOST_BODIES = 12  # of a system in which sides are added up: a chain of n has n^
 
 
 def reactions_by_sides(balance: Balance) -> dict[int, Scalar]:
-    """The components, by their number, that one side of their joint or tie gives; none where there is friction."""
+    """The components, by their number, that one side of their joint or constraint gives; none where there is
+    friction."""
     links = balance.system.motion.links
     if len(links) > MOST_BODIES or balance.unknowns or any(c.frictional for c in balance.components):
         return {}
     sides = _Sides(balance)
     cuts: dict[tuple[str, str], list[int]] = {}
     for j, c in enumerate(balance.components):
-        cuts.setdefault((c.owner, c.side if c.kind == "tie" else ""), []).append(j)
+        cuts.setdefault((c.owner, c.side if c.kind == "constraint" else ""), []).append(j)
     return {j: x for numbers in cuts.values() for j, x in sides.of_cut(numbers).items()}
 
 
@@ -283,7 +287,7 @@ class _Sides:
         return {(index[e.body], e.direction): e.needed for e in self.balance.equations}
 
     def of_cut(self, numbers: Sequence[int]) -> dict[int, Scalar]:
-        """The components of one joint or tie; none where its bodies hang together by something else, too."""
+        """The components of one joint or constraint; none where its bodies hang together by something else, too."""
         components = [self.balance.components[j] for j in numbers]
         ends = {effect.link for c in components for effect in c.effects}
         sides = [side for end in sorted(ends) if GROUND not in (side := self._side(end, set(numbers)))]
@@ -327,7 +331,7 @@ class _Sides:
 
     def _is_even(self, component: Component) -> bool:
         """Whether action and reaction are among its pushes: a string over a peg of the ground presses on that, too."""
-        if component.kind != "tie":
+        if component.kind != "constraint":
             return True
         total: list[Scalar] = [0] * 6
         for effect in component.effects:

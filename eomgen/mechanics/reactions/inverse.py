@@ -17,10 +17,11 @@ from dataclasses import replace
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.rank import redundant_rows
-from eomgen.mechanics.constraints.rows import Row, Ties, holds_identically
+from eomgen.mechanics.constraints.rows import Constraints, Row, holds_identically
 from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
 from eomgen.mechanics.dynamics.system import (
     EquationsOfMotion,
@@ -36,11 +37,10 @@ from eomgen.mechanics.kinematics.scene import let_go
 from eomgen.mechanics.kinematics.tree import applied_wrenches, bias_forces, branches_of
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.start.state import begun_state
-from eomgen.model.driven import driving_ties
+from eomgen.model.diagnostics import nearest
+from eomgen.model.driven import driving_constraints
 from eomgen.model.fields import Table
-from eomgen.model.findings import nearest
 from eomgen.model.part import altered
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
@@ -79,14 +79,14 @@ class Inverse:
         """tau without unknowns, these by determinants.
 
         Raises:
-            DerivationError: ties follow from others, so that they share their forces; too many unknowns.
+            DerivationError: constraints follow from others, so that they share their forces; too many unknowns.
         """
         if not self.unknowns:
             return self.tau
         if len(self.rows) != len(self.unknowns):
             raise DerivationError(
-                "tau has no single expression: ties that follow from others share their forces",
-                mend="take the generated code",
+                "tau has no single expression: constraints that follow from others share their forces",
+                fix="take the generated code",
             )
         lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in self.rows]
         values = [x for (x,) in cramer.solution_by_minors(lines, [(x,) for x in self.right])[0]]
@@ -94,11 +94,11 @@ class Inverse:
 
 
 def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
-    """tau that moves the system with accelerations a; where ties close, J a + gamma = 0 must hold of them.
+    """tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them.
 
     Args:
         actuated: coordinates, speeds, inputs or bodies (in their joint) that act, one for each degree of freedom; ()
-            for all speeds of a system without closing ties.
+            for all speeds of a system without closing constraints.
     Raises:
         UsageError: an unknown name; too few or too many actuators.
         DerivationError: Coulomb friction; an input that does not act linearly.
@@ -106,13 +106,13 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
     if has_friction(system):
         raise DerivationError(
             "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
-            mend="give the coordinates their `motion`, and ask for drive(...)",
+            fix="give the coordinates their `motion`, and ask for drive(...)",
         )
     symbols, closing = system.symbols, system.symbols.lam
     if not symbols.u:
-        raise UsageError("nothing is free to move: every motion is given", mend="ask for drive(...) of what is driven")
+        raise UsageError("nothing is free to move: every motion is given", fix="ask for drive(...) of what is driven")
     if not actuated and closing:
-        raise UsageError("ties close loops, and nothing says which coordinates are actuated", mend=NAME)
+        raise UsageError("constraints close loops, and nothing says which coordinates are actuated", fix=NAME)
     names = tuple(actuated) or tuple(_along(u, system) for u in symbols.u)
     own = {name: symbols.inputs[name] for name in names if name in symbols.inputs}
     needed = inverse_residual(system)
@@ -158,11 +158,11 @@ def _columns(system: System, names: Sequence[str], needed: ScalarRow) -> tuple[S
         elif name not in known:
             raise UsageError(
                 f"there is no coordinate, speed, input or hinged body '{name}'",
-                mend=nearest(name, [*known, *symbols.inputs]),
+                fix=nearest(name, [*known, *symbols.inputs]),
             )
         elif all(is_zero(x) for x in known[name]):
-            asked = name if name in scope.model.coordinates else "its coordinate"
-            raise UsageError(f"'{name}' is driven: it takes what drive({asked}) says", mend=NAME)
+            requested = name if name in scope.model.coordinates else "its coordinate"
+            raise UsageError(f"'{name}' is driven: it takes what drive({requested}) says", fix=NAME)
     return tuple(known[name] for name in names)
 
 
@@ -180,7 +180,7 @@ def _column_of_joint(system: System, body: str) -> ScalarRow:
 def _column_of_input(name: str, node: Node, needed: ScalarRow) -> ScalarRow:
     column = tuple(-gradient(x, (node,))[0] for x in needed)
     if any(depends_on(x, (node,)) for x in column):
-        raise DerivationError(f"'{name}' does not act linearly: what it has to be is not determined", mend=NAME)
+        raise DerivationError(f"'{name}' does not act linearly: what it has to be is not determined", fix=NAME)
     return column
 
 
@@ -190,16 +190,16 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
     Raises:
         UsageError: rank [A J^T] < nu, or rank [A J^T] - rank J^T < number of actuators.
     """
-    ties, nu = system.ties, len(system.symbols.u)
-    state = generic_state(ties)
+    constraints, nu = system.constraints, len(system.symbols.u)
+    state = generic_state(constraints)
     A = _numbers([x for column in columns for x in column], state, nu)
-    J = rows_where_closed(ties, state)
+    J = rows_where_closed(constraints, state)
     whole, own = (dense.rank(rows, smallest=RANK_NEARBY) for rows in (np.vstack([A, J]), J))
-    told = f"{len(names)} actuated, and {nu - own} degrees of freedom"
+    reported = f"{len(names)} actuated, and {nu - own} degrees of freedom"
     if whole < nu:
-        raise UsageError(f"{told}: {nu - whole} would be moved by nothing", mend=NAME)
+        raise UsageError(f"{reported}: {nu - whole} would be moved by nothing", fix=NAME)
     if whole - own < len(names):
-        raise UsageError(f"{told}: how the actuators share their work is indeterminate", mend=NAME)
+        raise UsageError(f"{reported}: how the actuators share their work is indeterminate", fix=NAME)
 
 
 def _numbers(entries: Sequence[Scalar], state: dict[Node, object], width: int) -> np.ndarray:
@@ -209,7 +209,7 @@ def _numbers(entries: Sequence[Scalar], state: dict[Node, object], width: int) -
 
 def _solved_for(found: Inverse, columns: Sequence[ScalarRow], r: ScalarRow) -> Inverse:
     """tau of the actuators that act along one speed alone; the equations for the others, and for lam."""
-    symbols, J = found.system.symbols, found.system.ties.J
+    symbols, J = found.system.symbols, found.system.constraints.J
     alone = _acting_alone(columns)
     others = [m for m in range(len(columns)) if m not in alone.values()]
     stands = {m: symbols.inputs.get(found.names[m], symbols.graph.symbol(f"tau({found.names[m]})")) for m in others}
@@ -235,7 +235,8 @@ def _acting_alone(columns: Sequence[ScalarRow]) -> dict[int, int]:
 
 
 # -------- drive -----------------------------------------------------------------------------------------------
-# System -> the forces that act along coordinates: what drives a given motion, and multipliers of ties of coordinates.
+# System -> the forces that act along coordinates: what drives a given motion, and multipliers of constraints of
+# coordinates.
 #
 # With the coordinate k freed, the equations of motion say what force along it keeps it moving as given:
 #
@@ -247,7 +248,7 @@ def _acting_alone(columns: Sequence[ScalarRow]) -> dict[int, int]:
 def drive(system: System, coordinate: str) -> Scalar:
     """The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam.
 
-    That of a coordinate which a tie drives is the multiplier of the tie.
+    That of a coordinate which a constraint drives is the multiplier of the constraint.
 
     Raises:
         DerivationError: the coordinate is not driven.
@@ -260,13 +261,13 @@ def drive(system: System, coordinate: str) -> Scalar:
 
 def _drive(system: System, coordinate: str) -> Scalar:
     model = system.scope.model
-    part, ties = model.coordinates[coordinate], driving_ties(model).get(coordinate, ())
-    if not part.driven and ties:
-        return sum((multiplier(system, tie) for tie in ties), start=0)
+    part, constraints = model.coordinates[coordinate], driving_constraints(model).get(coordinate, ())
+    if not part.driven and constraints:
+        return sum((multiplier(system, constraint) for constraint in constraints), start=0)
     if not part.driven:
         raise DerivationError(
             f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
-            mend="ask it of a coordinate with `motion`, `rate` or `acceleration`",
+            fix="ask it of a coordinate with `motion`, `rate` or `acceleration`",
         )
     free = with_drive_let_go(system, coordinate)
     equations = assembled_by_recursion(free)
@@ -277,7 +278,7 @@ def _drive(system: System, coordinate: str) -> Scalar:
 def with_drive_let_go(system: System, coordinate: str) -> System:
     """The same without what moves a driven coordinate: one like others, which starts where it is driven from.
 
-    A system over all rates stays one: rates that its ties would give need not be those of a state.
+    A system over all rates stays one: rates that its constraints would give need not be those of a state.
     """
     key = (with_drive_let_go, coordinate)
     if key not in system.found:
@@ -306,8 +307,8 @@ def drive_residual(equations: EquationsOfMotion, k: int, without: Container[tupl
     """(M a + c - Q - J^T lam)_k, the multipliers of some rows left out."""
     symbols = equations.system.symbols
     value = sum((m * a for m, a in zip(equations.M[k], symbols.a, strict=True)), start=-equations.forcing[k])
-    for row, J, lam in zip(equations.system.ties.closing, equations.J, symbols.lam, strict=True):
-        value = value if (row.tie, row.number) in without else value - J[k] * lam
+    for row, J, lam in zip(equations.system.constraints.closing, equations.J, symbols.lam, strict=True):
+        value = value if (row.constraint, row.number) in without else value - J[k] * lam
     return value
 
 
@@ -318,42 +319,43 @@ def _carried(value: Scalar, system: System) -> Scalar:
     return transplanted((value,), scope.graph, meanings)[0]
 
 
-def multiplier(system: System, tie: str) -> Scalar:
-    """lam of a tie of one row in the equations of motion; a symbol where it closes.
+def multiplier(system: System, constraint: str) -> Scalar:
+    """lam of a constraint of one row in the equations of motion; a symbol where it closes.
 
     Raises:
         DerivationError: it has no single row, carries nothing, or shares what it carries with others.
     """
-    rows = [row for row in system.ties.rows if row.tie == tie]
+    rows = [row for row in system.constraints.rows if row.constraint == constraint]
     if len(rows) != 1:
         raise DerivationError(
-            f"multiplier({tie}): the tie has {len(rows)} rows", mend="ask for reaction(...) of one component"
+            f"multiplier({constraint}): the constraint has {len(rows)} rows",
+            fix="ask for reaction(...) of one component",
         )
     (row,) = rows
     if row.status == "identical":
         raise DerivationError(
-            f"multiplier({tie}): the coordinates satisfy it by themselves, and it acts on no body",
-            mend="take it away, or other coordinates",
+            f"multiplier({constraint}): the coordinates satisfy it by themselves, and it acts on no body",
+            fix="take it away, or other coordinates",
         )
-    _refuse_shared((system.free or system).ties, tie)
+    _refuse_shared((system.free or system).constraints, constraint)
     if row.status == "closing":
         return next(lam for lam in system.symbols.lam if lam.name == row.label)
     return _eliminated(system, row)
 
 
-def _refuse_shared(ties: Ties, tie: str) -> None:
-    """Refuse a tie that follows from others: what these carry together is determined, not what each does."""
+def _refuse_shared(constraints: Constraints, constraint: str) -> None:
+    """Refuse a constraint that follows from others: what these carry together is determined, not what each does."""
     try:
-        redundant = redundant_rows(ties)
+        redundant = redundant_rows(constraints)
     except MissingValues:  # whether they do cannot be told without values
         return
     for row in redundant:
-        sharing = tuple(dict.fromkeys((row.tie, *row.others)))
-        if tie in sharing:
-            with_whom = " and ".join(f"'{name}'" for name in sharing if name != tie)
+        sharing = tuple(dict.fromkeys((row.constraint, *row.others)))
+        if constraint in sharing:
+            with_whom = " and ".join(f"'{name}'" for name in sharing if name != constraint)
             raise DerivationError(
-                f"statically indeterminate: multiplier({tie}) shares its force with {with_whom}",
-                mend="take one of them away",
+                f"statically indeterminate: multiplier({constraint}) shares its force with {with_whom}",
+                fix="take one of them away",
             )
 
 
@@ -361,13 +363,13 @@ def _eliminated(system: System, own: Row) -> Scalar:
     """lam of an eliminated row: J_d^T lam = (M a + c - Q - J_c^T lam_c)_d along the coordinates d that they give."""
     free = system.free
     assert free is not None, "a row is eliminated from the free system"
-    gone = [row for row in system.ties.rows if row.status == "eliminated"]
-    names = {(row.tie, row.number) for row in gone}
+    gone = [row for row in system.constraints.rows if row.status == "eliminated"]
+    names = {(row.constraint, row.number) for row in gone}
     speeds, equations = [u.name for u in free.symbols.u], assembled_by_recursion(free)
     d = [speeds.index(f"{row.eliminates}'") for row in gone]
-    J = {(row.tie, row.number): line for row, line in zip(free.ties.closing, equations.J, strict=True)}
+    J = {(row.constraint, row.number): line for row, line in zip(free.constraints.closing, equations.J, strict=True)}
     right = [(drive_residual(equations, k, names) - _friction(system, free, k),) for k in d]
-    columns = [J[row.tie, row.number] for row in gone]
+    columns = [J[row.constraint, row.number] for row in gone]
     lines = [{j: line[k] for j, line in enumerate(columns) if not is_zero(line[k])} for k in d]
     lam, _ = cramer.solution_by_minors(lines, right, vanishes=holds_identically)
     known: dict[Node, Scalar] = {}
@@ -379,24 +381,25 @@ def _eliminated(system: System, own: Row) -> Scalar:
 
 
 # -------- accelerations at start ------------------------------------------------------------------------------
-# Equations of motion -> accelerations and multipliers by the independent accelerations: few freedoms, many ties.
+# Equations of motion -> accelerations and multipliers by the independent accelerations: few degrees of freedom, many
+# constraints.
 #
 #     a = Z a_i + X,   Z^T M Z a_i = Z^T (F - M X),   J_d^T lam = (M a - F)_d
 #
 # J = (J_i, J_d) with J_d regular; Z = (1, A), X = (0, b) with J_d A = -J_i, J_d b = -gamma.
 
 
-FEW = 3  # freedoms
+FEW = 3  # degrees of freedom
 
 
 def by_independent(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[Node, Scalar]:
-    """a and lam, where the ties leave few freedoms; redundant rows are left out, their lam 0.
+    """a and lam, where the constraints leave few degrees of freedom; redundant rows are left out, their lam 0.
 
     Args:
         kept: the closing rows that do not follow from others.
     Raises:
         DerivationError: too many unknowns hang together.
-        MissingValues: the ties do not close without values.
+        MissingValues: the constraints do not close without values.
     """
     symbols, n = equations.symbols, len(equations.M)
     J = [equations.J[m] for m in kept]
@@ -416,8 +419,8 @@ def by_independent(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[No
 
 def _moved(equations: EquationsOfMotion, Z: Sequence[Sequence[Scalar]], X: Sequence[Scalar]) -> list[Scalar]:
     """a = Z a_i + X of the independent accelerations that the forces make."""
-    freedoms = range(len(Z[0]))
-    columns = [[row[j] for row in Z] for j in freedoms]
+    degrees_of_freedom = range(len(Z[0]))
+    columns = [[row[j] for row in Z] for j in degrees_of_freedom]
     moved = [[inner(row, column) for row in equations.M] for column in columns]
     left = [force - inner(row, X) for force, row in zip(equations.forcing, equations.M, strict=True)]
     reduced = [_entries([inner(column, each) for each in moved]) for column in columns]
@@ -441,7 +444,7 @@ def _states(system: System) -> Iterator[State]:
     """The start where it has values, then a configuration that is not special."""
     with suppress(DerivationError, ModelError):
         yield begun_state(system)
-    yield generic_state(system.ties)
+    yield generic_state(system.constraints)
 
 
 def _entries(row: Sequence[Scalar]) -> dict[int, Scalar]:

@@ -1,6 +1,6 @@
 """Balance -> Reactions: every reaction of every joint and constraint.
 
-Balance -> Reactions: every reaction of every joint and tie, as functions of q, u and the accelerations.
+Balance -> Reactions: every reaction of every joint and constraint, as functions of q, u and the accelerations.
 
 The equations of the bodies hold more rows than there are reactions: those left over are the equations of motion. Where
 they hold fewer independent ones, some reactions are indeterminate, and the null space says how they may be shared.
@@ -16,8 +16,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rank import freedoms
+from eomgen.mechanics.constraints.rank import degrees_of_freedom
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.balance import (
@@ -38,9 +39,8 @@ from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
 from eomgen.mechanics.start.exact import values_where_at_rest
-from eomgen.model.driven import driven_coordinates, driving_ties
+from eomgen.model.driven import driven_coordinates, driving_constraints
 from eomgen.model.trusses import called, declared_at
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -146,7 +146,8 @@ class Reactions:
         )
 
     def force(self, owner: str, side: str = "", frame: str = "") -> Vector:
-        """Force of a joint on its child, of a tie on its first-named body or on `side`; ground axes or `frame`'s.
+        """Force of a joint on its child, of a constraint on its first-named body or on `side`; ground axes or
+        `frame`'s.
 
         Raises:
             DerivationError: there is no such reaction, or it is indeterminate.
@@ -154,7 +155,7 @@ class Reactions:
         return vector_of(self.component("force", k, owner, side, frame) for k in range(3))
 
     def couple(self, owner: str, side: str = "", frame: str = "") -> Vector:
-        """Couple, as `force`, about the point of the joint or tie."""
+        """Couple, as `force`, about the point of the joint or constraint."""
         return vector_of(self.component("couple", k, owner, side, frame) for k in range(3))
 
     def component(self, what: str, k: int, owner: str, side: str = "", frame: str = "") -> Scalar:
@@ -175,7 +176,7 @@ class Reactions:
         return mode is not None and not mode.closed
 
     def normal(self, owner: str) -> Scalar:
-        """The normal reaction, positive along the tie's normal; friction is not in it.
+        """The normal reaction, positive along the constraint's normal; friction is not in it.
 
         Of a bilateral contact on a line in space sqrt(N_1^2 + N_2^2).
         """
@@ -212,7 +213,7 @@ class Reactions:
         if not found:
             raise DerivationError(
                 f"truss '{truss}' has no member between '{first}' and '{second}'",
-                mend=f"its members: {', '.join(members)}",
+                fix=f"its members: {', '.join(members)}",
             )
         return self.value(found[0])
 
@@ -220,47 +221,47 @@ class Reactions:
         """Tension of a link, or of a strand of a string."""
         if self.is_open(owner):
             return 0
-        tie = self.balance.system.scope.model.constraints.get(owner)
-        numbers = () if tie is None else tie.strand_rows()
+        constraint = self.balance.system.scope.model.constraints.get(owner)
+        numbers = () if constraint is None else constraint.strand_rows()
         if numbers and not 1 <= strand <= len(numbers):
             raise DerivationError(
                 f"tension({owner}, {strand}): the string has {len(numbers)} strands",
-                mend="strands are numbered from 1 along the points",
+                fix="strands are numbered from 1 along the points",
             )
         number = numbers[strand - 1] if numbers else strand
         found = [
             j
             for j, c in enumerate(self.components)
-            if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number
+            if c.owner == owner and c.kind == "constraint" and c.label == "tension" and c.number == number
         ]
         if not found:
             raise DerivationError(
                 f"tension({owner}): '{owner}' has no tension there, it pulls on no body",
-                mend="name a string or a link that holds a body",
+                fix="name a string or a link that holds a body",
             )
         return self.value(found[0])
 
     def multiplier(self, owner: str) -> Scalar:
-        """The multiplier of a tie of one row."""
+        """The multiplier of a constraint of one row."""
         if self.is_open(owner):
             return 0
-        found = [j for j, c in enumerate(self.components) if c.owner == owner and c.kind == "tie"]
+        found = [j for j, c in enumerate(self.components) if c.owner == owner and c.kind == "constraint"]
         if len(found) != 1:
             raise DerivationError(
                 f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them",
-                mend=f"reaction({owner}, LABEL)",
+                fix=f"reaction({owner}, LABEL)",
             )
         return self.value(found[0])
 
     def labels(self, owner: str) -> list[str]:
-        """What the components of one tie or joint are called."""
+        """What the components of one constraint or joint are called."""
         return [c.label for c in self.components if c.owner == owner]
 
     def _labelled(self, owner: str, label: str, words: str) -> Scalar:
         found = [j for j, c in enumerate(self.components) if c.owner == owner and c.label == label]
         if len(found) != 1:
             others = ", ".join(c.name for c in self.components if c.owner == owner) or "none"
-            raise DerivationError(f"'{owner}' has no {words}", mend=f"its reactions: {others}")
+            raise DerivationError(f"'{owner}' has no {words}", fix=f"its reactions: {others}")
         return self.value(found[0])
 
     def _sums(self, what: str, owner: str, side: str, frame: str) -> tuple[list[Combination], Vector]:
@@ -269,9 +270,11 @@ class Reactions:
         mine = {j: c for j, c in enumerate(self.components) if c.owner == owner}
         efforts = efforts_of(self.balance.system, owner)
         if not mine and not efforts:
-            driven = next((q for q, ties in driving_ties(motion.scope.model).items() if owner in ties), "")
-            mend = f"ask drive({driven})" if driven else "what is placed carries none: name the tie"
-            raise DerivationError(f"'{owner}' carries no reaction", mend=mend)
+            driven = next(
+                (q for q, constraints in driving_constraints(motion.scope.model).items() if owner in constraints), ""
+            )
+            fix = f"ask drive({driven})" if driven else "what is placed carries none: name the constraint"
+            raise DerivationError(f"'{owner}' carries no reaction", fix=fix)
         on = self._side(owner, side, [e for c in mine.values() for e in c.effects] or efforts)
         vectors = {j: self._on(c, on, what) for j, c in mine.items()}
         given = ZERO
@@ -307,7 +310,7 @@ class Reactions:
             return -1
         index = motion.index[side]
         if all(effect.link != index for effect in effects):
-            raise DerivationError(f"'{owner}' does not act on body '{side}'", mend="name a body that it touches")
+            raise DerivationError(f"'{owner}' does not act on body '{side}'", fix="name a body that it touches")
         return index
 
     def _replaced(self, vector: Vector) -> Vector:
@@ -425,7 +428,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
         if not system.symbols.u or all(map(holds_identically, left)):  # of rest what is left is looked at elsewhere
             return
     else:
-        motions = freedoms(system.ties)
+        motions = degrees_of_freedom(system.constraints)
         if len(left) <= motions or sum(not holds_identically(x) for x in left) <= motions:
             return
         if not system.symbols.u:
@@ -456,12 +459,12 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
     turning = direction.startswith("moment")
     what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
     joined = _joined_by_a_coordinate(balance.system)
-    mend = (
+    fix = (
         f"{joined}, and nothing named joins them: name the constraint that does"
         if joined
         else "what is placed carries no reaction: name the constraint that holds it, or hang it by joints"
     )
-    return DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), mend)
+    return DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), fix)
 
 
 def _joined_by_a_coordinate(system: System) -> str:
@@ -481,7 +484,7 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
     """Velocities along the rows: a basis of those that no reaction resists, and those of the coordinates."""
     system = balance.system
     rows, columns = len(balance.equations), len(balance.components)
-    state = generic_state(system.ties)
+    state = generic_state(system.constraints)
 
     def numbers(scalars: Sequence[Scalar]) -> list[float]:
         return [float(x) for x in evaluate(tuple(scalars), state, fifty_digits())]
@@ -496,14 +499,19 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
-    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the ties allow.
+    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the constraints
+    allow.
 
     Nodes that follow from their own balance may move: the forces on them are in balance along these motions too.
     """
     free = balance.system.free or balance.system
     nodes = balances_of_nodes(free)
     system = free if nodes else balance.system
-    kept = [line for row, line in zip(system.ties.closing, system.ties.J, strict=True) if row.label not in nodes]
+    kept = [
+        line
+        for row, line in zip(system.constraints.closing, system.constraints.J, strict=True)
+        if row.label not in nodes
+    ]
     motion = system.motion
     plane = motion.scope.model.space == "plane"
     columns = []

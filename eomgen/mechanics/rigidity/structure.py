@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rows import holds_identically
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
@@ -16,7 +17,6 @@ from eomgen.mechanics.start.exact import values_for, values_where_at_rest
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.forces.load import BodyPoint
 from eomgen.model.trusses import declared_at
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import derivative, substituted, tangent, tangents
 from eomgen.symbolic.expression.formula import over
@@ -167,7 +167,8 @@ class Structure:
     def released(self, row: int | Mapping[int, Scalar]) -> VelocityPlan:
         """The motion that one released reaction leaves: a velocity 1 along it, 0 along all others.
 
-        Where the bodies have freedoms besides, these stand still. A combination k of reactions is released as one:
+        Where the bodies have degrees of freedom besides, these stand still. A combination k of reactions is released
+        as one:
         velocities k along them.
 
         Raises:
@@ -178,7 +179,7 @@ class Structure:
             names = ", ".join(self.names[j] for j in combination)
             raise DerivationError(
                 f"{names} released, nothing can move: the other reactions hold the bodies without it",
-                mend="take a redundant constraint away",
+                fix="take a redundant constraint away",
             )
         if [*combination.values()] == [1]:
             return self._plan(self._columns[next(iter(combination))])
@@ -266,7 +267,8 @@ def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Str
     Args:
         at: exact scalars in place of coordinates; None: the start.
     Raises:
-        DerivationError: there is no body; a force, an energy or a tie that acts at no place; ties that do not close;
+        DerivationError: there is no body; a force, an energy or a constraint that acts at no place; constraints that
+            do not close;
             loads that are not linear in an unknown.
     """
     if not system.motion.links:
@@ -323,26 +325,26 @@ MOST_NAMES = 6  # of parts that move together
 MOST_MOTIONS = 3  # that are told in words
 
 
-def refuse_loose(structure: Structure, freedoms: int = 0) -> None:
+def refuse_loose(structure: Structure, degrees_of_freedom: int = 0) -> None:
     """Refuse bodies that can move although no coordinate describes it, and would.
 
     Args:
-        freedoms: the motions that coordinates describe.
+        degrees of freedom: the motions that coordinates describe.
     Raises:
         DerivationError: which bodies can move, and how.
     """
-    if structure.mobility <= freedoms or stays(structure):
+    if structure.mobility <= degrees_of_freedom or stays(structure):
         return
-    told = [motion_in_words(plan) for plan in structure.loose[:MOST_MOTIONS]]
-    more = len(structure.loose) - len(told)
-    enough = structure.indeterminacy + freedoms >= structure.mobility
+    reported = [motion_in_words(plan) for plan in structure.loose[:MOST_MOTIONS]]
+    more = len(structure.loose) - len(reported)
+    enough = structure.indeterminacy + degrees_of_freedom >= structure.mobility
     kind = "infinitesimally movable" if enough else "unstable"
-    what = f"the structure is {kind}: {'; '.join(told)}{f'; and {more} more' if more else ''}"
-    if freedoms:
-        what += f" ({freedoms} of these motions {'is' if freedoms == 1 else 'are'} a coordinate's)"
+    what = f"the structure is {kind}: {'; '.join(reported)}{f'; and {more} more' if more else ''}"
+    if degrees_of_freedom:
+        what += f" ({degrees_of_freedom} of these motions {'is' if degrees_of_freedom == 1 else 'are'} a coordinate's)"
     if enough:
         what += f"; its {len(structure.rows)} reactions are not independent there"
-    raise DerivationError(what, declared_at(_culprit(structure.loose[0])), _mend(structure, enough))
+    raise DerivationError(what, declared_at(_culprit(structure.loose[0])), _fix(structure, enough))
 
 
 def stays(structure: Structure) -> bool:
@@ -360,14 +362,18 @@ def stays(structure: Structure) -> bool:
 def _hangs(structure: Structure, plan: VelocityPlan) -> bool:
     """Whether a string pulls every body that moves."""
     system = structure.system
-    ties = system.scope.model.constraints
-    ropes = [row for row in system.ties.rows if row.component == "tension" and _only_pulls(ties[row.tie])]
+    constraints = system.scope.model.constraints
+    ropes = [
+        row
+        for row in system.constraints.rows
+        if row.component == "tension" and _only_pulls(constraints[row.constraint])
+    ]
     pulled = {body for row in ropes for body, _ in row.wrenches}
     return set(plan.moving) <= pulled
 
 
-def _only_pulls(tie: Constraint) -> bool:
-    return bool(tie.strand_rows()) or bool(getattr(tie, "unilateral", False))
+def _only_pulls(constraint: Constraint) -> bool:
+    return bool(constraint.strand_rows()) or bool(getattr(constraint, "unilateral", False))
 
 
 def _culprit(plan: VelocityPlan) -> str:
@@ -377,7 +383,7 @@ def _culprit(plan: VelocityPlan) -> str:
     return named[0] if named else plan.moving[0]
 
 
-def _mend(structure: Structure, enough: bool) -> str:
+def _fix(structure: Structure, enough: bool) -> str:
     if structure.is_special:
         return "at other values of the parameters it is held: change these, or turn a support"
     if enough:

@@ -9,6 +9,7 @@ from functools import cached_property, partial
 from itertools import chain
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
 from eomgen.mechanics.kinematics.loads import in_ground_axes
@@ -16,7 +17,6 @@ from eomgen.mechanics.kinematics.motion import VelocityField, rotation_center
 from eomgen.model.constraints.link import trusses_of
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly, readable_all
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.formula import over, sqrt

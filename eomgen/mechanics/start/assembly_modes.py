@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import gaps_of, is_guess, movable
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.dynamics.system import System
@@ -17,7 +18,6 @@ from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces.load import PointForce
 from eomgen.model.units import in_own_unit
 from eomgen.model.values import numeric_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
 from eomgen.symbolic.numeric.dense import independent_rows
@@ -170,10 +170,10 @@ class _Search:
     def branch(self, place: np.ndarray) -> AssemblyMode:
         values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
         words = ", ".join(f"{name} = {in_own_unit(self.system.scope.model, name, x, 6)}" for name, x in values.items())
-        told = words, assembly_sides(self.system, self._state(place))
+        reported = words, assembly_sides(self.system, self._state(place))
         if len(self.rows) < len(self.gaps):
-            return AssemblyMode(values, 0, *told)
-        return AssemblyMode(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1, *told)
+            return AssemblyMode(values, 0, *reported)
+        return AssemblyMode(values, 1 if np.linalg.det(self._at(place)[1]) > 0 else -1, *reported)
 
 
 def _plain(x: float) -> float:
@@ -182,9 +182,9 @@ def _plain(x: float) -> float:
 
 
 def _search(system: System, start: Mapping[str, float]) -> _Search | None:
-    gaps, symbols = gaps_of(system.ties), system.symbols
+    gaps, symbols = gaps_of(system.constraints), system.symbols
     standing = set(symbols_of(gaps))
-    free = [q for q in movable(system.ties) if q in standing]
+    free = [q for q in movable(system.constraints) if q in standing]
     if not gaps or not free or system.scope.quaternions:
         return None
     p = numeric_parameters(system.scope.model)
@@ -203,8 +203,8 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     kept = tuple(q.name for q in free if q not in sought)
     agreeing = tuple(
         x
-        for name, tie in system.scope.model.constraints.items()
-        for x in tie.agreeing(SystemScene(system.motion, f"constraints.{name}"))
+        for name, constraint in system.scope.model.constraints.items()
+        for x in constraint.agreeing(SystemScene(system.motion, f"constraints.{name}"))
     )
     reach = 2 * max(lengths, default=1.0)
     return _Search(system, gaps, slopes, tuple(rows), known, tuple(sought), kept, agreeing, here, turns, reach)
@@ -241,29 +241,31 @@ class AssemblySide:
     """Where a pin lies.
 
     Args:
-        tie: the pin.
+        constraint: the pin.
         first, second: the bodies whose hinges P and Q are.
         left: whether R is to the left of the way from P to Q.
     """
 
-    tie: str
+    constraint: str
     first: str
     second: str
     left: bool
 
 
 def assembly_sides(system: System, state: Mapping[Node, Any]) -> tuple[AssemblySide, ...]:
-    """Of each tie that pins two turning bodies of a plane system together; () in space."""
+    """Of each constraint that pins two turning bodies of a plane system together; () in space."""
     if system.scope.model.space != "plane":
         return ()
     found: dict[str, AssemblySide] = {}
-    for row in system.ties.rows:
+    for row in system.constraints.rows:
         pushes = [push for push in row.pushes if isinstance(push, PointForce)]
         links = _joined(system, pushes)
-        if row.identical or row.tie in found or len(links) != 2 or not all(map(_turns, links)):
+        if row.identical or row.constraint in found or len(links) != 2 or not all(map(_turns, links)):
             continue
         left = _is_left(system, state, links, pushes)
-        found |= {} if left is None else {row.tie: AssemblySide(row.tie, links[0].name, links[1].name, left)}
+        found |= (
+            {} if left is None else {row.constraint: AssemblySide(row.constraint, links[0].name, links[1].name, left)}
+        )
     return tuple(found.values())
 
 

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import SEEDS, fixed_by_position
 from eomgen.mechanics.constraints.closure import gaps_of, is_guess, of_50_digits
 from eomgen.mechanics.constraints.rows import hold_identically
@@ -23,7 +24,6 @@ from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import constant_parameters, exact_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
@@ -37,7 +37,8 @@ from eomgen.symbolic.solve.linear import LinearSystem, general_solution, unique_
 # -------- exact start -----------------------------------------------------------------------------------------
 # System -> ExactStart: the one start that every verb takes, in closed form where it has one, in numbers else.
 #
-# Where the ties move nothing the start is what the file says. Coordinates that they place, or move, are roots of the
+# Where the constraints move nothing the start is what the file says. Coordinates that they place, or move, are roots
+# of the
 # gaps; speeds that they complete or change follow from the same least change as in `start_of_motion`, by exact
 # equations:
 #
@@ -63,7 +64,7 @@ class ExactStart:
 
     @cached_property
     def begun(self) -> Start:
-        """q and u in numbers, and what was changed so that the ties hold; parameters without a value are drawn.
+        """q and u in numbers, and what was changed so that the constraints hold; parameters without a value are drawn.
 
         Raises:
             UsageError, DerivationError: as of `start_of_motion`.
@@ -77,7 +78,8 @@ class ExactStart:
 
     @cached_property
     def moved(self) -> frozenset[str]:
-        """The coordinates and speeds that do not start as they are written, those that the ties place left out."""
+        """The coordinates and speeds that do not start as they are written, those that the constraints place left
+        out."""
         return frozenset(change.name for change in self.begun.changes)
 
     @cached_property
@@ -133,17 +135,17 @@ def known_start(system: System) -> dict[Node, Scalar] | None:
     """t, q and u at the start, a number where there is no closed form; None where it is not known."""
     try:
         return ExactStart(system).values or None
-    except DerivationError:  # the ties do not close there: whoever needs a state says so
+    except DerivationError:  # the constraints do not close there: whoever needs a state says so
         return None
 
 
 def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scalar]:
-    """The start as it is written, as scalars of the parameters: t, coordinates that no ties place, and speeds.
+    """The start as it is written, as scalars of the parameters: t, coordinates that no constraints place, and speeds.
 
     Args:
         at_rest: all speeds are 0, whatever the model says.
     """
-    scope, sought = system.scope, set(fixed_by_position(system.ties))
+    scope, sought = system.scope, set(fixed_by_position(system.constraints))
     given = {scope.symbols.t: 0} | start_values(scope, (q for q in scope.symbols.q if q not in sought))
     start = with_unit_quaternions(scope, given)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(system)
@@ -206,18 +208,19 @@ class _Sought:
         return {x: value for x, value in known.items() if x is symbols.t or self.located.agrees(value, x)}
 
     def _places(self, known: Mapping[Node, Scalar], unknown: Sequence[Node]) -> dict[Node, Scalar]:
-        """The coordinates that the ties place, or move; none where these are fewer than all coordinates."""
-        gaps = [row.gap for row in self.system.ties.rows if row.gap is not None and not row.identical]
+        """The coordinates that the constraints place, or move; none where these are fewer than all coordinates."""
+        gaps = [row.gap for row in self.system.constraints.rows if row.gap is not None and not row.identical]
         if not gaps or len(gaps) < len(unknown) == len(self.system.symbols.q):
             return {}  # nothing to begin with
         equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
         return places_of(equations, unknown, self.located)
 
     def _speeds(self, known: Mapping[Node, Scalar], moved: Sequence[Node]) -> dict[Node, Scalar]:
-        """The speeds that the ties complete or change; those of which the least change has no closed form are left."""
+        """The speeds that the constraints complete or change; those of which the least change has no closed form are
+        left."""
         u, place = self.system.symbols.u, {**known, self.system.symbols.t: 0}
         written = {x: self.declared[x] for x in moved}
-        closing = self.system.ties.closing
+        closing = self.system.constraints.closing
         left = substituted(substituted(tuple(row.velocity for row in closing), {**known, **written}), place)
         rows = jacobian(tuple(row.velocity for row in closing), u)
         J = [_without_zeros(substituted(row, place)) for row in rows]
@@ -232,7 +235,8 @@ class _Sought:
     def _ways(
         self, J: Sequence[Sequence[Scalar]], place: Mapping[Node, Scalar], moved: Sequence[Node]
     ) -> list[tuple[list[Node], list[list[Scalar]]]]:
-        """(the speeds that change, W): the ties alone say what they are, then the least change by either measure."""
+        """(the speeds that change, W): the constraints alone say what they are, then the least change by either
+        measure."""
         u, model = self.system.symbols.u, self.system.scope.model
         silent = [x for x in u if is_guess(model, x.name) and not self.at_rest]
         ways: list[tuple[list[Node], list[list[Scalar]]]] = [(list(moved), [])]
@@ -290,7 +294,8 @@ class _Sought:
 
 
 # -------- start slopes ----------------------------------------------------------------------------------------
-# System, what changes -> how all parameters and the start follow: dependent ones by the ties that they keep closed.
+# System, what changes -> how all parameters and the start follow: dependent ones by the constraints that they keep
+# closed.
 #
 # phi_q dq + phi_p dp = 0,    J du + d(J u + sigma) = 0 along (dq, dp)
 
@@ -319,7 +324,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
         seeds: how the parameters and inputs change.
         own: the coordinate or speed whose start is changed; "" of none.
     Raises:
-        DerivationError: the ties do not say how.
+        DerivationError: the constraints do not say how.
     """
     scope, symbols = system.scope, system.symbols
 
@@ -329,9 +334,9 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     begun = with_unit_quaternions(scope, start_values(scope))
     dq = dict(zip(symbols.q, map(Fraction, at([begun[q] for q in symbols.q], seeds)), strict=True))
     dq |= {q: Fraction(1) for q in symbols.q if q.name == own}
-    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
     gaps = [row.gap for row in rows if row.gap is not None]
-    sought = fixed_by_position(system.ties)
+    sought = fixed_by_position(system.constraints)
     given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
     silent = [q for q in symbols.q if q in sought or (q.name != own and is_guess(scope.model, q.name))]
     silent = [q for q in silent if q not in given]
@@ -340,7 +345,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     speeds = start_speeds(system)
     du = dict(zip(symbols.u, map(Fraction, at([speeds[u] for u in symbols.u], {**seeds, **dq})), strict=True))
     du |= {u: Fraction(1) for u in symbols.u if u.name == own}
-    rates = [row.velocity for row in system.ties.closing]
+    rates = [row.velocity for row in system.constraints.closing]
     silent = [u for u in symbols.u if u.name != own and is_guess(scope.model, u.name)]
     left = at(rates, {**seeds, **dq, **du})
     du = _kept(rates, left, silent, du, numbers, what, _moved(speeds, symbols.u, numbers))
@@ -372,14 +377,14 @@ def _kept(
     if several or np.max(abs(A @ step + left)) > CARRIED * max(1.0, np.max(np.abs(left))):
         names = ", ".join(f"'{x.name}'" for x in silent or moved)
         raise DerivationError(
-            f"the ties do not say how the start changes with {what}{f': of {names}' if names else ''}",
-            mend="declare what follows from the ties as dependent",
+            f"the constraints do not say how the start changes with {what}{f': of {names}' if names else ''}",
+            fix="declare what follows from the constraints as dependent",
         )
     return seeds | {x: seeds[x] + Fraction(d) for x, d in zip(silent, step.tolist(), strict=True)}
 
 
 def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapping[Node, Any]) -> list[Node]:
-    """Which of them start elsewhere than the model says: where the ties hold."""
+    """Which of them start elsewhere than the model says: where the constraints hold."""
     found = floats_of(evaluate([said[x] for x in variables], numbers, fifty_digits()))
     own = [float(numbers[x]) for x in variables]
     return [x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > CARRIED * max(1.0, abs(b))]
@@ -399,10 +404,10 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
     Args:
         places: coordinates that are elsewhere than at the start.
     Raises:
-        DerivationError: the ties do not close at the start, or not in closed form.
+        DerivationError: the constraints do not close at the start, or not in closed form.
     """
     symbols, scope = system.symbols, system.scope
-    sought = fixed_by_position(system.ties)
+    sought = fixed_by_position(system.constraints)
     given = with_unit_quaternions(scope, start_values(scope, (q for q in symbols.q if q not in sought)))
     state = system.standing({**given, **(places or {})})
     left = [q for q in sought if q not in state]
@@ -410,18 +415,18 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
 
 
 def _closed_in(system: System, state: State, sought: list[Node]) -> State:
-    """The dependent coordinates that the ties place, in closed form."""
+    """The dependent coordinates that the constraints place, in closed form."""
     numbers: dict[Node, float] = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
     numbers |= {
         node: value
         for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
     }
     located = Located(numbers, system.scope.positive)
-    found = places_of(substituted(gaps_of(system.ties), state), sought, located)
+    found = places_of(substituted(gaps_of(system.constraints), state), sought, located)
     missing = [q.name for q in sought if q not in found]
     if missing:
         raise DerivationError(
-            f"where the ties place '{missing[0]}' has no closed form here",
+            f"where the constraints place '{missing[0]}' has no closed form here",
             f"coordinates.{missing[0]}",
             "give start values at which it has one",
         )
@@ -435,7 +440,7 @@ def speeds_near(system: System, places: State, numbers: Mapping[Node, float]) ->
         numbers: of all speeds; as many as the rows determine follow from the others, which are rounded.
     """
     u = system.symbols.u
-    rows = substituted(tuple(row.velocity for row in system.ties.closing), places | {system.symbols.t: 0})
+    rows = substituted(tuple(row.velocity for row in system.constraints.closing), places | {system.symbols.t: 0})
     still = substituted(rows, dict.fromkeys(u, 0))
     lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in jacobian(rows, u)]
     values = digits_at(values_of_parameters(system.scope, Random(3)))
@@ -494,7 +499,7 @@ def values_for(
             continue
         return values
     raise DerivationError(
-        "the configuration has no value at these parameters", mend="give parameters at which lengths and roots are real"
+        "the configuration has no value at these parameters", fix="give parameters at which lengths and roots are real"
     )
 
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, MissingValues, OpenTies, UsageError
+from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.assembly import (
     Fork,
     fixed_by_position,
@@ -46,7 +47,6 @@ from eomgen.model.forces.load import PointForce
 from eomgen.model.parts import Model
 from eomgen.model.units import in_own_unit
 from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.spatial import minus
@@ -55,10 +55,13 @@ from eomgen.symbolic.numeric.roots import least_left
 from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, LARGEST_AT_50, OPEN_GAP, SAME_PLACE, SUMMED
 
 # -------- initial state ---------------------------------------------------------------------------------------
-# System -> the state at the start: dependent coordinates where the ties put them, and the ties found to hold.
+# System -> the state at the start: dependent coordinates where the constraints put them, and the constraints found to
+# hold.
 #
-# Of the dependent coordinates those that position ties fix are sought from `near`, else from `start`; those that only
-# velocity ties move really start at `start`. Other coordinates and speeds stay as given where the ties hold there.
+# Of the dependent coordinates those that position constraints fix are sought from `near`, else from `start`; those
+# that only
+# velocity constraints move really start at `start`. Other coordinates and speeds stay as given where the constraints
+# hold there.
 # Where these do not, the nearest values are taken at which they do (`consistency`), and what has changed is told.
 
 
@@ -86,16 +89,17 @@ class Start:
     """Where a motion begins.
 
     Args:
-        values: of every coordinate and independent speed; all ties hold.
-        changes: of those that are not dependent, so that the ties hold.
-        ties: the names of the ties that did not hold at the values given.
+        values: of every coordinate and independent speed; all constraints hold.
+        changes: of those that are not dependent, so that the constraints hold.
+        constraints: the names of the constraints that did not hold at the values given.
         fork: where branches meet there.
-        hit: the one-sided ties into which the given speeds lead: an impact without rebound, M (u+ - u-) = J^T Lam.
+        hit: the one-sided constraints into which the given speeds lead: an impact without rebound, M (u+ - u-) = J^T
+            Lam.
     """
 
     values: dict[str, float]
     changes: tuple[Change, ...] = ()
-    ties: tuple[str, ...] = ()
+    constraints: tuple[str, ...] = ()
     fork: Fork | None = None
     hit: tuple[str, ...] = ()
 
@@ -107,8 +111,11 @@ class Start:
         if self.hit:
             changes = ", ".join(map(str, self.changes))
             return f"changed by an impact without rebound on {quoted_names(self.hit)}: {changes}"
-        names, how = quoted_names(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
-        hold = "holds" if len(self.ties) == 1 else "hold"
+        names, how = (
+            quoted_names(self.constraints),
+            "changed" if any(change.given for change in self.changes) else "completed",
+        )
+        hold = "holds" if len(self.constraints) == 1 else "hold"
         return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
 
 
@@ -132,31 +139,31 @@ def start_state(
 
 
 def begun_state(system: System) -> State:
-    """A value of every symbol that stands in the ties, at the start, with 50 digits."""
+    """A value of every symbol that stands in the constraints, at the start, with 50 digits."""
     return _numbers(system, start_state(system), None)
 
 
 def start_of_motion(
     system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
 ) -> Start:
-    """Every coordinate and independent speed at the start, at which all ties hold.
+    """Every coordinate and independent speed at the start, at which all constraints hold.
 
     Args:
         parameters: values in place of the model's own.
         start: values of coordinates and speeds in place of the model's own; of a dependent coordinate the first guess.
     Raises:
         UsageError: a name in `start` that is no coordinate and no speed.
-        MissingValues: a start value, or a tie, needs parameters without values.
-        DerivationError: a tie that does not close near there.
+        MissingValues: a start value, or a constraint, needs parameters without values.
+        DerivationError: a constraint that does not close near there.
     """
     values = _given(system, parameters, start or {})
-    if all(row.identical for row in system.ties.rows):
+    if all(row.identical for row in system.constraints.rows):
         return Start(values)
     before = _numbers(system, values, parameters)
-    sought = fixed_by_position(system.ties)
-    state = (closed(system.ties, before, sought) or before) if sought else before
+    sought = fixed_by_position(system.constraints)
+    state = (closed(system.constraints, before, sought) or before) if sought else before
     called = _called(system, start or {})
-    state, open_gaps = with_gaps_closed(system.ties, state, called)
+    state, open_gaps = with_gaps_closed(system.constraints, state, called)
     refuse_open_gaps(system, state)
     state, open_rates = _with_rates_closed(system, state, called, parameters)
     state, hit = _after_impact(system, state, parameters)
@@ -167,20 +174,20 @@ def start_of_motion(
     return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
 
 
-# -- values at which the ties hold -------------------------------------------------------------------
+# -- values at which the constraints hold -------------------------------------------------------------------
 
 
 def _with_rates_closed(
     system: System, state: State, called: frozenset[str], parameters: Mapping[str, Any] | None
 ) -> tuple[State, tuple[str, ...]]:
-    """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
-    apart = open_at(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
-    ties = that_stay(system.ties, apart)
-    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
+    """(the nearest state in which speeds agree with the constraints, the constraints that did not hold)."""
+    apart = open_at(((row, row.velocity) for row in system.constraints.closing), system.symbols.u, state)
+    constraints = that_stay(system.constraints, apart)
+    opened = tuple(name for name in apart if any(row.constraint == name for row in constraints.rows))
     if not opened:
         return state, ()
     M = _inertia(system, state, parameters)
-    return nearest_speeds(ties, state, _tiers(system, called), M) or state, opened
+    return nearest_speeds(constraints, state, _tiers(system, called), M) or state, opened
 
 
 def _tiers(system: System, called: frozenset[str]) -> tuple[list[Node], ...]:
@@ -196,20 +203,23 @@ def following_rates(system: System) -> list[Node]:
 
 
 def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | None) -> tuple[State, tuple[str, ...]]:
-    """(the state after the impact on one-sided ties into which its speeds lead, these ties); as it is without one.
+    """(the state after the impact on one-sided constraints into which its speeds lead, these constraints); as it is
+    without one.
 
     M (u+ - u-) = J^T Lam with J u+ + sigma = 0 of all that holds and Lam >= 0 of what can only push, or pull.
     """
     one_sided = {contact.name for contact in contacts_of(system.scope.model) if contact.unilateral}
-    rows = [(k, row) for k, row in enumerate(system.ties.closing) if row.tie in one_sided and row.number == 1]
+    rows = [
+        (k, row) for k, row in enumerate(system.constraints.closing) if row.constraint in one_sided and row.number == 1
+    ]
     u = system.symbols.u
     broken = [row for _, row in rows if open_by(row.velocity, u, state)]
-    hit = tuple(row.tie for row in broken if evaluate((row.velocity,), state, fifty_digits())[0] < 0)
+    hit = tuple(row.constraint for row in broken if evaluate((row.velocity,), state, fifty_digits())[0] < 0)
     M = _inertia(system, state, parameters) if hit and len(hit) == len(broken) else None
-    after = None if M is None else nearest_speeds(system.ties, state, [(), u], M)
+    after = None if M is None else nearest_speeds(system.constraints, state, [(), u], M)
     if M is None or after is None:
         return state, ()
-    J = np.array([[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.ties.J])
+    J = np.array([[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.constraints.J])
     moved = M @ np.array([float(after[x] - state[x]) for x in u])
     impulses = np.linalg.lstsq(J.T, moved, rcond=None)[0]
     if any(impulses[k] < -COMPUTED * np.max(np.abs(impulses)) for k, _ in rows):  # another one would have to hold on
@@ -231,22 +241,25 @@ def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None)
 
 
 def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tuple[State, Fork | None, tuple[str, ...]]:
-    """(the nearest state whose speeds lead along a branch, where branches meet, the ties that they did not keep).
+    """(the nearest state whose speeds lead along a branch, where branches meet, the constraints that they did not
+    keep).
 
     Raises:
         DerivationError: they lead along none.
     """
     try:
-        fork = fork_at(system.ties, state)
-    except (DerivationError, MissingValues):  # the ties close nowhere near: there is but this place
+        fork = fork_at(system.constraints, state)
+    except (DerivationError, MissingValues):  # the constraints close nowhere near: there is but this place
         return state, None, ()
-    if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
+    if fork is None or is_at_rest(system.constraints, state) or leads_on(system.constraints, fork, state):
         return state, fork, ()
-    found = speeds_along(system.ties, fork, state, _tiers(system, called))
+    found = speeds_along(system.constraints, fork, state, _tiers(system, called))
     if found is None:
         what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
-        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
-    return found, fork, fork.ties
+        raise DerivationError(
+            what, f"constraints.{fork.constraints[0]}", "give other speeds, or start beside that position"
+        )
+    return found, fork, fork.constraints
 
 
 def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
@@ -301,7 +314,7 @@ def start_speeds(system: System) -> dict[Node, Scalar]:
 
 
 def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar:
-    """A declared speed at given rates, those of dependent coordinates as the ties make them, at t = 0."""
+    """A declared speed at given rates, those of dependent coordinates as the constraints make them, at t = 0."""
     free = system.free
     assert free is not None, "declared speeds leave the system over the rates behind"
     scope = free.scope if system.elimination is None else system.elimination.scope
@@ -314,10 +327,10 @@ def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[
     names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
     unknown = [name for name in start if name not in names]
     if unknown:
-        raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
+        raise UsageError(f"no coordinate or speed '{unknown[0]}'", fix=f"one of {', '.join(names)}")
     q, u = start_values(system.scope.model, parameters)
     guesses = first_guesses(system.scope.model, parameters)
-    sought = {node.name for node in fixed_by_position(system.ties)}
+    sought = {node.name for node in fixed_by_position(system.constraints)}
     values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
     values |= _normed(system, values)
     values |= {name: x for name, x in _by_coordinates(system, values, parameters).items() if name not in start}
@@ -331,7 +344,7 @@ def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
         norm = math.hypot(*(values[e.name] for e in four))
         if norm == 0:
             raise UsageError(
-                f"the quaternion {', '.join(e.name for e in four)} cannot start at 0", mend="1, 0, 0, 0 is not turned"
+                f"the quaternion {', '.join(e.name for e in four)} cannot start at 0", fix="1, 0, 0, 0 is not turned"
             )
         found |= {e.name: values[e.name] / norm for e in four}
     return found
@@ -345,18 +358,19 @@ def _by_coordinates(
     begun = begun_speeds(model.speeds)
     silent = [u for u in symbols.u if u.name in model.speeds and u.name not in begun]
     formulas = start_speeds(system) if silent else {}
-    asked = tuple(formulas[u] for u in silent)
-    used = set(symbols_of(asked))
+    requested = tuple(formulas[u] for u in silent)
+    used = set(symbols_of(requested))
     p = numeric_parameters(model, parameters, needed=[name for name, x in symbols.parameters.items() if x in used])
     state = {symbols.parameters[name]: value for name, value in p.items()}
     state |= {q: values[q.name] for q in symbols.q}
-    return {u.name: float(x) for u, x in zip(silent, evaluate(asked, state, FLOAT), strict=True)}
+    return {u.name: float(x) for u, x in zip(silent, evaluate(requested, state, FLOAT), strict=True)}
 
 
 def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None) -> State:
-    """A value of every symbol that may stand in a tie, at t = 0, with 50 digits; what is not needed may be missing."""
+    """A value of every symbol that may stand in a constraint, at t = 0, with 50 digits; what is not needed may be
+    missing."""
     symbols = system.symbols
-    rows = [row for row in system.ties.rows if not row.identical]
+    rows = [row for row in system.constraints.rows if not row.identical]
     used = set(symbols_of([x for row in rows for x in (row.velocity, 0 if row.gap is None else row.gap)]))
     used |= set(symbols_of(system.inputs.values()))
     needed = [name for name, node in symbols.parameters.items() if node in used]
@@ -368,27 +382,27 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
     return state
 
 
-# -------- open ties -------------------------------------------------------------------------------------------
-# System, a state -> whether its ties hold there: more than rounding apart, they are refused by name.
+# -------- open constraints -------------------------------------------------------------------------------------------
+# System, a state -> whether its constraints hold there: more than rounding apart, they are refused by name.
 
 
 def refuse_open_gaps(system: System, state: State) -> None:
-    """Raises OpenTies for the tie that is open by most, DerivationError where its gap has no value."""
+    """Raises OpenTies for the constraint that is open by most, DerivationError where its gap has no value."""
     q = system.symbols.q
-    gaps = [(row, row.gap) for row in system.ties.rows if row.gap is not None and not row.identical]
+    gaps = [(row, row.gap) for row in system.constraints.rows if row.gap is not None and not row.identical]
     found = _worst(gaps, q, state)
     if found is None:
         return
     row, gap, size = found
     if size == float("inf"):
         raise DerivationError(
-            f"'{row.tie}' (row {row.number}) {_lacking(gap, state) or 'has no value at the start'}",
-            f"constraints.{row.tie}",
+            f"'{row.constraint}' (row {row.number}) {_lacking(gap, state) or 'has no value at the start'}",
+            f"constraints.{row.constraint}",
             "give start values at which its roots and quotients have one",
         )
     size = _in_full(system, row, size, state)
-    what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
-    raise OpenTies(what, f"constraints.{row.tie}", _mend(system, gap), partial(_nearest, system, state))
+    what = f"'{row.constraint}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
+    raise OpenConstraints(what, f"constraints.{row.constraint}", _fix(system, gap), partial(_nearest, system, state))
 
 
 def _lacking(gap: Scalar, state: State) -> str:
@@ -398,17 +412,17 @@ def _lacking(gap: Scalar, state: State) -> str:
 
 
 def _nearest(system: System, state: State) -> str:
-    """; how near the ties come to closing, and where."""
+    """; how near the constraints come to closing, and where."""
     miss = nearest_miss(system, state)
     if miss is None:
         return ""
     model = system.scope.model
     there = ", ".join(f"{name} = {in_own_unit(model, name, x, 6)}" for name, x in miss.values.items())
     if not miss.open:
-        return f"; all ties close at {there}, farther than a start is moved"
-    stay = f"{quoted_names(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
+        return f"; all constraints close at {there}, farther than a start is moved"
+    stay = f"{quoted_names(miss.constraints)} {'stays' if len(miss.constraints) == 1 else 'stay'} open"
     left = state | {q: of_50_digits(miss.values[q.name]) for q in system.symbols.q if q.name in miss.values}
-    rows = [row for row in system.ties.rows if row.gap is not None and row.tie in miss.ties]
+    rows = [row for row in system.constraints.rows if row.gap is not None and row.constraint in miss.constraints]
     gaps = evaluate([row.gap for row in rows if row.gap is not None], left, fifty_digits())
     size = max((_in_full(system, row, abs(float(x)), left) for row, x in zip(rows, gaps, strict=True)), default=0)
     return f"; wherever the coordinates go, {stay}: by {size:.3g} at {there}, the least that was found"
@@ -419,8 +433,8 @@ def _in_full(system: System, row: Row, size: float, state: State) -> float:
 
     L = g + sqrt(g^2 + r.r)
     """
-    tie = system.scope.model.constraints.get(row.tie)
-    if row.gap is None or tie is None or not tie.by_squares:
+    constraint = system.scope.model.constraints.get(row.constraint)
+    if row.gap is None or constraint is None or not constraint.by_squares:
         return size
     first, second = (system.motion.position(push.place) for push in row.pushes if isinstance(push, PointForce))
     (g, *r), digits = evaluate((row.gap, *minus(second, first)), state, fifty_digits()), fifty_digits()
@@ -429,7 +443,7 @@ def _in_full(system: System, row: Row, size: float, state: State) -> float:
     return float(abs(g + root(g * g + square) - root(square)))
 
 
-def _mend(system: System, gap: Scalar) -> str:
+def _fix(system: System, gap: Scalar) -> str:
     """What closes a gap: another guess, a coordinate marked dependent, other start values."""
     dependent = dependent_coordinates(system.scope)
     standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
@@ -448,15 +462,17 @@ def quoted_names(names: Sequence[str]) -> str:
 
 
 def refuse_open_rates(system: System, state: State) -> None:
-    """Raises DerivationError for the closing tie whose velocity row is off by most."""
+    """Raises DerivationError for the closing constraint whose velocity row is off by most."""
     u = system.symbols.u
-    found = _worst(((row, row.velocity) for row in system.ties.closing), u, state)
+    found = _worst(((row, row.velocity) for row in system.constraints.closing), u, state)
     if found is None:
         return
     row, _, size = found
     speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
-    what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
-    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {quoted_names(speeds)}")
+    what = f"the speeds at the start break '{row.constraint}' (row {row.number}): it opens at {size:.3g} a second"
+    raise DerivationError(
+        what, f"constraints.{row.constraint}", f"give start speeds that keep it: {quoted_names(speeds)}"
+    )
 
 
 def _worst(
@@ -468,7 +484,7 @@ def _worst(
 
 
 # -------- nearest miss ----------------------------------------------------------------------------------------
-# System, a place where ties are open -> how near they come to closing, wherever the coordinates go.
+# System, a place where constraints are open -> how near they come to closing, wherever the coordinates go.
 #
 # min |phi(q)|^2    over the coordinates that are not driven, by Levenberg and Marquardt from several places
 
@@ -480,24 +496,24 @@ FAILED = 1e6  # stands for a gap that has no value
 
 @dataclass(frozen=True)
 class Miss:
-    """The place where the ties are open by least.
+    """The place where the constraints are open by least.
 
     Args:
         values: of the coordinates that stand in gaps.
         open: the largest |phi|; 0 where they close.
-        ties: that stay open.
+        constraints: that stay open.
     """
 
     values: Mapping[str, float]
     open: float
-    ties: tuple[str, ...]
+    constraints: tuple[str, ...]
 
 
 def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     """The place where the gaps are least, of those that close the nearest; None where nothing moves them."""
-    gaps = gaps_of(system.ties)
+    gaps = gaps_of(system.constraints)
     standing = set(symbols_of(gaps))
-    free = [q for q in movable(system.ties) if q in standing]
+    free = [q for q in movable(system.constraints) if q in standing]
     if not free:
         return None
     search = _Search(system, {node: float(x) for node, x in state.items()}, tuple(free))
@@ -508,17 +524,17 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     best = min(found, key=lambda place: (round(search.size(place) / COMPUTED), float(np.linalg.norm(place - here))))
     values = search.at(best)[: len(gaps)]
     size = float(np.max(np.abs(values), initial=0.0))
-    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
-    named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN_GAP * size]
+    rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
+    named = [row.constraint for row, x in zip(rows, values, strict=False) if abs(x) > OPEN_GAP * size]
     places = {q.name: float(x) if abs(x) > SAME_PLACE else 0.0 for q, x in zip(free, best, strict=True)}
     shut = size <= COMPUTED and (size <= SUMMED or _closes(system, state, dict(zip(free, best, strict=True))))
     return Miss(places, 0.0, ()) if shut else Miss(places, size, tuple(dict.fromkeys(named)))
 
 
 def _closes(system: System, state: Mapping[Node, Any], place: Mapping[Node, float]) -> bool:
-    """Whether all ties close near a place, and not just nearly: with 50 digits."""
+    """Whether all constraints close near a place, and not just nearly: with 50 digits."""
     there = {node: of_50_digits(float(x)) for node, x in {**state, **place}.items()}
-    return closed(system.ties, there, movable(system.ties)) is not None
+    return closed(system.constraints, there, movable(system.constraints)) is not None
 
 
 @dataclass(frozen=True)
@@ -530,7 +546,7 @@ class _Search:
     @cached_property
     def gaps(self) -> tuple[Scalar, ...]:
         """phi, and e . e - 1 of each quaternion."""
-        return (*gaps_of(self.system.ties), *norms_of(self.system.ties))
+        return (*gaps_of(self.system.constraints), *norms_of(self.system.constraints))
 
     @cached_property
     def slopes(self) -> tuple[Scalar, ...]:

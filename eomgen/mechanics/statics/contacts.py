@@ -9,8 +9,9 @@ from itertools import islice, product
 from random import Random
 
 from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.closure import of_50_digits
-from eomgen.mechanics.constraints.rows import rows_of_tie
+from eomgen.mechanics.constraints.rows import rows_of_constraint
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion, frictions
@@ -21,7 +22,6 @@ from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReaction
 from eomgen.model.contacts import Contact, contacts_of, rough_contacts
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass, recalled
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import function, sqrt
 from eomgen.symbolic.expression.node import Scalar, State
@@ -196,7 +196,7 @@ class _StartNumbers:
         forces = [x for contact in held for x in _forces(reactions, contact)]
         state = _state(system, drawn)
         state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
-        rates = tuple(rows_of_tie(system.motion, contact.name)[0].velocity for contact in free)
+        rates = tuple(rows_of_constraint(system.motion, contact.name)[0].velocity for contact in free)
         digits = fifty_digits()
         pushes = evaluate(forces, state, digits)
         opening = evaluate(scope.with_accelerations(rates), state, digits) if rates else []
@@ -266,7 +266,7 @@ def _state(system: System, drawn: Numbers) -> State:
 def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
     """How far each contact is open at the start; a strand that has no gap is taut."""
     state = _state(free, drawn)
-    gaps = {name: rows_of_tie(free.motion, name)[0].gap for name in names}
+    gaps = {name: rows_of_constraint(free.motion, name)[0].gap for name in names}
     values = evaluate(tuple(0 if gap is None else gap for gap in gaps.values()), state, fifty_digits())
     return {name: float(value) for name, value in zip(gaps, values, strict=True)}
 
@@ -274,7 +274,7 @@ def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float
 def _rates(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
     """How fast each contact opens at the start."""
     values = evaluate(
-        tuple(rows_of_tie(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
+        tuple(rows_of_constraint(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
     )
     return {name: float(value) for name, value in zip(names, values, strict=True)}
 
@@ -312,12 +312,12 @@ class RestCondition:
     """What must hold for a contact to be as it was taken.
 
     Args:
-        tie: the contact, or the body on a path.
+        constraint: the contact, or the body on a path.
         kind: "pushes", "pulls" or "sticks".
         margin: it is not negative where the condition holds [N].
     """
 
-    tie: str
+    constraint: str
     kind: str
     margin: Scalar
 
@@ -325,9 +325,9 @@ class RestCondition:
     def broken(self) -> str:
         """What happens where it is negative."""
         return {
-            "pushes": f"contact '{self.tie}' would have to pull",
-            "pulls": f"'{self.tie}' would have to push",
-            "sticks": f"contact '{self.tie}' slides: it would need more friction than mu N",
+            "pushes": f"contact '{self.constraint}' would have to pull",
+            "pulls": f"'{self.constraint}' would have to push",
+            "sticks": f"contact '{self.constraint}' slides: it would need more friction than mu N",
         }[self.kind]
 
 

@@ -17,15 +17,15 @@ from itertools import pairwise
 from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies.named_reactions import argument_name, name_of, named_reactions
 from eomgen.mechanics.free_bodies.wrenches import Effect
 from eomgen.mechanics.rigidity.structure import Structure
 from eomgen.mechanics.rigidity.velocity_plan import VelocityPlan
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.section_forces import KINDS, place_of
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.model.trusses import is_node
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.formula import Call, Reference
 from eomgen.symbolic.expression.node import Scalar, is_zero
@@ -75,7 +75,7 @@ class InfluenceLine:
     spans: tuple[InfluenceSpan, ...]
 
 
-def influence_line(structure: Structure, asked: str, load: Vector = DOWN) -> InfluenceLine:
+def influence_line(structure: Structure, requested: str, load: Vector = DOWN) -> InfluenceLine:
     """The influence line of a reaction, a member force or a section force.
 
     Args:
@@ -88,9 +88,9 @@ def influence_line(structure: Structure, asked: str, load: Vector = DOWN) -> Inf
         DerivationError: it is statically indeterminate.
     """
     if structure.system.scope.model.space != "plane":
-        raise UsageError("influence lines are found in the plane", mend="put the load at each place, as a force")
-    asked, along = _way(asked)
-    call = _call(asked)
+        raise UsageError("influence lines are found in the plane", fix="put the load at each place, as a force")
+    requested, along = _way(requested)
+    call = _call(requested)
     sizes = sizes_of(structure.system.motion, structure.at)
     if call.name in KINDS:
         cut = cut_of(structure, call, sizes)
@@ -104,17 +104,17 @@ def influence_line(structure: Structure, asked: str, load: Vector = DOWN) -> Inf
 
 def _way(text: str) -> tuple[str, tuple[str, ...]]:
     """What is asked, and the bodies or nodes that the load passes: "reaction_y(A): I, II"."""
-    asked, _, way = text.partition(":")
-    return asked.strip(), tuple(name.strip() for name in way.split(",") if name.strip())
+    requested, _, way = text.partition(":")
+    return requested.strip(), tuple(name.strip() for name in way.split(",") if name.strip())
 
 
-def _call(asked: str) -> Call:
+def _call(requested: str) -> Call:
     try:
-        call = single_call(asked)
+        call = single_call(requested)
     except ExpressionError as error:
-        raise UsageError(f"influence line: '{asked}': {error.what}", mend=error.mend) from error
+        raise UsageError(f"influence line: '{requested}': {error.what}", fix=error.fix) from error
     if call is None:
-        raise UsageError(f"influence line: '{asked}' is not one force", mend='ask "reaction_y(A)"')
+        raise UsageError(f"influence line: '{requested}' is not one force", fix='ask "reaction_y(A)"')
     return call
 
 
@@ -124,7 +124,7 @@ def _combination(structure: Structure, call: Call) -> dict[int, Scalar]:
     name = name_of(call, table)
     if name not in table:
         listed = nearest(name, table) or f"there are {', '.join(table)}"
-        raise UsageError(f"influence line: there is no reaction '{name}'", mend=listed)
+        raise UsageError(f"influence line: there is no reaction '{name}'", fix=listed)
     combination = table[name].combination
     factors = substituted(tuple(combination.values()), structure.at)
     return dict(zip(combination, factors, strict=True))
@@ -149,14 +149,14 @@ class _Travelling:
         unknown = [name for name in along if name not in motion.index]
         if unknown:
             what = f"influence line: there is no body or node '{unknown[0]}' for the load"
-            raise UsageError(what, mend=nearest(unknown[0], motion.index))
+            raise UsageError(what, fix=nearest(unknown[0], motion.index))
         if along and all(is_node(name) for name in along):
             return self._over_nodes(along)
         spans = list(self._over_bodies(along)) if along else self._chosen()
         if not spans:
             raise UsageError(
                 "influence line: there is no way for the load",
-                mend='name the bodies or nodes that it passes: "reaction_y(A): I, II"',
+                fix='name the bodies or nodes that it passes: "reaction_y(A): I, II"',
             )
         return spans
 
@@ -274,19 +274,19 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     """The released section: N shifts along t, V across, -n, M turns by 1."""
     if not 2 <= len(call.args) <= 3:
         raise UsageError(
-            f"influence line: {call}: a body and a place along it are asked for", mend=f'ask "{call.name}(body, x)"'
+            f"influence line: {call}: a body and a place along it are asked for", fix=f'ask "{call.name}(body, x)"'
         )
     body, where, *side = call.args
     motion, names = structure.system.motion, structure.system.scope.names
     name = argument_name(body)
     if name not in motion.index or is_node(name):
-        raise UsageError(f"influence line: {call}: there is no body '{name}'", mend=nearest(name, motion.index))
+        raise UsageError(f"influence line: {call}: there is no body '{name}'", fix=nearest(name, motion.index))
     axis = loaded_axis(structure, name, sizes)
     x = sizes.simple((parse(where.name) if isinstance(where, Reference) else where).evaluate(names))
     leg = next((leg for leg in reversed(axis.legs) if sizes.sign(x - leg.x) >= 0), axis.legs[0])
     if sizes.sign(x - axis.ends[0]) < 0 or sizes.sign(axis.ends[1] - x) < 0:
         raise UsageError(
-            f"influence line: {call}: the section is beyond the ends of the body", mend="ask at a place of the body"
+            f"influence line: {call}: the section is beyond the ends of the body", fix="ask at a place of the body"
         )
     R = motion.link(name).pose.R
     t, n = (vector_of(substituted(apply(R, v), structure.at)) for v in (leg.along, leg.left))
@@ -296,8 +296,10 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     here = 1 if (argument_name(side[0]) if side else "before" if at_end else "after") == "before" else 0
     inside = not at_end and sizes.sign(x - axis.ends[0]) != 0
     if inside and not side and call.name != "bending_moment" and _is_pushed(structure, axis, x, name):
-        asked = f"{call.name}({name}, {to_text(x)}"
-        raise UsageError(f"influence line: {asked}) jumps there", mend=f"ask {asked}, before) or {asked}, after)")
+        requested = f"{call.name}({name}, {to_text(x)}"
+        raise UsageError(
+            f"influence line: {requested}) jumps there", fix=f"ask {requested}, before) or {requested}, after)"
+        )
     return Cut(axis, x, lambda s: sizes.sign(x - s) >= here, shift, int(call.name == "bending_moment"), place)
 
 
@@ -327,7 +329,7 @@ def _power(structure: Structure, cut: Cut, effect: Effect, owner: str) -> Scalar
         raise DerivationError(
             f"'{owner}' acts on '{cut.axis.body}' off its axis: it has no section forces",
             f"bodies.{cut.axis.body}",
-            mend="let it act at a point of the axis",
+            fix="let it act at a point of the axis",
         )
     if not cut.before(s):
         return 0

@@ -13,9 +13,9 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
@@ -69,8 +69,8 @@ class Sizes:
             return found
         names = sorted(node.name for node in symbols_of((x,)) if node not in self.values)
         if names:
-            mend = "give them values, or call them positive where that decides it"
-            raise DerivationError(f"what comes first along the line depends on {', '.join(names)}", "parameters", mend)
+            fix = "give them values, or call them positive where that decides it"
+            raise DerivationError(f"what comes first along the line depends on {', '.join(names)}", "parameters", fix)
         value = evaluate((x,), self.values, fifty_digits())[0]
         return 0 if abs(value) < CERTAIN_AT_50 else 1 if value > 0 else -1
 

@@ -19,6 +19,7 @@ from functools import cached_property
 from itertools import pairwise
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
 from eomgen.mechanics.kinematics.inertia import mass_properties
@@ -26,7 +27,6 @@ from eomgen.mechanics.kinematics.motion import field_of
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model.forces.load import Couple, PointForce
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.node import Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -131,17 +131,19 @@ class SectionForces:
             ends = " to ".join(to_text(x) for x in self.axis.ends)
             raise DerivationError(
                 f"{kind}({self.axis.body}, {to_text(x)}): the body goes from x = {ends}",
-                mend="ask at a place of the body",
+                fix="ask at a place of the body",
             )
         if side and side not in found:
             raise DerivationError(
                 f"{kind}({self.axis.body}, {to_text(x)}, {side}): there is nothing {side} its end",
-                mend="ask at a place of the body",
+                fix="ask at a place of the body",
             )
         values = [found[side]] if side else list(found.values())
         if len(values) == 2 and not vanishes(values[0] - values[1]):
-            asked, jump = f"{kind}({self.axis.body}, {to_text(x)}", " to ".join(map(to_text, values))
-            raise DerivationError(f"{asked}) jumps there from {jump}", mend=f"ask {asked}, before) or {asked}, after)")
+            requested, jump = f"{kind}({self.axis.body}, {to_text(x)}", " to ".join(map(to_text, values))
+            raise DerivationError(
+                f"{requested}) jumps there from {jump}", fix=f"ask {requested}, before) or {requested}, after)"
+            )
         return values[0]
 
     @cached_property
@@ -170,7 +172,7 @@ def section_forces(reactions: Reactions, body: str) -> SectionForces:
     motion = system.motion
     if motion.scope.model.space != "plane":
         raise DerivationError(
-            "section forces are found in the plane", f"bodies.{body}", mend="fix the beam in a model of the plane"
+            "section forces are found in the plane", f"bodies.{body}", fix="fix the beam in a model of the plane"
         )
     sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
     loads = MemberLoads(reactions, body, sizes)
@@ -300,7 +302,7 @@ def _is_nothing(x: Scalar, sizes: Sizes) -> bool:
 
 
 def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vector | None:
-    """Where a reaction acts, body axes: a couple where the forces of the same tie do, None where it has none."""
+    """Where a reaction acts, body axes: a couple where the forces of the same constraint do, None where it has none."""
     if effect.place is not None:
         return effect.place
     mine = (e for c in components if c.owner == owner for e in c.effects if e.link == effect.link)
@@ -364,7 +366,7 @@ class MemberLoads:
         yield from (effect for effect in joint_effects(system) if effect.link == link)
 
     def _place_of(self, effect: Effect, owner: str) -> Vector:
-        """Where a reaction acts: a couple where the forces of the same tie do."""
+        """Where a reaction acts: a couple where the forces of the same constraint do."""
         place = place_of(self.reactions.components, effect, owner)
         return self._placed(replace(effect, place=place), f"the couple of '{owner}'").place or ZERO
 

@@ -14,6 +14,7 @@ from dataclasses import replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.rank import counted
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, name_of, named_reactions
@@ -23,10 +24,9 @@ from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.mechanics.reactions.reactions import Reactions, determinate_sums, reactions_of
 from eomgen.mechanics.rigidity.structure import Structure, refuse_loose, structure_of
 from eomgen.mechanics.rigidity.velocity_plan import VelocityPlan, turning_by_one
-from eomgen.model.findings import nearest
+from eomgen.model.diagnostics import nearest
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -122,7 +122,7 @@ def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
     return tuple(found)
 
 
-def asked_reactions(structure: Structure) -> dict[str, NamedReaction]:
+def requested_reactions(structure: Structure) -> dict[str, NamedReaction]:
     """The reactions that have a name in outputs."""
     named = named_reactions(structure.balance)
     return {n.name: n for n in named if n.name.partition("(")[0] in FUNCTIONS}
@@ -288,7 +288,7 @@ class StaticReactions:
     @property
     def count(self) -> tuple[int, str]:
         """3 Nb + 2 Np - components - unknown loads, and as text."""
-        number, text = counted(self.system.ties)
+        number, text = counted(self.system.constraints)
         loads = len(self.structure.unknowns)
         return (number - loads, f"{text} - {loads} (unknown loads)") if loads else (number, text)
 
@@ -314,10 +314,10 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
     """Every reaction of a structure in which nothing can move; `only` as of `static_reactions_of`."""
     system = structure.system
     balance = reactions_of(system, structure.at)
-    asked, positive = asked_reactions(structure), structure.system.scope.positive
-    one = None if only is None else _one_of((*asked, *(unknown.name for unknown in structure.unknowns)), only)
+    requested, positive = requested_reactions(structure), structure.system.scope.positive
+    one = None if only is None else _one_of((*requested, *(unknown.name for unknown in structure.unknowns)), only)
     found = []
-    for named in asked.values():
+    for named in requested.values():
         work = by_virtual_work(structure, named) if one in (None, named.name) else None
         solved = _balanced(balance, structure, named)
         found.append(StaticReaction(named.name, named.unit, named, solved, positive, work))
@@ -329,22 +329,25 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
 
 
 def released_in(structure: Structure, name: str) -> StaticReaction:
-    """One reaction, or unknown of the loads, by its virtual work alone; other freedoms of the bodies stand still.
+    """One reaction, or unknown of the loads, by its virtual work alone; other degrees of freedom of the bodies stand
+    still.
 
     Raises:
         UsageError: there is no such reaction.
         DerivationError: released, nothing can move.
     """
-    asked, unknowns = asked_reactions(structure), {unknown.name: unknown for unknown in structure.unknowns}
-    one = _one_of((*asked, *unknowns), name)
-    named = asked.get(one)
+    requested, unknowns = requested_reactions(structure), {unknown.name: unknown for unknown in structure.unknowns}
+    one = _one_of((*requested, *unknowns), name)
+    named = requested.get(one)
     unit = unit_of_unknown(structure, unknowns[one]) if named is None else named.unit
     work = unknown_by_virtual_work(structure, unknowns[one]) if named is None else by_virtual_work(structure, named)
     if work is None:
         what = f"{one} is statically indeterminate: released, the other reactions hold the bodies without it"
-        raise DerivationError(what, mend="take a redundant tie away")
+        raise DerivationError(what, fix="take a redundant constraint away")
     if not work.plan.moving:
-        raise DerivationError(f"{one} holds nothing: its tie leaves this motion free", mend="take the constraint away")
+        raise DerivationError(
+            f"{one} holds nothing: its constraint leaves this motion free", fix="take the constraint away"
+        )
     return StaticReaction(one, unit, named, None, structure.system.scope.positive, work)
 
 
@@ -354,20 +357,20 @@ def unit_of_unknown(structure: Structure, unknown: Node) -> str:
     return "" if unit is None else UNITS.get(unit.dimension, "")
 
 
-def _one_of(names: Sequence[str], asked: str) -> str:
+def _one_of(names: Sequence[str], requested: str) -> str:
     """The name of the reaction, or of the unknown, that is asked for.
 
     Raises:
         UsageError: there is none.
     """
     try:
-        call = single_call(asked)
+        call = single_call(requested)
     except ExpressionError:
         call = None
-    name = asked if call is None else name_of(call, names)
+    name = requested if call is None else name_of(call, names)
     if name not in names:
         listed = nearest(name, names) or f"there are {', '.join(names)}"
-        raise UsageError(f"there is no reaction '{name}'", mend=listed)
+        raise UsageError(f"there is no reaction '{name}'", fix=listed)
     return name
 
 

@@ -11,8 +11,8 @@ from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.composite import Composite, about, composite_of, sources
+from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
-from eomgen.model.findings import Finding, shown, whereabouts
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.formula import Expression
@@ -22,7 +22,7 @@ from eomgen.symbolic.numeric.tolerances import SOLVED
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 
 
-def bodies(catalog: Catalog) -> Iterator[Finding]:
+def bodies(catalog: Catalog) -> Iterator[Diagnostic]:
     """Mass given in two ways or in none, an inertia that is missing, joints that lack something, rings of bodies."""
     for name, body in catalog.table("bodies").items():
         if body is not None:
@@ -32,43 +32,43 @@ def bodies(catalog: Catalog) -> Iterator[Finding]:
     yield from _rings(catalog)
 
 
-def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Finding]:
+def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Diagnostic]:
     path: DocumentPath = ("bodies", name)
     alone = "shape" if body.shape is not None else "parts" if body.parts is not None else ""
     others = {"shape": ("mass", "center", "inertia", "parts"), "parts": ("center", "inertia"), "": ()}[alone]
     for other in others:
         if getattr(body, other) is not None:
             what = f"body '{name}' has both '{alone}' and '{other}'"
-            yield Finding((*path, other), what, f"'{alone}' gives the mass already: leave out '{other}'", key=True)
+            yield Diagnostic((*path, other), what, f"'{alone}' gives the mass already: leave out '{other}'", key=True)
     if body.shape is not None and body.shape.mass is None and (*path, "shape", "mass") not in catalog.broken:
         what = f"the shape of body '{name}' has no 'mass'"
-        yield Finding((*path, "shape"), what, "give 'mass' (0 for a massless body)")
+        yield Diagnostic((*path, "shape"), what, "give 'mass' (0 for a massless body)")
     if body.parts is not None and (*path, "parts") not in catalog.broken and (*path, "mass") not in catalog.broken:
         yield from _sharing((*path, "parts"), name, body)
     if _needs_inertia(body) and (*path, "inertia") not in catalog.broken and _turns(catalog, name):
         what = f"body '{name}' can turn but has no 'inertia'"
-        yield Finding(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
+        yield Diagnostic(path, what, "give 'inertia' about the mass centre (0 for a point)", key=True)
 
 
-def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Finding]:
+def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Diagnostic]:
     """Parts without a mass of their own: in what they share the rest, and that equal densities can be meant."""
     sharing = [k for k, piece in enumerate(body.parts) if piece.shape.mass is None]
     for k in sharing:
         piece = body.parts[k]
         if piece.shape.dimension == 0:
-            yield Finding((*path, k), f"a particle among the parts of body '{name}' has no 'mass'", "give its mass")
+            yield Diagnostic((*path, k), f"a particle among the parts of body '{name}' has no 'mass'", "give its mass")
         elif body.mass is None and not piece.hole:
             what = f"part {k + 1} of body '{name}' has no 'mass', and neither has the body"
-            yield Finding((*path, k), what, "give the net mass of the body, or a mass to each part")
+            yield Diagnostic((*path, k), what, "give the net mass of the body, or a mass to each part")
         elif body.mass is None and len(of := sources(body.parts, k)) != 1:
             what = f"the mass of the hole, part {k + 1} of body '{name}', is not known: "
             what += f"it may be cut out of {len(of)} parts" if of else "no part is of its kind"
-            yield Finding((*path, k), what, "give its mass (what it takes away), or the net mass of the body")
+            yield Diagnostic((*path, k), what, "give its mass (what it takes away), or the net mass of the body")
     kinds = {body.parts[k].shape.dimension: body.parts[k].shape.kind for k in sharing}
     if body.mass is not None and len(kinds) > 1 and 0 not in kinds:
-        told = " and ".join(f"{kind} ({MEASURES[d]})" for d, kind in sorted(kinds.items()))
-        what = f"the parts of body '{name}' have no common density: {told}"
-        yield Finding(path, what, "give a mass to the parts of one kind: the others share the rest", key=True)
+        reported = " and ".join(f"{kind} ({MEASURES[d]})" for d, kind in sorted(kinds.items()))
+        what = f"the parts of body '{name}' have no common density: {reported}"
+        yield Diagnostic(path, what, "give a mass to the parts of one kind: the others share the rest", key=True)
 
 
 def _needs_inertia(body: Any) -> bool:
@@ -92,27 +92,27 @@ def _turns(catalog: Catalog, name: str) -> bool:
     return False
 
 
-def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Finding]:
+def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Diagnostic]:
     path: DocumentPath = ("bodies", name, "joint")
     space = catalog.model.space
     if joint.on is not None and joint.at is not None:
         if "." in joint.on:
             what = f"the joint of body '{name}' sits at the point '{joint.on}' and has an 'at' too"
-            yield Finding((*path, "at"), what, "leave out one of them", key=True)
+            yield Diagnostic((*path, "at"), what, "leave out one of them", key=True)
         elif isinstance(joint.at, str):
             what = f"'{joint.at}' is a point of the ground, but the joint of body '{name}' hangs on '{joint.on}'"
-            yield Finding((*path, "at"), what, f'write on = "{joint.on}.point", or give coordinates in its axes')
+            yield Diagnostic((*path, "at"), what, f'write on = "{joint.on}.point", or give coordinates in its axes')
     if space == "plane" and joint.only_space:
-        yield Finding(
+        yield Diagnostic(
             (*path, "kind"),
             f"a {joint.kind} joint needs space, but the model is in the plane",
             'use "revolute", "prismatic" or "free"',
         )
     else:
-        yield from joint.findings(path, catalog)
+        yield from joint.diagnostics(path, catalog)
 
 
-def _rings(catalog: Catalog) -> Iterator[Finding]:
+def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
     """A body that hangs on itself, at once or by way of others (each ring told once, at its first body)."""
     table = catalog.table("bodies")
     parents = {n: body.joint.parent for n, body in table.items() if body is not None and body.joint is not None}
@@ -125,10 +125,10 @@ def _rings(catalog: Catalog) -> Iterator[Finding]:
             name = parents[name]
         if name in trail:
             ring = trail[trail.index(name) :]
-            told = " -> ".join([*ring, ring[0]])
+            reported = " -> ".join([*ring, ring[0]])
             what = f"body '{name}' hangs on itself"
-            what = what if len(ring) == 1 else f"bodies hang on one another in a ring: {told}"
-            yield Finding(("bodies", ring[0], "joint", "on"), what, "one of them must hang on the ground")
+            what = what if len(ring) == 1 else f"bodies hang on one another in a ring: {reported}"
+            yield Diagnostic(("bodies", ring[0], "joint", "on"), what, "one of them must hang on the ground")
         done.update(trail)
 
 
@@ -136,7 +136,7 @@ def _rings(catalog: Catalog) -> Iterator[Finding]:
 # Shapes and bodies made of parts, wherever all their numbers are known: that such a body exists.
 
 
-def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Shapes that cannot be, parts that weigh more than the whole, holes larger than what they are cut out of."""
     for name, body in catalog.table("bodies").items():
         if body is None or ("bodies", name) in catalog.broken or not _signed_right(body, values):
@@ -153,14 +153,14 @@ def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]
             yield from _whole((*path, "parts"), name, body, values)
 
 
-def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, AnyNumber]) -> Finding | None:
+def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, AnyNumber]) -> Diagnostic | None:
     if not _known(shape, values):
         return None
     try:
         why = shape.impossible(lambda e: float(e.evaluate(values)))
     except ExpressionError:  # told where the expression stands
         return None
-    return Finding(path, f"{what} ({shape.kind}) cannot be: {why}") if why else None
+    return Diagnostic(path, f"{what} ({shape.kind}) cannot be: {why}") if why else None
 
 
 def _signed_right(body: Any, values: Mapping[str, AnyNumber]) -> bool:
@@ -188,7 +188,7 @@ def _placed(piece: Any) -> bool:
     return all(len(components) <= 3 for components in vectors)
 
 
-def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Of a composite body all of whose numbers are known."""
     expressions = [body.mass] if body.mass is not None else []
     if not all(_known(piece, values) for piece in body.parts) or any(e.names - values.keys() for e in expressions):
@@ -201,7 +201,7 @@ def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNum
         measures = [_signed(piece, value) for piece in body.parts if piece.shape.mass is None]
         cut = body.mass is not None and any(measure > 0 for measure in measures)
         if cut and sum(measures) <= SOLVED * max(map(abs, measures)):
-            yield Finding(path, f"the holes of body '{name}' are as large as its parts, or larger", key=True)
+            yield Diagnostic(path, f"the holes of body '{name}' are as large as its parts, or larger", key=True)
             return
         composite = composite_of(body.parts, body.mass, value)
     except (ExpressionError, ZeroDivisionError):
@@ -213,7 +213,7 @@ def _signed(piece: Any, value: Any) -> Any:
     return (-1 if piece.hole else 1) * piece.shape.measure(value)
 
 
-def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> Iterator[Finding]:
+def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> Iterator[Diagnostic]:
     total = sum(placed.sign * placed.mass.m for placed in composite.pieces)
     largest = max(placed.mass.m for placed in composite.pieces)
     negative = [k for k, placed in enumerate(composite.pieces) if placed.mass.m < 0]
@@ -221,14 +221,14 @@ def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> I
         given = sum(p.sign * p.mass.m for p in composite.pieces if p.piece.shape.mass is not None)
         what = f"the parts of body '{name}' with a mass of their own weigh {float(given):g} kg, its 'mass' is "
         what += f"{float(composite.whole.m):g} kg: that leaves no mass for the others"
-        yield Finding(path, what, "'mass' is that of the net whole", key=True)
+        yield Diagnostic(path, what, "'mass' is that of the net whole", key=True)
     elif abs(total - composite.whole.m) > SOLVED * (largest or 1):
         what = f"the parts of body '{name}' weigh {float(total):g} kg, its 'mass' is {float(composite.whole.m):g} kg"
-        yield Finding(path, what, "leave out 'mass', or the mass of a part", key=True)
+        yield Diagnostic(path, what, "leave out 'mass', or the mass of a part", key=True)
     elif total < -SOLVED * largest or (abs(total) <= SOLVED * largest and largest > 0):
         weight = "negative" if total < -SOLVED * largest else "zero"
         what = f"the mass of body '{name}' is {weight}: its holes take away {_of_holes(composite):g} kg"
-        yield Finding(path, what, "a hole cannot weigh more than what it is cut out of", key=True)
+        yield Diagnostic(path, what, "a hole cannot weigh more than what it is cut out of", key=True)
     else:
         yield from _inertia(path, name, composite)
 
@@ -241,14 +241,14 @@ def _float(x: Any) -> float:
     return float(x)
 
 
-def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Finding]:
+def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Diagnostic]:
     I = composite.whole.I
     moments = [_float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
     size = max(abs(_float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)
     if not possible(moments, size):
-        told = ", ".join(f"{x:g}" for x in moments)
-        what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
-        yield Finding(
+        reported = ", ".join(f"{x:g}" for x in moments)
+        what = f"no body has the inertia of '{name}': [{reported}] breaks the triangle inequality"
+        yield Diagnostic(
             path, what, "a hole lies inside the other parts, and is no heavier than what it is cut out of", key=True
         )
 
@@ -277,13 +277,13 @@ def possible(moments: list[float], size: float = 0.0) -> bool:
 # Numbers: a mass, length, radius or inertia has its sign; an inertia obeys the triangle inequality.
 
 
-def numbers(catalog: Catalog) -> Iterator[Finding]:
+def numbers(catalog: Catalog) -> Iterator[Diagnostic]:
     """Wherever an expression is worth a number (by literals and parameters with values), that number is possible."""
     values: dict[str, AnyNumber] = {"pi": math.pi}
     for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
         yield from _parameter(catalog, name, values)
     for leaf, expression in catalog.expressions:
-        yield from _worth(leaf, expression, values)
+        yield from _value(leaf, expression, values)
         sign = getattr(leaf.rule, "sign", "")
         if sign:
             yield from _sign(leaf, expression, value_of(expression, values))
@@ -294,7 +294,7 @@ def numbers(catalog: Catalog) -> Iterator[Finding]:
     yield from made(catalog, values)
 
 
-def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
     """Adds the value of a parameter to the values, or tells why it has none."""
     part = catalog.table("parameters")[name]
     if part is None or part.value is None or not part.value.names <= values.keys():
@@ -303,10 +303,10 @@ def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Ite
         values[name] = part.value.evaluate(values)
     except ExpressionError as error:
         path, what = ("parameters", name, "value"), f"parameter '{name}': {error.what}"
-        yield Finding(path, what, error.mend, error.column, error.length)
+        yield Diagnostic(path, what, error.fix, error.column, error.length)
 
 
-def _worth(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+def _value(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
     """An expression of parameters that has no value, such as asin(2); a parameter's own is told above."""
     elsewhere = leaf.path[0] == "parameters" or leaf.value is not expression or expression.calls
     if elsewhere or not expression.names <= values.keys():
@@ -314,31 +314,31 @@ def _worth(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> 
     try:
         expression.evaluate(values)
     except ExpressionError as error:
-        yield Finding(leaf.path, f"{whereabouts(leaf.path)}: {error.what}", error.mend, error.column, error.length)
+        yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: {error.what}", error.fix, error.column, error.length)
 
 
-def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
+def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Diagnostic]:
     if number is None or number > 0 or (number == 0 and leaf.rule.sign == "nonnegative"):
         return
     what = "negative" if number < 0 else "zero"
     key = next((str(k) for k in reversed(leaf.path) if isinstance(k, str)), "")
-    told = shown(expression.text) if expression.literal is None else expression.text
-    worth = f"{told} = {float(number):g}" if expression.literal is None else told
+    reported = shown(expression.text) if expression.literal is None else expression.text
+    worth = f"{reported} = {float(number):g}" if expression.literal is None else reported
     where = whereabouts(leaf.path[:-1] if len(leaf.path) > 2 else leaf.path)
-    yield Finding(leaf.path, f"'{key}' in {where} is {what}: {worth}")
+    yield Diagnostic(leaf.path, f"'{key}' in {where} is {what}: {worth}")
 
 
-def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
     """A direction that its parameters make zero (one of literal zeros is told where vectors are checked)."""
     for leaf in catalog.leaves:
         if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
             continue
         named = any(component.literal is None for component in leaf.value)
         if named and all(value_of(component, values) == 0 for component in leaf.value):
-            yield Finding(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
+            yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
 
 
-def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
     """The two axes of a universal joint that its numbers make parallel: it then turns about one axis alone."""
     for name, body in catalog.table("bodies").items():
         axes = getattr(getattr(body, "joint", None), "axes", None)
@@ -347,17 +347,17 @@ def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Findin
         a, b = (list[Any](value_of(component, values) for component in axis) for axis in axes)
         if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
             what = f"the two axes of the universal joint of body '{name}' are parallel"
-            yield Finding(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
+            yield Diagnostic(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
 
 
-def _positive(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+def _positive(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
     for name, part in catalog.table("parameters").items():
         if part is not None and part.positive and name in values and values[name] <= 0:
             what = f"parameter '{name}' is declared positive but is {float(values[name]):g}"
-            yield Finding(("parameters", name, "value"), what)
+            yield Diagnostic(("parameters", name, "value"), what)
 
 
-def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
     for name, body in catalog.table("bodies").items():
         if body is None or body.inertia is None:
             continue
@@ -366,4 +366,4 @@ def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Findin
         negative = [k for k, x in enumerate(moments[:3]) if x is not None and x < 0]
         for k in negative:
             what = f"a moment of inertia of body '{name}' is negative: {body.inertia[k].text}"
-            yield Finding(path if len(moments) == 1 else (*path, k), what)
+            yield Diagnostic(path if len(moments) == 1 else (*path, k), what)

@@ -8,12 +8,12 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.catalog import Catalog, findings_of_one, owner_of
+from eomgen.model.catalog import Catalog, diagnostics_of_one, owner_of
 from eomgen.model.checks.bodies import bodies, numbers
 from eomgen.model.checks.names import equations, formulas, missing_point, names, references, speeds
+from eomgen.model.diagnostics import Diagnostic, nearest, whereabouts
 from eomgen.model.dimensions import dimensions
 from eomgen.model.fields import Leaf, NameRule
-from eomgen.model.findings import Finding, nearest, whereabouts
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import AXES, SIDES
 from eomgen.model.positions import DocumentPath
@@ -24,7 +24,7 @@ from eomgen.symbolic.expression.text import parse, rate_of_call
 # Outputs: the functions of the motion that they call, and what each can be asked of.
 
 
-def outputs(catalog: Catalog) -> Iterator[Finding]:
+def outputs(catalog: Catalog) -> Iterator[Diagnostic]:
     """Functions that are unknown, take another number of arguments, or are asked of what was never declared."""
     for leaf, expression in catalog.expressions:
         for call in _calls_in(expression):
@@ -39,18 +39,18 @@ def _calls_in(expression: Expression) -> Iterator[Call]:
                 yield from _calls_in(argument)
 
 
-def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
+def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
     function = FUNCTIONS.get(call.name)
     if function is None:
         there = [name for name in FUNCTIONS if catalog.model.space != "plane" or name[-1] != "z" or name == "omega_z"]
-        mend = rate_of_call(str(call)) or nearest(call.name, [*there, *NAMES])
-        yield Finding(leaf.path, f"unknown function '{call.name}'", mend, call.column, len(call.name))
+        fix = rate_of_call(str(call)) or nearest(call.name, [*there, *NAMES])
+        yield Diagnostic(leaf.path, f"unknown function '{call.name}'", fix, call.column, len(call.name))
         return
     functions = getattr(leaf.rule, "functions", None)
     if functions is not None and (call.name not in functions or len(call.args) > 2):
-        what, mend = f"'{call}' cannot stand in {whereabouts(leaf.path)}", f"only {', '.join(functions)} can stand here"
+        what, fix = f"'{call}' cannot stand in {whereabouts(leaf.path)}", f"only {', '.join(functions)} can stand here"
         few = "name one body, whose axes are meant too"
-        yield Finding(leaf.path, what, few if call.name in functions else mend, call.column, len(call.name))
+        yield Diagnostic(leaf.path, what, few if call.name in functions else fix, call.column, len(call.name))
         return
     kinds = function.kinds + (function.more,) * (len(call.args) - len(function.kinds) if function.more else 0)
     if not function.least <= len(call.args) <= len(kinds):
@@ -58,18 +58,18 @@ def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
         count = str(most) if most == function.least else f"{function.least} to {most}"
         count = f"at least {function.least}" if function.more else count
         what = f"{call.name} takes {count} argument{'' if count in ('1', 'at least 1') else 's'}, not {len(call.args)}"
-        yield Finding(leaf.path, what, f"{call.name}{function.arguments}", call.column, len(call.name))
+        yield Diagnostic(leaf.path, what, f"{call.name}{function.arguments}", call.column, len(call.name))
         return
-    yield from function.findings(catalog, leaf, call)
+    yield from function.diagnostics(catalog, leaf, call)
     for argument, kind in zip(call.args, kinds, strict=False):
         wrong = _argument(catalog, argument, kind)
         if wrong is not None:
-            what, mend, column, length = wrong
-            yield Finding(leaf.path, f"{what} (in {call})", mend, column, length)
+            what, fix, column, length = wrong
+            yield Diagnostic(leaf.path, f"{what} (in {call})", fix, column, length)
 
 
 def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int, int] | None:
-    """What is wrong with an argument: message, mend, column, length; None when it is right."""
+    """What is wrong with an argument: message, fix, column, length; None when it is right."""
     if kind == "any":
         return None
     if isinstance(argument, Expression):
@@ -85,7 +85,7 @@ def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int
         try:
             return _names_in(catalog, parse(argument.name), argument.column)  # L-c reads like a member
         except ExpressionError as error:
-            return error.what, error.mend, argument.column + error.column, error.length
+            return error.what, error.fix, argument.column + error.column, error.length
     if kind.endswith("axis"):
         if argument.name in AXES:
             return None
@@ -117,8 +117,8 @@ def _known(catalog: Catalog, kind: str) -> list[str]:
         "body or force": ("bodies", "forces"),
         "coordinate": ("coordinates",),
         "coordinate or speed": ("coordinates", "speeds"),
-        "tie": ("constraints",),
-        "tie or truss": ("constraints", "trusses"),
+        "constraint": ("constraints",),
+        "constraint or truss": ("constraints", "trusses"),
     }[kind]
     names = [name for table in tables for name in catalog.table(table)]
     return [*names, "ground"] if kind == "body" else names
@@ -129,23 +129,23 @@ def _unknown(argument: Reference, kind: str, known: Any) -> tuple[str, str, int,
 
 
 def _reaction(catalog: Catalog, argument: Reference) -> tuple[str, str, int, int] | None:
-    """A tie, a tie's side (`B.II`), or a body, which means its joint."""
+    """A constraint, a constraint's side (`B.II`), or a body, which means its joint."""
     owner, dot, side = argument.name.partition(".")
-    ties, bodies = catalog.table("constraints"), catalog.table("bodies")
-    if owner in ties:
+    constraints, bodies = catalog.table("constraints"), catalog.table("bodies")
+    if owner in constraints:
         if dot and side not in bodies and side != "ground" and side not in catalog.nodes:
             return f"unknown body '{side}'", nearest(side, bodies), argument.column + len(owner) + 1, len(side)
         return None
     if owner in bodies:
         return _joint_reaction(catalog, argument, owner, side)
     jointed = [name for name, part in bodies.items() if part is not None and part.joint is not None]
-    return _unknown(Reference(owner, argument.column), "tie or joint", [*ties, *jointed])
+    return _unknown(Reference(owner, argument.column), "constraint or joint", [*constraints, *jointed])
 
 
 def _moves_as_given(catalog: Catalog, body: str, joint: Any) -> bool:
     """Whether time or a driven coordinate stands in where a body is placed: what moves it as given holds it too."""
     clocks = {"t", *(name for name, part in catalog.table("coordinates").items() if part is not None and part.driven)}
-    clocks |= {tie.drives() for tie in catalog.table("constraints").values() if tie is not None}
+    clocks |= {constraint.drives() for constraint in catalog.table("constraints").values() if constraint is not None}
     seats = {("bodies", body, "joint"), ("points", joint.at, "at"), ("points", joint.at)}
     mine = (expression for leaf, expression in catalog.expressions if {leaf.path[:2], leaf.path[:3]} & seats)
     return any(name in clocks for expression in mine for name, _ in expression.occurrences)
@@ -157,8 +157,8 @@ def _joint_reaction(catalog: Catalog, argument: Reference, body: str, side: str)
         return None
     if part.joint is None or not (part.joint.carries_reaction or _moves_as_given(catalog, body, part.joint)):
         held = "has no joint" if part.joint is None else "is placed, which is geometry"
-        mend = "name the constraint that holds it"
-        return f"body '{body}' {held}: it has no reaction of its own", mend, argument.column, len(body)
+        fix = "name the constraint that holds it"
+        return f"body '{body}' {held}: it has no reaction of its own", fix, argument.column, len(body)
     pieces = [piece.name for piece in getattr(part.joint, "pieces", None) or ()]
     if side and side not in pieces and side not in catalog.table("bodies"):
         column = argument.column + len(body) + 1
@@ -166,49 +166,49 @@ def _joint_reaction(catalog: Catalog, argument: Reference, body: str, side: str)
     return None
 
 
-# -------- ties ------------------------------------------------------------------------------------------------
-# Ties, forces and coordinates: what goes together, what excludes what, and that nothing is idle.
+# -------- constraints ------------------------------------------------------------------------------------------------
+# Constraints, forces and coordinates: what goes together, what excludes what, and that nothing is idle.
 
 
 _WORD = re.compile(r"[^\W\d]\w*")
 
 
-def ties(catalog: Catalog) -> Iterator[Finding]:
-    """Fields of ties and forces that exclude one another, or of which one is missing."""
+def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Fields of constraints and forces that exclude one another, or of which one is missing."""
     for table in ("constraints", "forces"):
         for name, part in catalog.table(table).items():
             if part is None:
                 continue
             path: DocumentPath = (table, name)
             if part.one_of:
-                yield from findings_of_one(catalog, path, part, part.one_of)
-            yield from part.findings(path, catalog)
+                yield from diagnostics_of_one(catalog, path, part, part.one_of)
+            yield from part.diagnostics(path, catalog)
             if table == "constraints":
                 yield from _on_itself(catalog, path, part)
             friction = getattr(part, "friction", None)
             if friction is not None:
-                yield from findings_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
+                yield from diagnostics_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
 
 
-def _on_itself(catalog: Catalog, path: DocumentPath, part: Any) -> Iterator[Finding]:
-    """A tie that joins a body to itself, or the ground to the ground."""
+def _on_itself(catalog: Catalog, path: DocumentPath, part: Any) -> Iterator[Diagnostic]:
+    """A constraint that joins a body to itself, or the ground to the ground."""
     name = path[1]
     bodies = getattr(part, "bodies", None)
     if bodies and bodies[0] == bodies[1]:
-        yield Finding((*path, "bodies", 1), f"'{name}' gears body '{bodies[0]}' with itself", "name two bodies")
+        yield Diagnostic((*path, "bodies", 1), f"'{name}' gears body '{bodies[0]}' with itself", "name two bodies")
     points = getattr(part, "points", None) or ()
     point = getattr(part, "point", None)
     if any(name not in catalog.point_names() for name in (point, *points) if name is not None):
         return
     if point is not None and "." not in point and not part.holds_ground:
-        yield Finding((*path, "point"), f"'{name}' holds '{point}', a point of the ground", "name a point of a body")
+        yield Diagnostic((*path, "point"), f"'{name}' holds '{point}', a point of the ground", "name a point of a body")
     owners = {owner_of(point) for point in points}
     if len(owners) == 1 and (len(points) > 1 or "" in owners):
         whose = f"body '{owner}'" if (owner := owners.pop()) else "the ground"
-        yield Finding((*path, "points"), f"'{name}' joins {whose} to itself", "name points of different bodies")
+        yield Diagnostic((*path, "points"), f"'{name}' joins {whose} to itself", "name points of different bodies")
 
 
-def coordinates(catalog: Catalog) -> Iterator[Finding]:
+def coordinates(catalog: Catalog) -> Iterator[Diagnostic]:
     """Coordinates that are driven in two ways, or driven and dependent; starts that a given motion fixes already."""
     for name, part in catalog.table("coordinates").items():
         if part is None:
@@ -217,29 +217,31 @@ def coordinates(catalog: Catalog) -> Iterator[Finding]:
         laws = [law for law in ("motion", "rate", "acceleration") if getattr(part, law) is not None]
         if len(laws) > 1:
             what = f"coordinate '{name}' is driven twice: {', '.join(laws)}"
-            yield Finding((*path, laws[1]), what, "keep one", key=True)
+            yield Diagnostic((*path, laws[1]), what, "keep one", key=True)
         if laws and part.dependent:
             what = f"coordinate '{name}' is driven and dependent"
-            yield Finding((*path, "dependent"), what, "it is one or the other", key=True)
+            yield Diagnostic((*path, "dependent"), what, "it is one or the other", key=True)
         fixed = {"motion": ("start", "speed", "near"), "rate": ("speed", "near"), "acceleration": ("near",)}
         for key in fixed[laws[0]] if laws else ():
             if getattr(part, key) is not None:
                 what = f"'{key}' of coordinate '{name}' is given by its '{laws[0]}' already"
-                yield Finding((*path, key), what, "leave it out", key=True)
+                yield Diagnostic((*path, key), what, "leave it out", key=True)
 
 
-def idle(catalog: Catalog) -> Iterator[Finding]:
+def idle(catalog: Catalog) -> Iterator[Diagnostic]:
     """A coordinate, a speed or an input that nothing uses."""
     used = _used(catalog)
     for table, kind in (("coordinates", "coordinate"), ("inputs", "input")):
         for name in catalog.table(table):
             if name not in used:
-                yield Finding((table, name), f"{kind} '{name}' is used by nothing", "use it, or leave it out", key=True)
+                yield Diagnostic(
+                    (table, name), f"{kind} '{name}' is used by nothing", "use it, or leave it out", key=True
+                )
     for name, part in catalog.table("speeds").items():
         broken = ("speeds", name, "rate") in catalog.broken
         if part is not None and part.rate is None and name not in used and not broken:
             what = f"speed '{name}' has no 'rate' and no joint names it in 'omega'"
-            yield Finding(("speeds", name), what, "give its 'rate', an expression in the rates", key=True)
+            yield Diagnostic(("speeds", name), what, "give its 'rate', an expression in the rates", key=True)
 
 
 def _used(catalog: Catalog) -> set[str]:
@@ -253,12 +255,25 @@ def _used(catalog: Catalog) -> set[str]:
     for name, part in catalog.table("speeds").items():
         if name in used and part is not None and part.rate is not None:
             used.update(x.rstrip("'") for x in part.rate.names)
-    for finding in catalog.found:
-        used.update(_WORD.findall(str(finding.raw)))
+    for diagnostic in catalog.found:
+        used.update(_WORD.findall(str(diagnostic.raw)))
     return used
 
 
 # -------- everything ------------------------------------------------------------------------------------------
 
 
-ALL = (names, references, formulas, dimensions, equations, outputs, numbers, bodies, ties, coordinates, speeds, idle)
+ALL = (
+    names,
+    references,
+    formulas,
+    dimensions,
+    equations,
+    outputs,
+    numbers,
+    bodies,
+    constraints,
+    coordinates,
+    speeds,
+    idle,
+)

@@ -11,8 +11,8 @@ from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import in_order
 from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
+from eomgen.model.diagnostics import Diagnostic, article, nearest, one_of, whereabouts
 from eomgen.model.fields import EVERYTHING, AxialRule, Leaf, NameRule, VectorRule, WrittenEquation, is_mixed, mixed
-from eomgen.model.findings import Finding, article, nearest, one_of, whereabouts
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import typing_of
@@ -23,7 +23,7 @@ RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no nu
 _WORD = re.compile(r"\w+")
 
 
-def names(catalog: Catalog) -> Iterator[Finding]:
+def names(catalog: Catalog) -> Iterator[Diagnostic]:
     """Names that are none, that are reserved, or that stand for two things."""
     yield from _symbols(catalog)
     yield from _objects(catalog)
@@ -32,38 +32,40 @@ def names(catalog: Catalog) -> Iterator[Finding]:
     yield from _twice(catalog, OBJECT_TABLES)
 
 
-def _symbols(catalog: Catalog) -> Iterator[Finding]:
+def _symbols(catalog: Catalog) -> Iterator[Diagnostic]:
     for table in SYMBOL_TABLES:
         for name in catalog.table(table):
             if name in RESERVED or name.lower() in ("nan", "inf", "infinity"):
                 meaning = RESERVED[name.lower()]
-                yield Finding((table, name), f"'{name}' is reserved: it means {meaning}", "take another name", key=True)
+                yield Diagnostic(
+                    (table, name), f"'{name}' is reserved: it means {meaning}", "take another name", key=True
+                )
             elif not is_name(name):
                 yield _no_name(table, name, "letters, digits and _, a letter first")
 
 
-def _objects(catalog: Catalog) -> Iterator[Finding]:
+def _objects(catalog: Catalog) -> Iterator[Diagnostic]:
     for table in (*OBJECT_TABLES, "points", "forces", "outputs"):
         for name in catalog.table(table):
             if not _WORD.fullmatch(name):
                 yield _no_name(table, name, "letters, digits and _")
             elif table == "bodies" and name == "ground":
-                yield Finding((table, name), "'ground' means the ground, not a body", "take another name", key=True)
+                yield Diagnostic((table, name), "'ground' means the ground, not a body", "take another name", key=True)
 
 
-def _no_name(table: str, name: str, made_of: str) -> Finding:
-    return Finding((table, name), f"'{name}' cannot name {one_of(table)}", f"a name is made of {made_of}", key=True)
+def _no_name(table: str, name: str, made_of: str) -> Diagnostic:
+    return Diagnostic((table, name), f"'{name}' cannot name {one_of(table)}", f"a name is made of {made_of}", key=True)
 
 
-def _points(catalog: Catalog) -> Iterator[Finding]:
+def _points(catalog: Catalog) -> Iterator[Diagnostic]:
     for body, part in catalog.table("bodies").items():
         for point in (part.points or {}) if part else ():
             path = ("bodies", body, "points", point)
             if not _WORD.fullmatch(point):
-                yield Finding(path, f"'{point}' cannot name a point", "use letters, digits and _", key=True)
+                yield Diagnostic(path, f"'{point}' cannot name a point", "use letters, digits and _", key=True)
             elif point in _points_of_its_own(part):
                 what = f"body '{body}' has a point '{point}' of its own already"
-                yield Finding(path, what, "take another name, or leave it out", key=True)
+                yield Diagnostic(path, what, "take another name, or leave it out", key=True)
 
 
 def _points_of_its_own(part: Any) -> tuple[str, ...]:
@@ -73,13 +75,13 @@ def _points_of_its_own(part: Any) -> tuple[str, ...]:
     return ("origin", "center") if heavy else ()
 
 
-def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Finding]:
+def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Diagnostic]:
     first: dict[str, str] = {}
     for table in tables:
         for name in catalog.table(table):
             if name in first:
                 what = f"'{name}' is declared twice: as {one_of(first[name])} and as {one_of(table)}"
-                yield Finding((table, name), what, "give one of them another name", key=True)
+                yield Diagnostic((table, name), what, "give one of them another name", key=True)
             first.setdefault(name, table)
 
 
@@ -87,7 +89,7 @@ def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Finding]:
 # References: every body, point, coordinate that is named was declared; every vector has its length.
 
 
-def references(catalog: Catalog) -> Iterator[Finding]:
+def references(catalog: Catalog) -> Iterator[Diagnostic]:
     """Names of parts that were never declared; vectors and inertias of the wrong length."""
     for leaf in catalog.leaves:
         if isinstance(leaf.rule, NameRule):
@@ -100,7 +102,7 @@ def references(catalog: Catalog) -> Iterator[Finding]:
 
 
 def missing_point(catalog: Catalog, point: str) -> tuple[str, str, int, int] | None:
-    """What is wrong with a point's name: message, mend, column and length of the culprit; None when it is declared."""
+    """What is wrong with a point's name: message, fix, column and length of the culprit; None when it is declared."""
     owner, dot, name = point.partition(".")
     if not dot:
         if point in catalog.table("points"):
@@ -109,9 +111,9 @@ def missing_point(catalog: Catalog, point: str) -> tuple[str, str, int, int] | N
             offered = ", ".join(f"'{point}.{p}'" for p in catalog.body_points(point))
             return f"'{point}' is a body, not a point", f"one of its points: {offered}", 0, len(point)
         of_bodies = [p for p in catalog.point_names() if p.endswith("." + point)]
-        mend = f"did you mean '{of_bodies[0]}'?" if of_bodies else nearest(point, catalog.point_names())
+        fix = f"did you mean '{of_bodies[0]}'?" if of_bodies else nearest(point, catalog.point_names())
         declared = f"declare it in [points]: {point} = [...]" if point.isidentifier() else "declare it in [points]"
-        return f"unknown point of the ground: '{point}'", mend or declared, 0, len(point)
+        return f"unknown point of the ground: '{point}'", fix or declared, 0, len(point)
     if owner in catalog.table("trusses"):
         nodes = (catalog.table("trusses")[owner] and catalog.table("trusses")[owner].nodes) or {}
         if name in nodes:
@@ -134,47 +136,47 @@ def _missing_own(catalog: Catalog, body: str, point: str, column: int) -> tuple[
     if catalog.table("bodies")[body] is None:
         return None
     listed = ", ".join(known)
-    mend = nearest(point, known) or f"it has {listed}"
-    return f"body '{body}' has no point '{point}'", mend, column, len(point)
+    fix = nearest(point, known) or f"it has {listed}"
+    return f"body '{body}' has no point '{point}'", fix, column, len(point)
 
 
-def _point(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
-    yield from _told(leaf, missing_point(catalog, leaf.value))
+def _point(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
+    yield from _reported(leaf, missing_point(catalog, leaf.value))
 
 
-def _told(leaf: Leaf, wrong: tuple[str, str, int, int] | None) -> Iterator[Finding]:
+def _reported(leaf: Leaf, wrong: tuple[str, str, int, int] | None) -> Iterator[Diagnostic]:
     if wrong is not None:
-        what, mend, column, length = wrong
-        yield Finding(leaf.path, f"{what} (in {whereabouts(leaf.path)})", mend, column, length)
+        what, fix, column, length = wrong
+        yield Diagnostic(leaf.path, f"{what} (in {whereabouts(leaf.path)})", fix, column, length)
 
 
-def _own_point(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _own_point(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     body = leaf.path[1] if leaf.path[0] == "bodies" else leaf.part.body
     if not isinstance(body, str) or body not in catalog.table("bodies"):
         return
     owner, dot, name = leaf.value.partition(".")
     if dot and owner != body:
         what = f"'{leaf.value}' is not a point of body '{body}'"
-        yield Finding(leaf.path, what, f"only a point of '{body}' can stand here", 0, len(owner))
+        yield Diagnostic(leaf.path, what, f"only a point of '{body}' can stand here", 0, len(owner))
     else:
         name = name if dot else owner
-        yield from _told(leaf, _missing_own(catalog, body, name, len(owner) + 1 if dot else 0))
+        yield from _reported(leaf, _missing_own(catalog, body, name, len(owner) + 1 if dot else 0))
 
 
-def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     owner, dot, name = leaf.value.partition(".")
     body = leaf.path[1]
     if owner not in catalog.table("bodies"):
         what = f"joint of body '{body}' hangs on a body that was never declared: '{owner}'"
-        mend = nearest(owner, [b for b in catalog.table("bodies") if b != body])
+        fix = nearest(owner, [b for b in catalog.table("bodies") if b != body])
         if owner == "ground" or owner in catalog.table("points"):
-            mend = "leave out 'on' for the ground" + ("" if owner == "ground" else f', and write at = "{owner}"')
-        yield Finding(leaf.path, what, mend, 0, len(owner))
+            fix = "leave out 'on' for the ground" + ("" if owner == "ground" else f', and write at = "{owner}"')
+        yield Diagnostic(leaf.path, what, fix, 0, len(owner))
     elif dot:
-        yield from _told(leaf, _missing_own(catalog, owner, name, len(owner) + 1))
+        yield from _reported(leaf, _missing_own(catalog, owner, name, len(owner) + 1))
 
 
-def _idle_nodes(catalog: Catalog) -> Iterator[Finding]:
+def _idle_nodes(catalog: Catalog) -> Iterator[Diagnostic]:
     """Nodes that no member joins to a truss."""
     for name, truss in catalog.table("trusses").items():
         if truss is None or truss.members is None:
@@ -183,38 +185,42 @@ def _idle_nodes(catalog: Catalog) -> Iterator[Finding]:
         for node in truss.nodes or {}:
             if node not in joined:
                 what = f"node '{node}' of truss '{name}' has no member"
-                yield Finding(("trusses", name, "nodes", node), what, "join it by a member, or leave it out", key=True)
+                yield Diagnostic(
+                    ("trusses", name, "nodes", node), what, "join it by a member, or leave it out", key=True
+                )
 
 
-def _declared(table: str, what: str) -> Callable[[Catalog, Leaf], Iterator[Finding]]:
-    def check(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _declared(table: str, what: str) -> Callable[[Catalog, Leaf], Iterator[Diagnostic]]:
+    def check(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
         known = catalog.table(table)
         if leaf.value not in known:
-            told = f"unknown {what} '{leaf.value}' in {whereabouts(leaf.path)}"
-            yield Finding(leaf.path, told, nearest(leaf.value, known), 0, len(leaf.value))
+            reported = f"unknown {what} '{leaf.value}' in {whereabouts(leaf.path)}"
+            yield Diagnostic(leaf.path, reported, nearest(leaf.value, known), 0, len(leaf.value))
 
     return check
 
 
-def _axes(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _axes(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     if leaf.value != "ground":
         yield from _declared("bodies", "axes: no body")(catalog, leaf)
 
 
-def _member(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _member(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     truss = catalog.table("trusses")[leaf.path[1]]
     ends = leaf.value.split("-")
     if len(ends) != 2 or ends[0] == ends[1]:
-        yield Finding(leaf.path, f"'{leaf.value}' is no member", 'a member joins two nodes: "n1-n2"')
+        yield Diagnostic(leaf.path, f"'{leaf.value}' is no member", 'a member joins two nodes: "n1-n2"')
         return
     before = [set(member.split("-")) for member in (truss.members or ())[: int(leaf.path[-1])]]
     if set(ends) in before:
-        yield Finding(leaf.path, f"member '{leaf.value}' of truss '{leaf.path[1]}' stands there twice", "leave one out")
+        yield Diagnostic(
+            leaf.path, f"member '{leaf.value}' of truss '{leaf.path[1]}' stands there twice", "leave one out"
+        )
     for k, node in enumerate(ends):
         if truss.nodes is not None and node not in truss.nodes:
             column = 0 if k == 0 else len(ends[0]) + 1
             what = f"truss '{leaf.path[1]}' has no node '{node}'"
-            yield Finding(leaf.path, what, nearest(node, truss.nodes) or _nodes(truss.nodes), column, len(node))
+            yield Diagnostic(leaf.path, what, nearest(node, truss.nodes) or _nodes(truss.nodes), column, len(node))
 
 
 def _nodes(nodes: Iterable[str]) -> str:
@@ -233,7 +239,7 @@ _CHECKS: dict[str, Callable[[Catalog, Leaf], Any]] = {
 }
 
 
-def _vector(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _vector(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     rule, value, space = leaf.rule, leaf.value, catalog.model.space
     if isinstance(value, str) and rule.own_point:
         yield from _own_point(catalog, leaf)
@@ -241,28 +247,28 @@ def _vector(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
     if isinstance(value, str):
         if value not in catalog.table("points"):
             what = f"unknown point of the ground '{value}' in {whereabouts(leaf.path)}"
-            mend = nearest(value, catalog.table("points")) or "give coordinates, or a point of [points]"
-            yield Finding(leaf.path, what, mend, 0, len(value))
+            fix = nearest(value, catalog.table("points")) or "give coordinates, or a point of [points]"
+            yield Diagnostic(leaf.path, what, fix, 0, len(value))
         return
     needed = rule.length or {"plane": 2, "space": 3}.get(space)
     if needed is not None and len(value) != needed:
         what = f"{whereabouts(leaf.path)}: {needed} components are needed, not {len(value)}"
         where = "" if rule.length else f"the model is in the {space}" if space == "plane" else "the model is in space"
-        yield Finding(leaf.path, what, where)
+        yield Diagnostic(leaf.path, what, where)
     elif rule.nonzero and all(c.literal == 0 for c in value):
-        yield Finding(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
+        yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
     elif rule.nonzero and rule.length == 3 and space == "plane" and [c.literal for c in value] != [0, 0, 1]:
-        yield Finding(leaf.path, "in the plane everything turns about z", f"leave out '{leaf.path[-1]}'")
+        yield Diagnostic(leaf.path, "in the plane everything turns about z", f"leave out '{leaf.path[-1]}'")
 
 
-def _axial(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
+def _axial(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
     count, space = len(leaf.value), catalog.model.space
     if space == "plane" and count != 1:
         what = f"{whereabouts(leaf.path)}: one number about z is needed in the plane, not {count}"
-        yield Finding(leaf.path, what, "give the one about z")
+        yield Diagnostic(leaf.path, what, "give the one about z")
     elif space == "space" and count not in leaf.rule.lengths:
         needed = " or ".join(map(str, leaf.rule.lengths))
-        yield Finding(leaf.path, f"{whereabouts(leaf.path)}: {needed} numbers are needed in space, not {count}")
+        yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: {needed} numbers are needed in space, not {count}")
 
 
 # -------- formulas --------------------------------------------------------------------------------------------
@@ -272,7 +278,7 @@ def _axial(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
 LONGEST_TRAIL = 10  # names of a ring that are shown
 
 
-def formulas(catalog: Catalog) -> Iterator[Finding]:
+def formulas(catalog: Catalog) -> Iterator[Diagnostic]:
     """Names that are unknown or may not stand where they do, units that do not fit, parameters in a ring."""
     for leaf, expression in catalog.expressions:
         scope = "" if leaf.rule.scope == EVERYTHING else leaf.rule.scope
@@ -285,34 +291,34 @@ def formulas(catalog: Catalog) -> Iterator[Finding]:
         for name in expression.parts:
             if name in catalog.symbols:
                 what = f"a part of {whereabouts(leaf.path)} is called '{name}', like {article(catalog.symbols[name])}"
-                yield Finding(leaf.path, what, "give it another name")
+                yield Diagnostic(leaf.path, what, "give it another name")
         unit = leaf.part.unit if leaf.part is not None and leaf.path[-1] in leaf.part.in_unit else None
         if unit is not None and expression.names <= allowed and is_mixed(expression, unit):
             yield mixed(expression, unit, leaf.path)
     yield from _rings(catalog)
 
 
-def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: frozenset[str]) -> Finding:
+def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: frozenset[str]) -> Diagnostic:
     base = name.rstrip("'")
     kind = catalog.symbols.get(base)
     where = whereabouts(leaf.path)
     if kind is None:
         other = meant_name(name, allowed)
-        mend = (
+        fix = (
             f"write {other}" if other else _in_degrees(name, leaf) or nearest(name, allowed) or _declare(catalog, name)
         )
         what = f"unknown name '{name}' in {where}"
     elif name != base and kind not in ("coordinate", "speed"):
-        what, mend = f"a prime on what does not move: {name} ('{base}' is {article(kind)})", f"write {base}"
+        what, fix = f"a prime on what does not move: {name} ('{base}' is {article(kind)})", f"write {base}"
     elif name != base and f"{name}" not in catalog.allowed[""]:
-        what, mend = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed '"
+        what, fix = f"'{name}' means nothing: '{base}' is {article(kind)}", "a coordinate has '' and ', a speed '"
     else:
         primes = {"coordinate": ("coordinate", "rate", "acceleration"), "speed": ("speed", "acceleration")}
         kind = primes[kind][len(name) - len(base)] if kind in primes else kind
-        what, mend = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
+        what, fix = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
         if leaf.path[0] == "constraints" and leaf.path[-1] == "length" and base in catalog.table("coordinates"):
-            mend += f'; a length that changes is a driven joint: kind = "prismatic", displacement = "{base}"'
-    return Finding(leaf.path, what, mend, column, len(name))
+            fix += f'; a length that changes is a driven joint: kind = "prismatic", displacement = "{base}"'
+    return Diagnostic(leaf.path, what, fix, column, len(name))
 
 
 def _in_degrees(name: str, leaf: Leaf) -> str:
@@ -329,41 +335,41 @@ def _declare(catalog: Catalog, name: str) -> str:
     return f"declare '{name.rstrip(chr(39))}' in [parameters]"
 
 
-def _rings(catalog: Catalog) -> Iterator[Finding]:
+def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
     values = {name: part.value if part else None for name, part in catalog.table("parameters").items()}
     for ring in in_order(values)[1]:
         path: DocumentPath = ("parameters", ring[0], "value")
         shown = ring if len(ring) <= LONGEST_TRAIL else [*ring[:LONGEST_TRAIL], "..."]
         trail = " -> ".join([*shown, ring[0]])
         what = f"parameter '{ring[0]}' needs itself: {trail}" if len(ring) == 1 else f"parameters in a ring: {trail}"
-        yield Finding(path, what, "give one of them a number")
+        yield Diagnostic(path, what, "give one of them a number")
 
 
 # -------- equations -------------------------------------------------------------------------------------------
 # Equations: what is typed in them has a unit that fits, and no two meanings.
 
 
-def equations(catalog: Catalog) -> Iterator[Finding]:
+def equations(catalog: Catalog) -> Iterator[Diagnostic]:
     """Units that do not fit the other side; numbers that may be meant in two units."""
     for leaf in catalog.leaves:
         if isinstance(leaf.value, WrittenEquation) and leaf.value.units is not None:
             try:
                 typing_of(catalog.model, str(leaf.path[0])).equation(leaf.value)
             except ExpressionError as error:
-                yield Finding(leaf.path, error.what, error.mend, error.column, error.length)
+                yield Diagnostic(leaf.path, error.what, error.fix, error.column, error.length)
 
 
 # -------- speeds ----------------------------------------------------------------------------------------------
 # Speeds and quaternions: what turns by a quaternion is free, and every speed has one meaning and one start.
 
 
-def speeds(catalog: Catalog) -> Iterator[Finding]:
+def speeds(catalog: Catalog) -> Iterator[Diagnostic]:
     """Quaternions of coordinates that are not free or belong to two bodies; speeds that are named twice."""
     yield from _quaternions(catalog)
     yield from _starts(catalog)
 
 
-def _quaternions(catalog: Catalog) -> Iterator[Finding]:
+def _quaternions(catalog: Catalog) -> Iterator[Diagnostic]:
     taken: dict[str, str] = {}
     for body, part in catalog.table("bodies").items():
         joint = None if part is None else part.joint
@@ -375,7 +381,7 @@ def _quaternions(catalog: Catalog) -> Iterator[Finding]:
                 if name in taken:
                     whose = f"body '{taken[name]}'" if taken[name] != body else "this body"
                     what = f"'{name}' stands twice: it turns {whose} already"
-                    yield Finding((*path, key, k), what, "each body needs names of its own")
+                    yield Diagnostic((*path, key, k), what, "each body needs names of its own")
                 taken.setdefault(name, body)
         yield from _free(catalog, body, joint.quaternion or ())
         for k, name in enumerate(joint.omega or ()):
@@ -383,22 +389,22 @@ def _quaternions(catalog: Catalog) -> Iterator[Finding]:
             if speed is not None and speed.rate is not None:
                 what = f"speed '{name}' has a 'rate' and is the angular velocity of body '{body}' too"
                 start = "" if speed.rate.names else f"; a start is {name} = {{ start = {speed.rate.text} }}"
-                yield Finding((*path, "omega", k), what, f"leave out the 'rate': `omega` says what it is{start}")
+                yield Diagnostic((*path, "omega", k), what, f"leave out the 'rate': `omega` says what it is{start}")
 
 
-def _free(catalog: Catalog, body: str, names: tuple[str, ...]) -> Iterator[Finding]:
+def _free(catalog: Catalog, body: str, names: tuple[str, ...]) -> Iterator[Diagnostic]:
     for name in names:
         part = catalog.table("coordinates").get(name)
         if part is not None and (part.driven or part.dependent):
             how = "driven" if part.driven else "dependent"
             what = f"'{name}' is {how}, but it is part of the quaternion of body '{body}', whose four are free together"
-            yield Finding(("coordinates", name), what, "describe the orientation by angles", key=True)
+            yield Diagnostic(("coordinates", name), what, "describe the orientation by angles", key=True)
 
 
-def _starts(catalog: Catalog) -> Iterator[Finding]:
+def _starts(catalog: Catalog) -> Iterator[Diagnostic]:
     """A start speed of a coordinate whose rate is combined in speeds that have a start of their own."""
-    told = set[str]().union(*begun_speeds(catalog.table("speeds")).values())
+    reported = set[str]().union(*begun_speeds(catalog.table("speeds")).values())
     for name, part in catalog.table("coordinates").items():
-        if part is not None and part.speed is not None and f"{name}'" in told and not part.driven:
+        if part is not None and part.speed is not None and f"{name}'" in reported and not part.driven:
             what = f"coordinate '{name}' has a 'speed' at the start, and the speeds of its rate have a 'start' too"
-            yield Finding(("coordinates", name, "speed"), what, "keep `start` of the speeds", key=True)
+            yield Diagnostic(("coordinates", name, "speed"), what, "keep `start` of the speeds", key=True)

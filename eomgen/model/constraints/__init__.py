@@ -1,4 +1,4 @@
-"""Constraints: the seam of ties.
+"""Constraints: the seam of constraints.
 
 Adding one is one class, beside its kin or in a file of its own, and one name here.
 """

@@ -1,25 +1,25 @@
 """What every constraint is, what touches what in it, and the rows that its law gives.
 
-What every tie is: fields that say what touches what.
+What every constraint is: fields that say what touches what.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
-from eomgen.model.constraints.row import Edge, TieRow
+from eomgen.model.constraints.row import ConstraintRow, Edge
 from eomgen.model.constraints.strand import Strand
-from eomgen.model.findings import Finding
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import ReactionSymbolsField
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar
 
 # -------- meeting ---------------------------------------------------------------------------------------------
-# What touches what in a tie, as it is declared: fields and names alone, no formulas. Proofs look at them.
+# What touches what in a constraint, as it is declared: fields and names alone, no formulas. Proofs look at them.
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,7 @@ class Meeting:
 
 @dataclass(frozen=True, kw_only=True)
 class Constraint(Part, ABC):
-    """A tie between bodies, or between coordinates.
+    """A constraint between bodies, or between coordinates.
 
     `table` is where a user declares it. `spaces` are those in which this version states its rows; elsewhere it is read,
     checked and not derived yet.
@@ -136,13 +136,13 @@ class Constraint(Part, ABC):
     on_line: ClassVar[bool] = False  # in space it holds its point from all sides of a line
     symbol: ReactionSymbolsField | None = None
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """What is wrong with its fields together; one alone its rule has looked at."""
         yield from ()
 
     @classmethod
     def works_in(cls, space: str) -> bool:
-        """Whether this version derives the tie in this space."""
+        """Whether this version derives the constraint in this space."""
         return space in cls.spaces
 
     def strand_rows(self) -> tuple[int, ...]:
@@ -154,7 +154,8 @@ class Constraint(Part, ABC):
         return ()
 
     def turned(self) -> Iterator[tuple[str, Any]]:
-        """(how it is written, the same tie) with a direction in the axes of a body, where it stands in the ground's."""
+        """(how it is written, the same constraint) with a direction in the axes of a body, where it stands in the
+        ground's."""
         yield from ()
 
     def misplaced(self, scene: LoadContext) -> tuple[str, str]:
@@ -162,11 +163,12 @@ class Constraint(Part, ABC):
         return "", ""
 
     def leans_on_ground(self) -> bool:
-        """Whether the ground guides what the tie holds, though it pushes on no place of the ground."""
+        """Whether the ground guides what the constraint holds, though it pushes on no place of the ground."""
         return False
 
     def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
-        """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
+        """What must not vanish, else nobody can say where the constraint holds its bodies; () where there is no such
+        thing."""
         return ()
 
     def limits(self, scene: LoadContext) -> tuple[Edge, ...]:
@@ -199,8 +201,8 @@ class Constraint(Part, ABC):
         return ()
 
     @abstractmethod
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
-        """The rows of the tie, asked only where it works.
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
+        """The rows of the constraint, asked only where it works.
 
         Raises:
             ModelError: it cannot hold as it is said.

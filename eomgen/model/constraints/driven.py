@@ -2,12 +2,12 @@
 
 from typing import ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import same_turn
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import Couple, LoadContext, Push
 from eomgen.model.kinds import CoordinateName, MotionOfCoordinate, Pure, TwoBodies
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, times
 from eomgen.symbolic.expression.text import as_expression
 
@@ -38,7 +38,7 @@ class Gear(Constraint):
     def stays(self, component: str) -> bool:
         return True
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """theta_1 - ratio theta_2 stays; a couple 1 on the first body, - ratio on the second, none on the ground.
 
         In space each couple is along the axis of the body's joint, its opposite on the body that carries the joint.
@@ -49,7 +49,7 @@ class Gear(Constraint):
             return (same_turn(scene, first, second, ratio),)
         (one, on_first), (other, on_second) = (_at_joint(scene, body, k) for body, k in ((first, 1), (second, -ratio)))
         turned = one - ratio * other
-        return (TieRow((*on_first, *on_second), turned - scene.start(turned), component="couple"),)
+        return (ConstraintRow((*on_first, *on_second), turned - scene.start(turned), component="couple"),)
 
 
 def _at_joint(scene: LoadContext, body: str, couple: AnyScalar) -> tuple[AnyScalar, tuple[Push, ...]]:
@@ -60,12 +60,12 @@ def _at_joint(scene: LoadContext, body: str, couple: AnyScalar) -> tuple[AnyScal
 
 
 # -------- motion ----------------------------------------------------------------------------------------------
-# Motion: a coordinate is driven through a tie, which gives its driving force.
+# Motion: a coordinate is driven through a constraint, which gives its driving force.
 
 
 @dataclass(frozen=True, kw_only=True)
 class Motion(Constraint):
-    """A drive of a coordinate through a tie: q = value(t).
+    """A drive of a coordinate through a constraint: q = value(t).
 
     One row: the driving force along the coordinate, a generalized force.
 
@@ -82,6 +82,6 @@ class Motion(Constraint):
         """Its coordinate."""
         return self.coordinate
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """q - f(t) = 0; lam is the generalized force along q."""
-        return (TieRow((), scene.value(as_expression(self.coordinate)) - scene.value(self.value)),)
+        return (ConstraintRow((), scene.value(as_expression(self.coordinate)) - scene.value(self.value)),)

@@ -1,18 +1,18 @@
 """An equation between coordinates, points and bodies.
 
-Equation: a tie written as an expression.
+Equation: a constraint written as an expression.
 """
 
 from collections.abc import Mapping
 from typing import ClassVar
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import Touch, angle_of, opposite
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, Push
 from eomgen.model.kinds import Gap, VelocityLaw
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Reference
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
 
@@ -120,7 +120,7 @@ class Equation(Constraint):
     gap: Gap | None = None
     rate: VelocityLaw | None = None
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """phi = 0 with the forces lam dphi/dx(P); or sum k v + rest = 0 with the forces lam k."""
         law = self.rate if self.gap is None else self.gap
         assert law is not None, "one of gap and rate is given"
@@ -150,5 +150,5 @@ def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, AnyScalar])
     return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))
 
 
-def _row(gap: AnyScalar | None, rate: AnyScalar | None, pushes: tuple[Push, ...]) -> TieRow:
-    return TieRow(pushes, gap, rate, component="wrench" if pushes else "")
+def _row(gap: AnyScalar | None, rate: AnyScalar | None, pushes: tuple[Push, ...]) -> ConstraintRow:
+    return ConstraintRow(pushes, gap, rate, component="wrench" if pushes else "")

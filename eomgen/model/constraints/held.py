@@ -5,17 +5,17 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, not_in_the_plane, owner_of
 from eomgen.model.constraints.base import BodyLine, Constraint, FlatSurface, Groove, Meeting, TouchingPoint
 from eomgen.model.constraints.pin import alike, held_together, not_turning, others_of
 from eomgen.model.constraints.plane import Touch, left, opposite, same_turn
 from eomgen.model.constraints.rolling import complement, laid_in
-from eomgen.model.constraints.row import TieRow, direction_of, normals_of
-from eomgen.model.findings import Finding
+from eomgen.model.constraints.row import ConstraintRow, direction_of, normals_of
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import BodyName, Direction, Flag, FrictionLaw, GroundPlace, PointName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, minus, times, vector_of
@@ -44,10 +44,10 @@ class Clamp(Constraint):
     def stays(self, component: str) -> bool:
         return self.point is not None or component == "couple"
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """The rows of a pin, and no turning against the start; in space e_i . e_j = 0 of axes in either body."""
         first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
-        rows: list[TieRow] = []
+        rows: list[ConstraintRow] = []
         for other in others_of(scene, named):
             rows += held_together(scene, first, other)
             bodies = first[0], other[0]
@@ -88,13 +88,13 @@ class Guide(Constraint):
     def lies_by_start(self) -> bool:
         return True
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . (p - p_start) = 0 for each n across `along`; theta - theta_start = 0, in space as a clamp."""
         place = scene.place(self.point)
         rows = []
         for name, n in normals_of(scene, direction_of(scene, scene.vector(self.along))):
             height = dot(n, scene.position(place))
-            rows.append(TieRow((PointForce(place, n),), height - scene.start(height), component=name))
+            rows.append(ConstraintRow((PointForce(place, n),), height - scene.start(height), component=name))
         turns = [same_turn(scene, place[0], None)] if scene.plane else not_turning(scene, (place[0], None))
         return (*rows, *turns)
 
@@ -131,23 +131,23 @@ class Slider(Constraint):
     unilateral: Flag = False
     friction: FrictionLaw | None = None
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """The body needs a line, another than that of the point; in space the slider cannot end."""
         if _lacks_line(catalog, self.on):
             what = f"'{path[1]}' slides on the line of body '{self.on}', which has none"
-            yield Finding((*path, "on"), what, f'give body \'{self.on}\' its line = ["A", "B"]')
+            yield Diagnostic((*path, "on"), what, f'give body \'{self.on}\' its line = ["A", "B"]')
         if self.unilateral and catalog.model.space == "space":
             what = f"'{path[1]}' holds its point on a line in space from all sides: it cannot end"
-            yield Finding((*path, "unilateral"), what, "leave it out, or use a support", key=True)
+            yield Diagnostic((*path, "unilateral"), what, "leave it out, or use a support", key=True)
         if self.point is not None and owner_of(self.point) == self.on:
             what = f"the point '{self.point}' of '{path[1]}' is on the body along which it should slide"
-            yield Finding((*path, "point"), what)
+            yield Diagnostic((*path, "point"), what)
 
     def meeting(self) -> Meeting:
         """The point, on the body's line."""
         return Meeting(TouchingPoint(self.point), BodyLine(self.on))
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.
 
         In the plane n is the left normal; in space there are two, and |N| = sqrt(N_1^2 + N_2^2). A point of the ground
@@ -163,7 +163,7 @@ class Slider(Constraint):
         if place[0] is None:
             touch, sense = (touch[1], touch[0]), -1
         rows = [
-            TieRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
+            ConstraintRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
             for name, n in normals_of(scene, d)
         ]
         rows[-1] = replace(rows[-1], tangent=opposite(*touch, apply(R, d)), round=not scene.plane)
@@ -204,7 +204,7 @@ class Support(Constraint):
         """The point, on its line or plane."""
         return Meeting(TouchingPoint(self.point), FlatSurface(None, self.at, self.normal))
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y.
 
         In space along t and s, as those of a rolling body.
@@ -216,7 +216,7 @@ class Support(Constraint):
         along: tuple[Vector, ...] = ((n[1], -n[0], 0),) if scene.plane else laid_in(scene, n)
         tangents = [(PointForce(place, t),) for t in along]
         gap = dot(n, minus(position, origin))
-        row = TieRow((PointForce(place, n),), gap, component="n", tangent=tangents[0])
+        row = ConstraintRow((PointForce(place, n),), gap, component="n", tangent=tangents[0])
         return (row if scene.plane else replace(row, cross_tangent=tangents[1]),)
 
 
@@ -242,7 +242,7 @@ class Skate(Constraint):
     along: Direction
     normal: SpaceDirection | None = None
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """The ice has no normal in the plane."""
         yield from not_in_the_plane(catalog, path, self, ("normal",))
 
@@ -252,7 +252,7 @@ class Skate(Constraint):
             TouchingPoint(self.point), Groove(self.point.rpartition(".")[0] or None, self.along, self.normal)
         )
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """n . v = 0; a row of velocities alone, which no gap has for a rate.
 
         n is the left normal of `along`; in space, on ice of the normal e and with the edge d, n = e x d / |e x d|.
@@ -260,8 +260,8 @@ class Skate(Constraint):
         place = scene.place(self.point)
         along = direction_of(scene, scene.vector(self.along))
         if scene.plane:
-            return (TieRow((PointForce(place, left(along), axes=place[0]),), None, component="n"),)
+            return (ConstraintRow((PointForce(place, left(along), axes=place[0]),), None, component="n"),)
         e = (0, 0, 1) if self.normal is None else direction_of(scene, scene.vector(self.normal))
         d = along if place[0] is None else apply(scene.orientation(place[0]), along)
         n = times(over(1, complement(scene, dot(e, d))), cross(e, d))
-        return (TieRow((PointForce(place, n),), None, component="n"),)
+        return (ConstraintRow((PointForce(place, n),), None, component="n"),)

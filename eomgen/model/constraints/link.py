@@ -8,12 +8,12 @@ from dataclasses import replace
 from typing import Annotated, ClassVar
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.constraints.base import Constraint, Thread
-from eomgen.model.constraints.row import TieRow
+from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Flag, Length, Text, TwoPoints
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Reference, over, sqrt
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.rational import Fraction
@@ -50,7 +50,7 @@ class Link(Constraint):
     def lies_by_start(self) -> bool:
         return self.length is None
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """(L - r . r / L) / 2 = 0, r from the first point to the second; a tension 1 pulls the first along r / L.
 
         It is L - |r| to first order, without a root.
@@ -60,7 +60,7 @@ class Link(Constraint):
         L = self._length(scene, r)
         d = vector_of(over(x, L) for x in r)
         pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
-        return (TieRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
+        return (ConstraintRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
 
     def _length(self, scene: LoadContext, r: Vector) -> AnyScalar:
         if self.length is not None:
@@ -80,7 +80,7 @@ class Link(Constraint):
 # Members: the two-force bars of a truss. A model holds them once its trusses are taken apart; no file names them.
 
 
-def ends_asked(call: Call) -> tuple[str, str] | None:
+def ends_requested(call: Call) -> tuple[str, str] | None:
     """The two nodes of tension(T, n1-n2) or tension(T, n1, n2); None where it names no two."""
     _, *rest = call.args
     texts = [a.name if isinstance(a, Reference) else a.text for a in rest]
@@ -110,11 +110,11 @@ class Members(Constraint):
     def stays(self, component: str) -> bool:
         return True
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """Of each member the row of a link."""
         return tuple(self._row(scene, member) for member in self.members)
 
-    def _row(self, scene: LoadContext, member: str) -> TieRow:
+    def _row(self, scene: LoadContext, member: str) -> ConstraintRow:
         ends = self.ends(member)
         first, second = (scene.position(scene.place(point)) for point in ends)
         r = minus(second, first)
@@ -134,7 +134,7 @@ class Members(Constraint):
 
 def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
     """The trusses of a model in parts, by name."""
-    return {name: tie for name, tie in constraints.items() if isinstance(tie, Members)}
+    return {name: constraint for name, constraint in constraints.items() if isinstance(constraint, Members)}
 
 
 def _direction(scene: LoadContext, r: Vector) -> tuple[AnyScalar, ...]:

@@ -4,15 +4,15 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.row import AXIS_NAMES, TieRow, scene_axes
-from eomgen.model.findings import Finding
+from eomgen.model.constraints.row import AXIS_NAMES, ConstraintRow, scene_axes
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import AxesName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, matrix_of, minus, times, transposed
 
@@ -24,7 +24,7 @@ class Pin(Constraint):
     Rows, for each point after the first: e . (p_first - p_other) = 0 along x and y (in space also z): forces along
     these axes. In space `axis` makes it a hinge, the axis carried along by both bodies, with two rows more, couples;
     without it it is a ball joint. With an axis the single point's body keeps its axis in the ground. `check` warns of a
-    hinge whose axis would leave more freedoms in the axes of one of its bodies.
+    hinge whose axis would leave more degrees of freedom in the axes of one of its bodies.
 
     Args:
         points: the hinge's points, one of each body.
@@ -37,16 +37,18 @@ class Pin(Constraint):
     axis: SpaceDirection | None = None
     axes: AxesName = "ground"
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Axes of a body that the hinge does not hold, or of no axis."""
         if self.points is None or self.axes is None:  # what could not be read
             return
         holds = [owner_of(point) for point in self.points]
         if self.axes in catalog.table("bodies") and self.axes not in holds:
             what = f"'{path[1]}' does not hold body '{self.axes}'"
-            yield Finding((*path, "axes"), what, f"one of {', '.join(holds)}")
+            yield Diagnostic((*path, "axes"), what, f"one of {', '.join(holds)}")
         elif self.axes != "ground" and self.axis is None:
-            yield Finding((*path, "axes"), f"'{path[1]}' has no axis", "give the axis, or leave 'axes' out", key=True)
+            yield Diagnostic(
+                (*path, "axes"), f"'{path[1]}' has no axis", "give the axis, or leave 'axes' out", key=True
+            )
 
     def turned(self) -> Iterator[tuple[str, Any]]:
         """The same hinge with its axis in the axes of each body that it holds."""
@@ -61,7 +63,7 @@ class Pin(Constraint):
     def lies_by_start(self) -> bool:
         return len(self.points) == 1
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start.
 
         With an axis in space also n_P . e = 0 for the two directions e of the first body across the axis.
@@ -102,7 +104,7 @@ def others_of(scene: LoadContext, named: list[BodyPoint]) -> list[BodyPoint]:
     return [(None, (scene.start(x), scene.start(y), scene.start(z)))]
 
 
-def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> list[TieRow]:
+def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> list[ConstraintRow]:
     """e . (p_first - p_other) = 0 along each axis; a unit force on the first, its opposite on the other.
 
     The axes are those of the nearest body that carries both. A loop that lies in a plane of that body, however it
@@ -114,11 +116,11 @@ def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> lis
     for name, e in zip(AXIS_NAMES, scene_axes(scene), strict=False):
         pushes = PointForce(first, e), PointForce(other, times(-1, e))
         carried = () if carrier is None else pushes
-        found.append(TieRow(pushes, dot(e, gap), component=name, carrier=carrier, carried=carried))
+        found.append(ConstraintRow(pushes, dot(e, gap), component=name, carrier=carrier, carried=carried))
     return found
 
 
-def across_from(scene: LoadContext, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> TieRow:
+def across_from(scene: LoadContext, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> ConstraintRow:
     """n . e = 0 in space: n is carried by the second body, e across it by the first; the couple is e x n.
 
     Both are given in the axes that the body which carries both has at the start, and seen from there.
@@ -130,7 +132,7 @@ def across_from(scene: LoadContext, bodies: tuple[str | None, str | None], e: Ve
     pairs = [(b, tau) for b, tau in ((bodies[0], couple), (bodies[1], times(-1, couple))) if b is not None]
     pushes = tuple(Couple(b, tau, axes=carrier) for b, tau in pairs)
     carried = () if carrier is None else tuple(Couple(b, tau) for b, tau in pairs)
-    return TieRow(pushes, dot(n, e), component="couple", carrier=carrier, carried=carried)
+    return ConstraintRow(pushes, dot(n, e), component="couple", carrier=carrier, carried=carried)
 
 
 def as_carried(scene: LoadContext, carrier: str | None, direction: Vector) -> Vector:
@@ -141,7 +143,7 @@ def as_carried(scene: LoadContext, carrier: str | None, direction: Vector) -> Ve
     return apply(transposed(at_start), direction)
 
 
-def not_turning(scene: LoadContext, bodies: tuple[str | None, str | None]) -> list[TieRow]:
+def not_turning(scene: LoadContext, bodies: tuple[str | None, str | None]) -> list[ConstraintRow]:
     """e_i . e_j = 0 in space of axes in either body, that agree at the start: the couples about x, y and z."""
     x, y, z = IDENTITY  # y x z = x
     return [across_from(scene, bodies, e, n) for e, n in ((y, z), (z, x), (x, y))]

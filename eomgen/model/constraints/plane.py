@@ -1,10 +1,10 @@
-"""Directions, turns and round bodies in the plane, as ties need them; vectors are 3 with z = 0."""
+"""Directions, turns and round bodies in the plane, as constraints need them; vectors are 3 with z = 0."""
 
 from __future__ import annotations
 
-from eomgen.model.constraints.row import TieRow
+from eomgen.frozen import dataclass
+from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, cross, times
 
 
@@ -29,10 +29,10 @@ def couples(first: str | None, second: str | None, ratio: AnyScalar = 1) -> tupl
     return tuple(Couple(body, (0, 0, tau)) for body, tau in pairs if body is not None)
 
 
-def same_turn(scene: LoadContext, first: str | None, second: str | None, ratio: AnyScalar = 1) -> TieRow:
+def same_turn(scene: LoadContext, first: str | None, second: str | None, ratio: AnyScalar = 1) -> ConstraintRow:
     """theta_1 - ratio theta_2 stays as at the start: a couple on the first body, - ratio times it on the second."""
     turned = angle_of(scene, first) - ratio * angle_of(scene, second)
-    return TieRow(couples(first, second, ratio), turned - scene.start(turned), component="couple")
+    return ConstraintRow(couples(first, second, ratio), turned - scene.start(turned), component="couple")
 
 
 @dataclass(frozen=True)

@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import ModelError
-from eomgen.model.catalog import Catalog, findings_of_one, is_round, not_in_the_plane
+from eomgen.frozen import dataclass
+from eomgen.model.catalog import Catalog, diagnostics_of_one, is_round, not_in_the_plane
 from eomgen.model.constraints.base import Constraint, FlatSurface, Meeting, RoundSurface, TouchingRound
 from eomgen.model.constraints.plane import Touch, opposite, right
-from eomgen.model.constraints.row import Edge, TieRow, direction_of
-from eomgen.model.findings import Finding
+from eomgen.model.constraints.row import ConstraintRow, Edge, direction_of
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import BodyPoint, LoadContext
 from eomgen.model.joints.base import unit
 from eomgen.model.kinds import (
@@ -28,7 +29,6 @@ from eomgen.model.kinds import (
 )
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
 from eomgen.symbolic.expression.node import Node
@@ -107,7 +107,7 @@ class Wheel:
             ModelError: the wheel lies flat at the start, where the whole rim touches.
         """
         a, rho = self._axle(scene), self.tilt(scene, n)
-        if abs(_worth(scene, rho)) < DEGENERATE:
+        if abs(_value(scene, rho)) < DEGENERATE:
             raise ModelError(
                 f"'{self.body}' lies flat at the start: its whole rim touches",
                 scene.where,
@@ -125,7 +125,7 @@ class Wheel:
             ModelError: its axis points to the ball's centre at the start, where the whole rim touches.
         """
         h, size = self._across(scene, out), self.distance(scene, out)
-        if abs(_worth(scene, size)) < DEGENERATE * abs(_worth(scene, self.R)):
+        if abs(_value(scene, size)) < DEGENERATE * abs(_value(scene, self.R)):
             raise ModelError(
                 f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
                 scene.where,
@@ -208,7 +208,7 @@ def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
 
 def _nearest_axis(scene: LoadContext, n: Vector) -> tuple[int, int]:
     """(which axis, +1 or -1); z where nobody knows."""
-    sizes = [_worth(scene, x, unknown=0.0) for x in n]
+    sizes = [_value(scene, x, unknown=0.0) for x in n]
     k = max((2, 1, 0), key=lambda i: abs(sizes[i]))
     return k, -1 if sizes[k] < 0 else 1
 
@@ -236,10 +236,10 @@ def _other_wave(scene: LoadContext, x: AnyScalar) -> AnyScalar | None:
 
 
 def _sense(scene: LoadContext, x: AnyScalar) -> int:
-    return -1 if _worth(scene, x) < 0 else 1
+    return -1 if _value(scene, x) < 0 else 1
 
 
-def _worth(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
+def _value(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
     """What x is at the start with the model's values."""
     found = scene.worth(x)
     return unknown if found is None else found
@@ -453,53 +453,55 @@ class Rolling(Constraint):
         assert not isinstance(self.center, tuple), "a point when the model was finished"
         return self.center
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Tracks and sizes that are missing or exclude one another, or that are for another space."""
         alone = self.on is not None and all(getattr(self, track) is None for track in TRACKS)
-        yield from findings_of_one(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
+        yield from diagnostics_of_one(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
         yield from self._wrong_sizes(path, catalog)
         if alone and not is_round(catalog, self.on):
             what = f"'{self.body}' rolls on body '{self.on}', which is not round"
-            yield Finding((*path, "on"), what, "give the line or circle of it, or the body a round shape")
+            yield Diagnostic((*path, "on"), what, "give the line or circle of it, or the body a round shape")
         track = self.line or self.plane or self.circle
         if self.on is not None and track is not None and isinstance(track.at, str):
             what = f"'{track.at}' is a point of the ground, but the track is fixed in body '{self.on}'"
-            yield Finding(path, what, f"give 'at' as coordinates in the axes of '{self.on}'")
+            yield Diagnostic(path, what, f"give 'at' as coordinates in the axes of '{self.on}'")
         yield from self._of_other_space(path, catalog, curved=alone or self.circle is not None)
         if self.on is not None and self.on == self.body:
-            yield Finding((*path, "on"), f"'{self.body}' cannot roll on itself")
+            yield Diagnostic((*path, "on"), f"'{self.body}' cannot roll on itself")
         if self.friction is not None and not self.slip:
-            yield Finding(
+            yield Diagnostic(
                 (*path, "friction"), "friction needs sliding", "slip = true, or leave 'friction' out", key=True
             )
 
-    def _wrong_sizes(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
-        """A radius, or semiaxes, of the tie or of the shape; not both; a tyre only about an axis."""
+    def _wrong_sizes(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        """A radius, or semiaxes, of the constraint or of the shape; not both; a tyre only about an axis."""
         sizes = ("radius",) if catalog.model.space == "plane" else ("radius", "semiaxes", "major")
         if self.radius is None and self.ellipsoid is None and not is_round(catalog, self.body, sizes):
             what = f"the radius of '{self.body}', which rolls, is not known"
-            yield Finding(path, what, "give 'radius', or the body a round shape")
+            yield Diagnostic(path, what, "give 'radius', or the body a round shape")
         for key in ("radius", "axis", "tube") if self.ellipsoid is not None else ():
             if getattr(self, key) is not None:
                 what = f"'{path[1]}' has an 'ellipsoid' and '{key}': it is one or the other"
-                yield Finding((*path, key), what, "keep one", key=True)
+                yield Diagnostic((*path, key), what, "keep one", key=True)
         if self.tube is not None and self.axis is None and not is_round(catalog, self.body, ("major",)):
-            yield Finding((*path, "tube"), f"the tyre of '{self.body}' has no 'axis'", "give it, body axes", key=True)
+            yield Diagnostic(
+                (*path, "tube"), f"the tyre of '{self.body}' has no 'axis'", "give it, body axes", key=True
+            )
 
-    def _of_other_space(self, path: DocumentPath, catalog: Catalog, curved: bool) -> Iterator[Finding]:
+    def _of_other_space(self, path: DocumentPath, catalog: Catalog, curved: bool) -> Iterator[Diagnostic]:
         """In the plane no fields of space; in space a plane for a line; wheels on planes and balls, eggs on planes."""
         if catalog.model.space == "plane":
             if self.plane is not None:
-                mend = "in the plane a body rolls on a 'line'"
-                yield Finding((*path, "plane"), f"'plane' of '{path[1]}' is for space", mend, key=True)
+                fix = "in the plane a body rolls on a 'line'"
+                yield Diagnostic((*path, "plane"), f"'plane' of '{path[1]}' is for space", fix, key=True)
             yield from not_in_the_plane(catalog, path, self, ("axis", "ellipsoid", "tube"))
             if self.circle is not None and self.circle.axis is not None:
-                yield Finding(
+                yield Diagnostic(
                     (*path, "circle", "axis"), f"'axis' of '{path[1]}' is for space", "leave it out", key=True
                 )
             return
         if self.line is not None:
-            yield Finding((*path, "line"), f"'line' of '{path[1]}' is for the plane", "in space: 'plane'", key=True)
+            yield Diagnostic((*path, "line"), f"'line' of '{path[1]}' is for the plane", "in space: 'plane'", key=True)
         pipe = self.circle is not None and self.circle.axis is not None
         for key in (*(["axis"] if pipe else []), "ellipsoid") if curved else ():
             if getattr(self, key) is not None:
@@ -507,7 +509,7 @@ class Rolling(Constraint):
                     "only a ball rolls in or on a pipe" if key == "axis" else "no ellipsoid rolls on something curved"
                 )
                 what = f"'{path[1]}': {where}, '{self.body}' has '{key}'"
-                yield Finding((*path, key), what, "let it roll on a 'plane', or leave it out", key=True)
+                yield Diagnostic((*path, key), what, "let it roll on a 'plane', or leave it out", key=True)
 
     def meeting(self) -> Meeting:
         """The round body and its track."""
@@ -534,7 +536,7 @@ class Rolling(Constraint):
         what = f"'{self.body}' starts within the circle of '{name}', and would roll on its outside"
         return what, "inside = true, where it rolls in it"
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.
 
         Both velocities are those of the bodies' material points at the contact. In the plane e = t is n turned
@@ -548,9 +550,11 @@ class Rolling(Constraint):
         along = [opposite(*touch, e) for e in contact.tangents]
         if self.slip:
             tangent, cross_tangent, *_ = (*along, ())
-            return (TieRow(normal, contact.gap, component="n", tangent=tangent, cross_tangent=cross_tangent),)
-        held = (TieRow(push, None, component=name, material=True) for name, push in zip(ALONG, along, strict=False))
-        return (TieRow(normal, contact.gap, component="n"), *held)
+            return (ConstraintRow(normal, contact.gap, component="n", tangent=tangent, cross_tangent=cross_tangent),)
+        held = (
+            ConstraintRow(push, None, component=name, material=True) for name, push in zip(ALONG, along, strict=False)
+        )
+        return (ConstraintRow(normal, contact.gap, component="n"), *held)
 
     def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
         """A wheel must not lie flat, on a ball neither."""

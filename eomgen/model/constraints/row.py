@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from eomgen.frozen import dataclass
 from eomgen.model.forces.load import Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector
 
 
 @dataclass(frozen=True)
-class TieRow:
+class ConstraintRow:
     """One scalar row of a constraint.
 
     Args:
         pushes: forces and couples on the bodies for a unit of the row's multiplier; empty for an equation.
-        gap: phi(q, t), 0 when the tie holds; None where only the velocity row is given.
+        gap: phi(q, t), 0 when the constraint holds; None where only the velocity row is given.
         rate: the row of an equation given in rates, 0 when it holds; beside pushes, what it holds besides their dual.
             None elsewhere.
         component: what the multiplier is called: "x", "y", "z", "n" (normal), "t" (along the contact), "couple",
@@ -24,7 +24,7 @@ class TieRow:
         tangent: of a contact that has friction, the forces for a unit of friction; their dual is the sliding velocity.
         cross_tangent: of a contact on a surface the same along the second direction, across the first.
         round: of a bilateral contact on a line: N has this row's component and those of the rows before.
-        part: what of the tie the row belongs to, by name: the member of a truss; "" elsewhere.
+        part: what of the constraint the row belongs to, by name: the member of a truss; "" elsewhere.
         carrier: the body that carries all that the row holds together, from which its gap is seen; None: the ground.
         carried: the pushes in the axes of the carrier; () where that is the ground.
     """

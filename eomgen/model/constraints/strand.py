@@ -6,11 +6,11 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.constraints.plane import angle_of, left
-from eomgen.model.constraints.row import TieRow, normals_of
+from eomgen.model.constraints.row import ConstraintRow, normals_of
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.model.joints.base import Z
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, cross, dot, minus, plus, times
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -192,7 +192,7 @@ def _refuse_out_of_plane(scene: LoadContext, first: Stop, second: Stop, d: Vecto
             raise ModelError(what, scene.where, "turn the axis, or lead the string over an eyelet, a point, there")
 
 
-def rope_row(scene: LoadContext, strands: Sequence[Strand]) -> TieRow:
+def rope_row(scene: LoadContext, strands: Sequence[Strand]) -> ConstraintRow:
     """The row of one tension through strands that are joined by what slips: the sum of their rows.
 
     Its gap is what the string has left at the start, - sum l - a_1 theta_1 + a_2 theta_2 + ..., where the lengths are
@@ -200,8 +200,8 @@ def rope_row(scene: LoadContext, strands: Sequence[Strand]) -> TieRow:
     """
     pushes = tuple(push for strand in strands for push in strand.pulls)
     if all(isinstance(push, PointForce) and push.place[0] is None for push in pushes):
-        return TieRow((), None, 0, component="tension")
-    return TieRow(pushes, _gap(scene, strands), component="tension")
+        return ConstraintRow((), None, 0, component="tension")
+    return ConstraintRow(pushes, _gap(scene, strands), component="tension")
 
 
 def _gap(scene: LoadContext, strands: Sequence[Strand]) -> AnyScalar | None:
@@ -213,7 +213,7 @@ def _gap(scene: LoadContext, strands: Sequence[Strand]) -> AnyScalar | None:
     return scene.start(used) - used
 
 
-def side_rows(scene: LoadContext, strand: Strand) -> list[TieRow]:
+def side_rows(scene: LoadContext, strand: Strand) -> list[ConstraintRow]:
     """The restrictions that a strand keeps its direction: n . (p_1 - p_2) = 0 of its ends, for each n across it.
 
     In the plane n = left(d). Those that hold by themselves are left out.
@@ -234,7 +234,9 @@ def side_rows(scene: LoadContext, strand: Strand) -> list[TieRow]:
                 scene.where,
                 "move one of them across the strand, or exchange 'cw' and 'ccw'",
             )
-        rows.append(TieRow((PointForce(first.place, n), PointForce(second.place, times(-1, n))), gap, component=name))
+        rows.append(
+            ConstraintRow((PointForce(first.place, n), PointForce(second.place, times(-1, n))), gap, component=name)
+        )
     return rows
 
 

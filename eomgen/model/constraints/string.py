@@ -4,18 +4,18 @@ from collections.abc import Iterator
 from itertools import pairwise
 from typing import Annotated, ClassVar
 
-from eomgen.model.catalog import Catalog, findings_of_one, is_round, owner_of
+from eomgen.frozen import dataclass
+from eomgen.model.catalog import Catalog, diagnostics_of_one, is_round, owner_of
 from eomgen.model.constraints.base import Constraint, Thread
-from eomgen.model.constraints.row import Edge, TieRow, direction_of
+from eomgen.model.constraints.row import ConstraintRow, Edge, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import EitherRule, ListRule, NameRule, TextRule, VectorRule
-from eomgen.model.findings import Finding
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.spatial import Vector, apply
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -98,44 +98,48 @@ class String(Constraint):
                 found.append(Edge(f"nothing is left of strand {k} of '{name}'", strand.length))
         return tuple(found)
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Wraps that lack a size or a sense; something that moves must hang on it; a direction for each strand."""
         for k, wrap in enumerate(self.path or ()):
             where = (*path, "path", k)
             if isinstance(wrap, str):
                 continue
-            yield from findings_of_one(catalog, where, wrap, ("body", "at"))
+            yield from diagnostics_of_one(catalog, where, wrap, ("body", "at"))
             if wrap.radius is None and (wrap.at is not None or not is_round(catalog, wrap.body)):
-                yield Finding(where, "the radius of this wrap is not known", "give 'radius', or the body a round shape")
+                yield Diagnostic(
+                    where, "the radius of this wrap is not known", "give 'radius', or the body a round shape"
+                )
             if wrap.turn is None and (*where, "turn") not in catalog.broken:
-                yield Finding(
+                yield Diagnostic(
                     where, "a wrap needs 'turn': the sense in which one travels round it", 'turn = "cw" or "ccw"'
                 )
             if wrap.axis is not None and catalog.model.space == "plane":
-                yield Finding(
+                yield Diagnostic(
                     (*where, "axis"), f"'axis' of a wrap of '{path[1]}' is for space", "leave it out", key=True
                 )
             if wrap.slip and k in (0, len(self.path) - 1):
-                yield Finding((*where, "slip"), "the string is wound on its last wrap, where it cannot slip", key=True)
+                yield Diagnostic(
+                    (*where, "slip"), "the string is wound on its last wrap, where it cannot slip", key=True
+                )
         owners = {owner_of(stop) if isinstance(stop, str) else stop.body or "" for stop in self.path or ()}
         if len(owners) == 1:
             what = (
                 f"the string '{path[1]}' has nothing on it that it could hold: all of it is on one body or the ground"
             )
-            yield Finding((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
+            yield Diagnostic((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
         for k, way in enumerate(self.strands or ()):
             if isinstance(way, str) and catalog.model.space == "space":
                 what = f"'{way}' says no direction in space, where nothing tells which axis is up"
-                yield Finding((*path, "strands", k), what, "give the direction as three components")
+                yield Diagnostic((*path, "strands", k), what, "give the direction as three components")
         pieces = len(self.path or ()) - 1
         if self.strands is not None and self.path is not None and len(self.strands) != pieces:
             what = f"the string has {pieces} strands, but {len(self.strands)} directions are given"
-            yield Finding((*path, "strands"), what)
+            yield Diagnostic((*path, "strands"), what)
 
     def stays(self, component: str) -> bool:
         return component == "tension"
 
-    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
         """A row for each tension; after them the restrictions of strands that keep a direction while their ends move.
 
         A strand with travel direction d pulls + d on what it leaves and - d on what it reaches.

@@ -2,6 +2,7 @@
 
 from typing import ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Act, CoupleOn, Force, PushAt, PushOnCoordinate
 from eomgen.model.forces.load import GeneralizedForce, Load, LoadContext
@@ -15,7 +16,6 @@ from eomgen.model.kinds import (
     PointName,
     WorkingForce,
 )
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 # -------- force -----------------------------------------------------------------------------------------------

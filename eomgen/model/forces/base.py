@@ -6,12 +6,12 @@ What every force is: fields that say where it acts and by which law.
 from collections.abc import Iterator
 from typing import ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import Finding
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.spatial import AnyScalar
 
@@ -115,7 +115,7 @@ class Force(Part):
     elastic: ClassVar[bool] = False  # a spring
     placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """What is wrong with its fields together; one alone its rule has looked at."""
         yield from ()
 

@@ -3,10 +3,10 @@
 from typing import ClassVar
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Element, Force
 from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
 from eomgen.model.kinds import Direction, LinearDamping, LinearStiffness, NaturalLength, Pull, TwoPoints
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, over, sqrt
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -56,7 +56,7 @@ def reach(scene: LoadContext, points: tuple[str, ...], along: tuple[Expression, 
         if is_zero(length):
             raise DerivationError(
                 f"'{points[0]}' and '{points[1]}' are always at one place: there is no line between them",
-                mend="let the force act between points that part, or give its direction by `along`",
+                fix="let the force act between points that part, or give its direction by `along`",
             )
         direction = vector_of(over(x, length) for x in gap)
     else:

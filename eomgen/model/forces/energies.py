@@ -2,10 +2,10 @@
 
 from typing import ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Act, Force, GivenEnergy
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy, MotionEnergy
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.spatial import AnyScalar
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, Protocol
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, Matrix, Vector
 
 BodyPoint = tuple["str | None", Vector]

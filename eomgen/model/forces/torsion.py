@@ -3,10 +3,10 @@
 from collections.abc import Callable
 from typing import ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Element, Force
 from eomgen.model.forces.load import Couple, Load, LoadContext
 from eomgen.model.kinds import AngularDamping, AngularStiffness, BodyName, RestAngle, TwoBodies
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 

@@ -3,10 +3,10 @@
 from typing import ClassVar
 
 from eomgen.errors import ModelError
+from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Act, Force, PushAlongLine, PushOfMass
 from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, BodyName, Flag, LineLoad, TwoLineLoads, TwoOwnPoints
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import sqrt
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.expression.rational import Fraction

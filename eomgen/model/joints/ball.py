@@ -4,9 +4,10 @@ from collections.abc import Iterable, Iterator
 from itertools import product as combinations
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import CONFIGURATION, FormulaRule, ListRule, NameRule, TextRule, VectorRule
-from eomgen.model.findings import Finding
 from eomgen.model.joints.base import (
     Column,
     Joint,
@@ -24,7 +25,6 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import (
@@ -61,15 +61,15 @@ Omega = Annotated[tuple[str, ...], ListRule(NameRule("speed"), 3, 3)]
 TURNING = ("orientation", "angles", "quaternion", "omega")
 
 
-def other_space(joint: Any, keys: Iterable[str], path: DocumentPath, space: str) -> Iterator[Finding]:
+def other_space(joint: Any, keys: Iterable[str], path: DocumentPath, space: str) -> Iterator[Diagnostic]:
     """Fields that mean nothing in this space."""
     for key in keys:
         if getattr(joint, key) is not None:
             what = f"'{key}' of a {joint.kind} joint is for {'space' if space == 'plane' else 'the plane'}"
-            yield Finding((*path, key), what, "leave it out", key=True)
+            yield Diagnostic((*path, key), what, "leave it out", key=True)
 
 
-def turning_findings(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+def turning_diagnostics(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
     """Of a joint that turns in space: no fields of it in the plane; in space those that its orientation needs."""
     if catalog.model.space == "plane":
         yield from other_space(joint, TURNING, path, "plane")
@@ -77,13 +77,13 @@ def turning_findings(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterat
         yield from _orientation(joint, path, catalog)
 
 
-def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
     """A sequence goes with three angles, "quaternion" with four names and the names of three speeds."""
     orientation, name = joint.orientation, path[1]
     if orientation is None:
         for key in ("angles", "quaternion"):
             if getattr(joint, key) is not None and (*path, "orientation") not in catalog.broken:
-                yield Finding(
+                yield Diagnostic(
                     path,
                     f"the joint of body '{name}' has '{key}' but no 'orientation'",
                     f'orientation = "{"zxz" if key == "angles" else key}"',
@@ -91,18 +91,20 @@ def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[F
         return
     needed, other = ("angles", "quaternion") if orientation in SEQUENCES else ("quaternion", "angles")
     if getattr(joint, needed) is None and (*path, needed) not in catalog.broken:
-        yield Finding((*path, "orientation"), f"orientation \"{orientation}\" needs '{needed}'", f"give '{needed}'")
+        yield Diagnostic((*path, "orientation"), f"orientation \"{orientation}\" needs '{needed}'", f"give '{needed}'")
     for key in (other, *joint.beside_orientation, *(("omega",) if needed == "angles" else ())):
         if getattr(joint, key) is not None:
             what = f"'{key}' does not go with orientation \"{orientation}\""
-            mend = (
+            fix = (
                 "leave it out"
                 if key != "omega"
                 else "take orientation = \"quaternion\", or speeds of a declared 'rate'"
             )
-            yield Finding((*path, key), what, mend, key=True)
+            yield Diagnostic((*path, key), what, fix, key=True)
     if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
-        yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
+        yield Diagnostic(
+            (*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]'
+        )
 
 
 def turning_moves(joint: Any) -> tuple[Move, ...]:
@@ -194,8 +196,8 @@ class Spherical(Joint):
     quaternion: QuaternionNames | None = None
     omega: Omega | None = None
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
-        yield from turning_findings(self, path, catalog)
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        yield from turning_diagnostics(self, path, catalog)
 
     @property
     def spins(self) -> tuple[str, ...]:

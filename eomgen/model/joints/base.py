@@ -11,9 +11,10 @@ from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import NotYet
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import ListRule
-from eomgen.model.findings import Finding
 from eomgen.model.kinds import (
     ConstantAngle,
     MovingGroundPlace,
@@ -26,7 +27,6 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.shapes.forms import Form
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
 
@@ -171,7 +171,7 @@ class Joint(Part):
         """Of a joint whose last four variables are a quaternion: the speeds that S takes in place of their rates."""
         return ()
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """What is wrong with its fields together; one alone its rule has looked at."""
         yield from ()
 

@@ -6,9 +6,10 @@ Free: nothing holds the child.
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
-from eomgen.model.findings import Finding
 from eomgen.model.joints.ball import (
     Angles,
     Omega,
@@ -17,7 +18,7 @@ from eomgen.model.joints.ball import (
     columns_of,
     other_space,
     rotation_of,
-    turning_findings,
+    turning_diagnostics,
     turning_moves,
 )
 from eomgen.model.joints.base import (
@@ -38,7 +39,6 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import Angle, ConstantAngle, Displacement, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, apply, rotation, transposed, vector_of
 from eomgen.symbolic.expression.text import as_expression
@@ -74,14 +74,14 @@ class Free(Joint):
     quaternion: QuaternionNames | None = None
     omega: Omega | None = None
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
         """The fields of this space, all of them."""
         plane = catalog.model.space == "plane"
         yield from other_space(self, ("position",) if plane else IN_PLANE, path, catalog.model.space)
         for key in IN_PLANE if plane else ("position",) if _is_point(path, catalog) else ("position", "orientation"):
             if getattr(self, key) is None and (*path, key) not in catalog.broken:
-                yield Finding(path, f"the joint of body '{path[1]}' has no '{key}'", f"give '{key}'")
-        yield from turning_findings(self, path, catalog)
+                yield Diagnostic(path, f"the joint of body '{path[1]}' has no '{key}'", f"give '{key}'")
+        yield from turning_diagnostics(self, path, catalog)
 
     @property
     def spins(self) -> tuple[str, ...]:

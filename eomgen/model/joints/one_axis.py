@@ -3,6 +3,7 @@
 from abc import abstractmethod
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.fields import FormulaRule
 from eomgen.model.joints.base import (
     Column,
@@ -40,7 +41,6 @@ from eomgen.model.kinds import (
     Torque,
     ValueOf,
 )
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,

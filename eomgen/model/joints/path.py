@@ -3,9 +3,10 @@
 from collections.abc import Callable, Iterator, Sequence
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import ListRule
-from eomgen.model.findings import Finding
 from eomgen.model.joints.base import (
     Column,
     Effort,
@@ -24,7 +25,6 @@ from eomgen.model.kinds import ConstantAngle, Displacement, FrictionLaw, Length,
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.model.shapes.forms import ArcForm, Form, LineForm
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, function, over, selected, sin
 from eomgen.symbolic.expression.spatial import Pose, Vector, apply, plus
 
@@ -125,18 +125,18 @@ class Path(Joint):
         """The friction of its piece, where it has only one."""
         return self.pieces[0].friction if len(self.pieces) == 1 else None
 
-    def findings(self, path: FilePath, catalog: Catalog) -> Iterator[Finding]:
+    def diagnostics(self, path: FilePath, catalog: Catalog) -> Iterator[Diagnostic]:
         """Each piece is a line or an arc."""
         name = path[1]
         for k, piece in enumerate(self.pieces or ()):
             where = (*path, "pieces", k)
             if (piece.line is None) == (piece.arc is None):
-                yield Finding(where, f"a piece of the path of body '{name}' needs one of 'line' and 'arc'")
+                yield Diagnostic(where, f"a piece of the path of body '{name}' needs one of 'line' and 'arc'")
             elif piece.arc is not None and (piece.turn is None or piece.angle is None):
                 what = f"an arc of the path of body '{name}' needs 'turn' and 'angle'"
-                yield Finding(where, what, 'turn = "ccw", angle = "pi/2"')
+                yield Diagnostic(where, what, 'turn = "ccw", angle = "pi/2"')
             elif piece.line is not None and (piece.turn is not None or piece.angle is not None):
-                yield Finding(where, f"a line of the path of body '{name}' has no 'turn' and no 'angle'")
+                yield Diagnostic(where, f"a line of the path of body '{name}' has no 'turn' and no 'angle'")
 
     def turns(self) -> tuple[Expression, ...]:
         return ()

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
-from eomgen.model.findings import Finding
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.joints.ball import (
     Angles,
     Omega,
@@ -12,7 +13,7 @@ from eomgen.model.joints.ball import (
     Sequence,
     columns_of,
     rotation_of,
-    turning_findings,
+    turning_diagnostics,
     turning_moves,
 )
 from eomgen.model.joints.base import (
@@ -33,7 +34,6 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, transposed
 from eomgen.symbolic.expression.text import as_expression
@@ -63,8 +63,8 @@ class Placed(Joint):
     quaternion: QuaternionNames | None = None
     omega: Omega | None = None
 
-    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
-        yield from turning_findings(self, path, catalog)
+    def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
+        yield from turning_diagnostics(self, path, catalog)
 
     @property
     def spins(self) -> tuple[str, ...]:

@@ -9,11 +9,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any, Protocol
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
+from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Finding
 from eomgen.model.shapes import MassProperties
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression, Reference
 from eomgen.symbolic.expression.spatial import AnyScalar, Matrix, Numbers, Vector
 from eomgen.symbolic.expression.text import parse
@@ -107,7 +107,7 @@ class OutputContext(Protocol):
     @property
     def reactions(self) -> Reactions: ...
     def is_truss(self, name: str) -> bool: ...
-    def multiplier(self, tie: str) -> AnyScalar: ...
+    def multiplier(self, constraint: str) -> AnyScalar: ...
     def drive(self, coordinate: str) -> AnyScalar: ...
     def section(self, body: str) -> Section: ...
 
@@ -156,11 +156,12 @@ class Trial(Protocol):
         """What the free bodies, each by Newton and Euler, ask for along a driven coordinate when nothing drives it.
 
         Raises:
-            NoValue: a tie drives it; there is friction.
+            NoValue: a constraint drives it; there is friction.
         """
 
-    def held(self, tie: str) -> Any:
-        """The multiplier of a tie of one row with which all ties hold the free bodies, each by Newton and Euler.
+    def held(self, constraint: str) -> Any:
+        """The multiplier of a constraint of one row with which all constraints hold the free bodies, each by Newton
+        and Euler.
 
         Raises:
             NoValue: it shares its force with others; there is friction.
@@ -196,7 +197,7 @@ ValueOf = Callable[[OutputContext, Call], AnyScalar]
 SecondOf = Callable[[Trial, Call], Any]
 
 
-def _none(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
+def _none(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
     return iter(())
 
 
@@ -209,7 +210,7 @@ class OutputFunction:
         kinds: of its arguments, of which `least` are needed; `more` is the kind of any number of further ones.
         unit: SI.
         per: the arguments by whose unit it is divided: a coordinate's, the rate's of a "coordinate or speed", the
-            gap's of a tie.
+            gap's of a constraint.
         like: the argument whose unit it has.
         gives: what, in docs/reference/outputs.md.
         value: in q, u, a, lam, t and the parameters.
@@ -234,7 +235,7 @@ class OutputFunction:
     source: str = STATE
     moves: bool = False
     shown: str = ""
-    findings: Callable[[Catalog, Leaf, Call], Iterator[Finding]] = _none
+    diagnostics: Callable[[Catalog, Leaf, Call], Iterator[Diagnostic]] = _none
 
     @property
     def arguments(self) -> str:
@@ -248,7 +249,7 @@ class OutputFunction:
         return f"({text}{']' * len(optional)})"
 
     @property
-    def is_along_freedoms(self) -> bool:
+    def is_along_degrees_of_freedom(self) -> bool:
         """Whether it depends on which coordinates are free: dT/dq' is another one where fewer are."""
         return any(kind.startswith("coordinate") for kind in self.kinds)
 
@@ -297,7 +298,7 @@ def name_at(call: Call, k: int) -> str:
     """
     argument = call.args[k]
     if not isinstance(argument, Reference):
-        raise DerivationError(f"'{call}': names are needed as arguments", mend="give names of the model, not formulas")
+        raise DerivationError(f"'{call}': names are needed as arguments", fix="give names of the model, not formulas")
     return argument.name
 
 
@@ -317,6 +318,6 @@ def number_at(call: Call, k: int, most: int) -> int:
     number = argument.literal if isinstance(argument, Expression) else None
     if not isinstance(number, int) or not 1 <= number <= most:
         raise DerivationError(
-            f"'{call}': a number from 1 to {most} is needed, not '{argument}'", mend="give a whole number"
+            f"'{call}': a number from 1 to {most} is needed, not '{argument}'", fix="give a whole number"
         )
     return number

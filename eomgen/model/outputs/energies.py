@@ -19,9 +19,9 @@ from eomgen.symbolic.numeric.evaluation import NoValue
 
 
 def _of_particles(trial: Trial, call: Call) -> Any:
-    asked = names_of(call)
-    of_bodies = sum(m * dot(v, v) / 2 for body in asked or trial.scene.bodies for m, _, v in trial.particles(body))
-    return of_bodies if asked else of_bodies + trial.given_energy()
+    requested = names_of(call)
+    of_bodies = sum(m * dot(v, v) / 2 for body in requested or trial.scene.bodies for m, _, v in trial.particles(body))
+    return of_bodies if requested else of_bodies + trial.given_energy()
 
 
 def _lost(trial: Trial, call: Call) -> Any:

@@ -4,9 +4,9 @@ from collections.abc import Iterator
 
 from eomgen.errors import DerivationError
 from eomgen.model.catalog import Catalog
-from eomgen.model.constraints.link import ends_asked
+from eomgen.model.constraints.link import ends_requested
+from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.fields import Leaf
-from eomgen.model.findings import Finding, nearest
 from eomgen.model.outputs.base import (
     AXES,
     BALANCE,
@@ -24,14 +24,15 @@ from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.text import parse
 
 # -------- reactions -------------------------------------------------------------------------------------------
-# reaction_x, reaction_n, reaction_couple, ...: of a tie, or of the joint of a body, by the balance of the bodies.
+# reaction_x, reaction_n, reaction_couple, ...: of a constraint, or of the joint of a body, by the balance of the
+# bodies.
 #
 # Their second way is the same balance, solved in doubles at one state (`NumericState.reactions`), and the Newton and
 # Euler equations of every body, into which the certificate puts them.
 
 
 def _placed(call: Call) -> tuple[str, str, str]:
-    """(tie or body, the side, the frame) of reaction_x(B), reaction_x(B.II), reaction_y(bar, bar)."""
+    """(constraint or body, the side, the frame) of reaction_x(B), reaction_x(B.II), reaction_y(bar, bar)."""
     owner, frame = (*names_of(call), "")[:2]
     name, _, side = owner.partition(".")
     return name, side, frame
@@ -52,15 +53,15 @@ def _one_couple(scene: OutputContext, call: Call) -> AnyScalar:
     owner, _, _ = _placed(call)
     if scene.reactions.labels(owner) != ["couple"] or str(call) != f"reaction_couple({owner})":
         names = ", ".join(str(call).replace("couple(", f"couple_{axis}(") for axis in AXES)
-        raise DerivationError(f"'{call}': a couple in space has three components", mend=f"ask {names}")
+        raise DerivationError(f"'{call}': a couple in space has three components", fix=f"ask {names}")
     return scene.reactions.multiplier(owner)
 
 
 def _contact(scene: OutputContext, call: Call) -> AnyScalar:
     owner, side, _ = _placed(call)
     if side:
-        mend = f"ask {call.name}({owner}), at an instant where it is meant"
-        raise DerivationError(f"'{call}': normal force and friction are on the body named first", mend=mend)
+        fix = f"ask {call.name}({owner}), at an instant where it is meant"
+        raise DerivationError(f"'{call}': normal force and friction are on the body named first", fix=fix)
     if call.name == "reaction_n":
         return scene.reactions.normal(owner)
     return scene.reactions.friction(owner, call.name[-1])
@@ -70,9 +71,9 @@ REACTION_FORCE = OutputFunction(
     names=along("reaction_*"),
     kinds=("reaction", "body"),
     least=1,
-    shown="(tie or body[, body])",
+    shown="(constraint or body[, body])",
     unit="N",
-    gives="[reaction](reactions.md) of a tie, or of the body's joint, in ground axes or those of the body named second",
+    gives="[reaction](reactions.md) of a constraint, or of a joint, in ground axes or those of the second body",
     value=_force,
     source=BALANCE,
 )
@@ -80,9 +81,9 @@ REACTION_COUPLE = OutputFunction(
     names=along("reaction_couple_*"),
     kinds=("reaction", "body"),
     least=1,
-    shown="(tie or body[, body])",
+    shown="(constraint or body[, body])",
     unit="N*m",
-    gives="its couple, about the point of the joint or tie",
+    gives="its couple, about the point of the joint or constraint",
     value=_couple,
     source=BALANCE,
 )
@@ -90,7 +91,7 @@ ONE_REACTION_COUPLE = OutputFunction(
     names=("reaction_couple",),
     kinds=("reaction", "body"),
     least=1,
-    shown="(tie or body[, body])",
+    shown="(constraint or body[, body])",
     unit="N*m",
     gives="the same in the plane; in space of a gear, along the axle of its first body",
     value=_one_couple,
@@ -100,7 +101,7 @@ CONTACT_REACTION = OutputFunction(
     names=("reaction_n", "reaction_t", "reaction_s"),
     kinds=("reaction", "body"),
     least=1,
-    shown="(tie or body)",
+    shown="(constraint or body)",
     unit="N",
     gives="normal force and friction of a contact, a guide, a path; `reaction_s` across `reaction_t` on a surface",
     value=_contact,
@@ -109,16 +110,16 @@ CONTACT_REACTION = OutputFunction(
 
 
 # -------- efforts ---------------------------------------------------------------------------------------------
-# multiplier, drive, pull, couple: along the gap of a tie, a driven coordinate, a spring, a damper.
+# multiplier, drive, pull, couple: along the gap of a constraint, a driven coordinate, a spring, a damper.
 
 
 MULTIPLIER = OutputFunction(
     names=("multiplier",),
-    kinds=("tie",),
+    kinds=("constraint",),
     least=1,
     unit="J",
     per=(0,),
-    gives="of a tie of one row",
+    gives="of a constraint of one row",
     value=lambda scene, call: scene.multiplier(name_at(call, 0)),
     second=lambda trial, call: trial.held(name_at(call, 0)),
     source=BALANCE,
@@ -168,20 +169,20 @@ def _tension(scene: OutputContext, call: Call) -> AnyScalar:
     number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
     if not isinstance(number, int) or len(strand) > 1:
         raise DerivationError(
-            f"'{call}': the second argument is the number of the strand, from 1", mend="tension(string, 1)"
+            f"'{call}': the second argument is the number of the strand, from 1", fix="tension(string, 1)"
         )
     return scene.reactions.tension(name, number)
 
 
 def _ends(call: Call) -> tuple[str, str]:
     """The nodes of the member that an output asks for."""
-    ends = ends_asked(call)
+    ends = ends_requested(call)
     if ends is None:
-        raise DerivationError(f"'{call}' names no member of a truss", mend=f"write tension({call.args[0]}, n1-n2)")
+        raise DerivationError(f"'{call}' names no member of a truss", fix=f"write tension({call.args[0]}, n1-n2)")
     return ends
 
 
-def _findings(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
+def _diagnostics(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
     """Of a truss the tension of one of its members can be asked."""
     owner = call.args[0]
     if not isinstance(owner, Reference):
@@ -189,24 +190,24 @@ def _findings(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
     truss = catalog.table("trusses").get(owner.name)
     if truss is None or truss.members is None:
         return
-    ends = ends_asked(call)
+    ends = ends_requested(call)
     if ends is None or set(ends) not in [set(member.split("-")) for member in truss.members]:
         what = f"truss '{owner.name}' has no member '{'-'.join(ends)}'" if ends else f"'{call}' names no member"
-        mend = nearest("-".join(ends or ()), truss.members) or f"tension({owner.name}, {truss.members[0]})"
-        yield Finding(leaf.path, what, mend, call.column, len(call.name))
+        fix = nearest("-".join(ends or ()), truss.members) or f"tension({owner.name}, {truss.members[0]})"
+        yield Diagnostic(leaf.path, what, fix, call.column, len(call.name))
 
 
 TENSION = OutputFunction(
     names=("tension",),
-    kinds=("tie or truss", "any", "any"),
+    kinds=("constraint or truss", "any", "any"),
     least=1,
-    shown="(tie[, number]) or (truss, n1-n2)",
+    shown="(constraint[, number]) or (truss, n1-n2)",
     unit="N",
     gives="of a link; of a strand of a string, from 1 (default); of a member of a [truss](statics.md#trusses), by "
     "its two nodes",
     value=_tension,
     source=BALANCE,
-    findings=_findings,
+    diagnostics=_diagnostics,
 )
 
 
@@ -224,7 +225,7 @@ def _section(scene: OutputContext, call: Call) -> AnyScalar:
     """bending_moment(beam, a), shear_force(beam, a, before)."""
     sides = [name_at(call, k) for k in range(2, len(call.args))]
     if any(name not in SIDES for name in sides):
-        raise DerivationError(f"'{call}': the third argument is before or after", mend="N(body, x, before)")
+        raise DerivationError(f"'{call}': the third argument is before or after", fix="N(body, x, before)")
     x = distance_of(call).evaluate(scene.names)
     return scene.section(name_at(call, 0)).value(call.name, x, *sides)
 

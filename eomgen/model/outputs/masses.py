@@ -44,9 +44,9 @@ def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]
     """The bodies from the argument `first` on; without any, all of them."""
     named = tuple(name_at(call, k) for k in range(first, len(call.args)))
     if len(set(named)) < len(named):
-        raise DerivationError(f"'{call}' names a body twice", mend="name each once")
+        raise DerivationError(f"'{call}' names a body twice", fix="name each once")
     if "ground" in named:
-        raise DerivationError(f"'{call}': the ground has no mass", mend="name bodies")
+        raise DerivationError(f"'{call}': the ground has no mass", fix="name bodies")
     return named or scene.bodies
 
 
@@ -76,13 +76,13 @@ def refuse_unknown(scene: OutputContext, call: Call, bodies: Sequence[str], *, a
 def _mass(scene: OutputContext, call: Call) -> AnyScalar:
     body = name_at(call, 0)
     if body == "ground":
-        raise DerivationError(f"'{call}': the ground has no mass", mend="name a body")
+        raise DerivationError(f"'{call}': the ground has no mass", fix="name a body")
     if len(call.args) == 1:
         whole: AnyScalar = scene.mass(body).m
         return whole
     parts = scene.parts(body)
     if parts is None:
-        raise DerivationError(f"'{call}': body '{body}' is not made of parts", mend=f"write mass_of({body})")
+        raise DerivationError(f"'{call}': body '{body}' is not made of parts", fix=f"write mass_of({body})")
     return scene.mass_of_part(body, number_at(call, 1, parts))
 
 
@@ -147,7 +147,7 @@ def _direction(scene: OutputContext, call: Call) -> Vector:
     if all(is_zero(c) for c in (x, y, z)):
         raise DerivationError(
             f"'{call}': both points are in one place, so they are on no single axis",
-            mend="name two points that are apart",
+            fix="name two points that are apart",
         )
     return (x, y, z)
 

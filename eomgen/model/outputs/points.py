@@ -233,14 +233,14 @@ def curvature_radius(v: Vector, a: Vector) -> AnyScalar:
     speed, across = _speed(v, "radius of curvature"), _across(v, a)
     if vanishes(across):
         raise DerivationError(
-            "the path is straight there: its radius of curvature is infinite", mend="ask where the path bends"
+            "the path is straight there: its radius of curvature is infinite", fix="ask where the path bends"
         )
     return over(dot(v, v) * speed, across)
 
 
 def _speed(v: Vector, what: str) -> AnyScalar:
     if all(vanishes(x) for x in v):
-        raise DerivationError(f"the point is at rest: it has no {what}", mend="ask while it moves")
+        raise DerivationError(f"the point is at rest: it has no {what}", fix="ask while it moves")
     return sqrt(dot(v, v))
 
 

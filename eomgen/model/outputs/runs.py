@@ -14,7 +14,7 @@ from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 def _of_no_state(context: OutputContext, call: Call) -> AnyScalar:
-    raise DerivationError(f"'{call}' is of a run, not of a state", mend="`eomgen simulate` gives it")
+    raise DerivationError(f"'{call}' is of a run, not of a state", fix="`eomgen simulate` gives it")
 
 
 def _of(names: tuple[str, ...], gives: str, unit: str = "1", like: int | None = 0) -> OutputFunction:
@@ -44,7 +44,7 @@ ALONG_A_RUN = (
 
 
 def _of_linearization(scene: OutputContext, call: Call) -> AnyScalar:
-    raise DerivationError(f"'{call}' is of the linearized system, not of a state", mend="ask it by itself")
+    raise DerivationError(f"'{call}' is of the linearized system, not of a state", fix="ask it by itself")
 
 
 def _entry(name: str, unit: str, letter: str) -> OutputFunction:

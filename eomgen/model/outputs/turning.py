@@ -62,7 +62,7 @@ def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> AnyScalar:
     for name in (body, frame):
         if not scene.is_plane:
             raise DerivationError(
-                f"body '{name}' has no single angle in space", mend="ask for omega_x, omega_y, omega_z of it"
+                f"body '{name}' has no single angle in space", fix="ask for omega_x, omega_y, omega_z of it"
             )
     return scene.angle(body) - scene.angle(frame)
 
@@ -179,7 +179,7 @@ CORNERS: tuple[Vector, ...] = (ZERO, (1, 0, 0), (0, 1, 0))  # of a triangle in t
 def _in_plane(scene: OutputContext, what: str, body: str) -> None:
     if not scene.is_plane:
         raise DerivationError(
-            f"{what}({body}): it is asked of plane motion", mend="ask for omega and v of a point in space"
+            f"{what}({body}): it is asked of plane motion", fix="ask for omega and v of a point in space"
         )
 
 
@@ -250,7 +250,7 @@ def _least_speed(scene: OutputContext, start: str, end: str) -> AnyScalar:
     body, other = scene.body_of(start), scene.body_of(end)
     if body != other:
         what = f"least_speed({start}, {end}): '{start}' and '{end}' are points of two bodies"
-        raise DerivationError(what, mend="name two points of one body")
+        raise DerivationError(what, fix="name two points of one body")
     return scene.least_speed(body, *scene.here(scene.position(start), scene.position(end)))
 
 

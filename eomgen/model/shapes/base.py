@@ -5,10 +5,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.tolerances import SOLVED

@@ -7,6 +7,7 @@ from abc import ABC
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import (
     HALF,
@@ -21,7 +22,6 @@ from eomgen.model.shapes.base import (
     on_ball,
 )
 from eomgen.model.shapes.forms import HALF_OF, EllipsoidForm, Form, circle_points, cylinder_form, turned_profile
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector

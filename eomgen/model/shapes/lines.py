@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.kinds import Length, Opening, ValueOf
 from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal, more_than_a_turn, part_of_turn
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form, LineForm, hoop
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over, sin
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.fields import FormulaRule, ListRule, VectorRule
 from eomgen.model.kinds import Length, Opening, PlaneSize, ValueOf
 from eomgen.model.shapes.base import (
@@ -19,7 +20,6 @@ from eomgen.model.shapes.base import (
 )
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form, LineForm, PolygonForm, box_around, round_plate
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, function, over, sin
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from typing import Annotated, Any, ClassVar
 
+from eomgen.frozen import dataclass
 from eomgen.model.fields import FormulaRule, ListRule, VectorRule
 from eomgen.model.kinds import Length, Size, ValueOf
 from eomgen.model.shapes.base import HALF, PI, Cell, MassProperties, Shape, around, between, diagonal, on_ball, tensor
@@ -18,7 +19,6 @@ from eomgen.model.shapes.forms import (
     turned_profile,
 )
 from eomgen.model.shapes.plates import Polygon, Vertices
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression, function, over
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, added, cross, dot, minus, vector_of

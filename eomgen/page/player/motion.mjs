@@ -1,15 +1,15 @@
-// A model that moves in the page: parameters and start values -> a start at which the ties hold -> a run.
+// A model that moves in the page: parameters and start values -> a start at which the constraints hold -> a run.
 
 import { Run, integrated } from "./integrator.mjs";
 import { STALLS, Ties, dot, leastChange, solved, weighted } from "./ties.mjs";
 
 const OF_A_STEP = 0.1;  // of the tolerances of a run: errors of many steps add up
 const INDEPENDENT = 1e-6;  // squared sine of a row's angle to those before it: more, and it counts
-const SINGULAR = 1e-4;  // of the same: less, and the ties soon do not say how the motion goes on
+const SINGULAR = 1e-4;  // of the same: less, and the constraints soon do not say how the motion goes on
 const NEAR_SINGULAR = 0.05;  // of the same: less at the end of a step, and one looks into it
 const LOOKS = 16;  // there
 const EASY = 1e3;  // times farther a guess may move than a given value, for the same
-const ROUNDS = 12;  // of walking along the ties towards the values given
+const ROUNDS = 12;  // of walking along the constraints towards the values given
 
 export class Motion {
     /** told, programs: as eomgen/page/live.py writes them; values: of the parameters. */
@@ -104,7 +104,7 @@ export class Motion {
         return found;
     }
 
-    /** The state of a run at an instant, on the ties. */
+    /** The state of a run at an instant, on the constraints. */
     at(run, t, out) {
         const x = run.at(t, out);
         this.ties.kept(t, x, STALLS);
@@ -133,7 +133,7 @@ export class Motion {
         return name in given || this.told.typed.includes(name);
     }
 
-    /** The nearest place at which the ties hold: guesses move first, then what the model gives, at last what was called. */
+    /** The nearest place at which the constraints hold: guesses move first, then what the model gives, at last what was called. */
     _nearest(x, given) {
         const { coordinates, sought, own, guesses } = this.told;
         const called = own.filter(k => this._called(coordinates[k], given));
@@ -149,7 +149,7 @@ export class Motion {
         return null;
     }
 
-    /** Closed from there, then along the ties to the point that is nearest to the values wanted. */
+    /** Closed from there, then along the constraints to the point that is nearest to the values wanted. */
     _walked(wanted, free, guessed) {
         const [rows] = this.start.positionRows(0, wanted);
         const slope = Array.from({ length: this.told.coordinates.length }, (_, j) => Math.hypot(...rows.map(row => row[j])));
@@ -171,7 +171,7 @@ export class Motion {
         return x;
     }
 
-    /** The nearest speeds that agree with the ties; of each tier no more than what those before it cannot close. */
+    /** The nearest speeds that agree with the constraints; of each tier no more than what those before it cannot close. */
     _nearestSpeeds(x, given) {
         const { coordinates, speeds, guesses } = this.told, nq = coordinates.length, n = speeds.length;
         const [J, left] = this.start.speedRows(0, x);

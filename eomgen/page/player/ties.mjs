@@ -1,4 +1,4 @@
-// Ties, a state -> the nearest state in which they hold: phi(q) = 0 and J u + sigma = 0, by Newton's method.
+// Constraints, a state -> the nearest state in which they hold: phi(q) = 0 and J u + sigma = 0, by Newton's method.
 
 export const CLOSED = 1e-11;  // [m or rad] a gap that an iteration in doubles has closed
 export const STALLS = 1e-9;  // so far closed, no further is asked where steps help no more
@@ -86,7 +86,7 @@ export class Ties {
         return this.told.spheres.length > 0;
     }
 
-    /** Puts x back onto the ties where it is further off than allowed; says whether it did. */
+    /** Puts x back onto the constraints where it is further off than allowed; says whether it did. */
     kept(t, x, allowed) {
         let moved = this.normed(x);
         const [phi, rate] = this.open(t, x);

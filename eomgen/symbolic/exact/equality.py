@@ -14,7 +14,7 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import Node, Scalar, linear_terms
 from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
@@ -190,15 +190,15 @@ def _exact_state(nodes: Sequence[Node], rng: Random, arithmetic: Arithmetic) -> 
         elif x.op not in ALGEBRAIC and not (x.op == "pow" and type(x.args[1]) is int):
             values[x] = _random(arithmetic, rng)
             independent = False
-    for symbols in _spheres(nodes):
+    for symbols in _unit_quaternions(nodes):
         values |= zip(symbols, _unit_vector(arithmetic, rng, len(symbols)), strict=True)
     return ExactState(values, independent)
 
 
-def _spheres(nodes: Iterable[Node]) -> list[tuple[Node, ...]]:
+def _unit_quaternions(nodes: Iterable[Node]) -> list[tuple[Node, ...]]:
     """The sets of symbols among them whose squares add up to 1."""
     graphs = {x.graph: None for x in nodes}
-    return [symbols for graph in graphs for symbols in graph.spheres]
+    return [symbols for graph in graphs for symbols in graph.unit_quaternions]
 
 
 def _unit_vector(arithmetic: Arithmetic, rng: Random, size: int) -> list[Any]:
@@ -328,7 +328,7 @@ def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> 
     symbols = [x for x in order(flat) if x.op == "symbol"]
     for attempt in range(REAL_TRIES):
         values = {x: arithmetic.number(_real(x, rng, attempt)) for x in symbols}
-        for four in _spheres(symbols):
+        for four in _unit_quaternions(symbols):
             values |= zip(four, _unit_vector(arithmetic, rng, len(four)), strict=True)
         try:
             return evaluate(flat, values, arithmetic)
@@ -336,7 +336,7 @@ def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> 
             continue
     raise DerivationError(
         "no real state was found at which the expressions to be compared have values",
-        mend="give a start, and parameters, at which they have values",
+        fix="give a start, and parameters, at which they have values",
     )
 
 

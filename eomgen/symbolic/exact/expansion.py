@@ -10,7 +10,6 @@ from collections.abc import Collection, Iterable
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.exact.polynomials import square_root
-from eomgen.symbolic.exact.spheres import reduced_on
 from eomgen.symbolic.exact.terms import (
     HALF,
     ONE,
@@ -32,6 +31,7 @@ from eomgen.symbolic.exact.terms import (
     terms_times,
     wave,
 )
+from eomgen.symbolic.exact.unit_quaternions import reduced_on
 from eomgen.symbolic.expression.node import Node, Owner, Scalar
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
@@ -64,7 +64,7 @@ class Expansion:
         self.graph, self.limit, self.work = graph, limit, 0
         self.positive = frozenset(x.index for x in positive)
         self.atoms = Atoms(graph)
-        self.spheres = tuple(tuple(x.index for x in symbols) for symbols in graph.spheres)
+        self.unit_quaternions = tuple(tuple(x.index for x in symbols) for symbols in graph.unit_quaternions)
         self._known: dict[Node, Terms] = {}
         self._too_long: set[Node] = set()
 
@@ -215,7 +215,7 @@ class Expansion:
         """a b, with atom^2 = f for atoms sqrt(f), and e0^2 = 1 - (the other squares) for symbols on a sphere."""
         self._spend(len(a) * len(b))
         found = self._without_squared_roots(terms_times(a, b))
-        for sphere in self.spheres:
+        for sphere in self.unit_quaternions:
             found = reduced_on(sphere, found)
         return found
 
@@ -236,7 +236,7 @@ class Expansion:
 
     def _atom(self, x: Node) -> Terms:
         self.atoms.nodes[x.index] = x
-        for symbols in self.graph.spheres:
+        for symbols in self.graph.unit_quaternions:
             if x in symbols:
                 self.atoms.nodes |= {symbol.index: symbol for symbol in symbols}
         return {(((x.index, 1),), ()): 1}

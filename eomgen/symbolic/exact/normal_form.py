@@ -12,7 +12,7 @@ from dataclasses import field
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import one_root, reduced
@@ -98,7 +98,7 @@ def equal(a: Scalar, b: Scalar, limit: int = Work.ANSWER) -> bool:
 def _has_relations(expansion: Expansion) -> bool:
     """Whether atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
     nodes, pi = expansion.atoms.nodes, expansion.graph.pi.index
-    if any(sphere[0] in nodes for sphere in expansion.spheres):  # a power of e0 below a line
+    if any(sphere[0] in nodes for sphere in expansion.unit_quaternions):  # a power of e0 below a line
         return True
     return pi in nodes or any(opaque.op != "sum" for opaque in expansion.atoms.opaque.values())
 

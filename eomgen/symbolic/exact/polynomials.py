@@ -15,7 +15,6 @@ from functools import lru_cache
 from math import comb, isqrt
 
 from eomgen.symbolic.exact.rational_polynomial import Exponents, PowerSum, RationalPolynomial
-from eomgen.symbolic.exact.spheres import of_one_degree, with_square_replaced
 from eomgen.symbolic.exact.terms import (
     AngleSum,
     Monomial,
@@ -29,6 +28,7 @@ from eomgen.symbolic.exact.terms import (
     terms_scaled,
     terms_times,
 )
+from eomgen.symbolic.exact.unit_quaternions import of_one_degree, with_square_replaced
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import chain
 from math import gcd
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.polynomials import Polynomials
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial

@@ -13,7 +13,7 @@ from functools import cache, lru_cache
 from math import prod
 from typing import Any
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.terms import TooLarge, common_number
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction

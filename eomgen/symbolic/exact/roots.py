@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.exact.terms import (

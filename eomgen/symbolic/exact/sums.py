@@ -7,7 +7,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field
 from typing import Any, TypeVar
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import powers_in, reduced
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial

@@ -17,7 +17,7 @@ from functools import lru_cache
 from math import gcd, lcm
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import Node, Owner, Scalar
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction

@@ -16,7 +16,6 @@ from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.polynomials import axes_of, eliminated, power_form
 from eomgen.symbolic.exact.quotient import Radical, one_root, powers_in
 from eomgen.symbolic.exact.rational_polynomial import PowerSum
-from eomgen.symbolic.exact.spheres import shortest_on
 from eomgen.symbolic.exact.terms import (
     ONE,
     RADIAN,
@@ -33,6 +32,7 @@ from eomgen.symbolic.exact.terms import (
     vector_sum,
     wave,
 )
+from eomgen.symbolic.exact.unit_quaternions import shortest_on
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
@@ -112,7 +112,7 @@ class Writer:
 
     def written(self, terms: Terms) -> list[tuple[Number, Monomial, Factors]]:
         """(coefficient, monomial, sines and cosines) of each term as it is written."""
-        for sphere in self._expansion.spheres:
+        for sphere in self._expansion.unit_quaternions:
             terms = shortest_on(sphere, terms)
         groups: dict[Monomial, dict[Wave, Number]] = {}
         for (monomial, w), c in terms.items():

@@ -14,7 +14,7 @@ from itertools import count
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.rational import EXACT, Fraction
 from eomgen.symbolic.expression.text import token_at
@@ -188,15 +188,15 @@ class Clash:
     other: Place | None = None
     in_function: str = ""
     names: frozenset[str] = frozenset()
-    mend: str = ""
+    fix: str = ""
 
     @property
     def what(self) -> str:
         if self.in_function and self.other is None:
-            return f"{self.in_function} of {kind_of(self.one_is)}: {quoted(self.one)} is {told(self.one_is)}"
+            return f"{self.in_function} of {kind_of(self.one_is)}: {quoted(self.one)} is {reported(self.one_is)}"
         if self.other is None:
-            return f"{quoted(self.one)} is {told(self.one_is)}, and {told(self.needed)} is needed"
-        two = f"{quoted(self.other)} is {told(self.needed)}, {quoted(self.one)} {told(self.one_is)}"
+            return f"{quoted(self.one)} is {reported(self.one_is)}, and {reported(self.needed)} is needed"
+        two = f"{quoted(self.other)} is {reported(self.needed)}, {quoted(self.one)} {reported(self.one_is)}"
         joined = f"do not fit together in {self.in_function}" if self.in_function else "have no sum"
         return f"{kind_of(self.needed)} and {kind_of(self.one_is)} {joined}: {two}"
 
@@ -205,7 +205,7 @@ def quoted(place: Place) -> str:
     return f"'{place.text}'"
 
 
-def told(dimension: Dimension) -> str:
+def reported(dimension: Dimension) -> str:
     """ "in N*m", "a number"."""
     return f"in {dimension}" if dimension else "a number"
 
@@ -226,7 +226,7 @@ class Walk:
         declared: the parameters that have a unit.
         moves: the names that have rates.
         strict: whether small numbers beside declared parameters are coefficients, without a dimension.
-        mends: whether a mend is sought.
+        fixes: whether a fix is sought.
     """
 
     names: Callable[[str], Dimension]
@@ -235,7 +235,7 @@ class Walk:
     declared: frozenset[str] = frozenset()
     moves: frozenset[str] = frozenset()
     strict: bool = False
-    mends: bool = True
+    fixes: bool = True
     clashes: list[Clash] = field(default_factory=list)
 
     def of(self, expression: Expression, source: str | None = None, needed: Dimension | None = None) -> Dimension:
@@ -296,7 +296,7 @@ class Walk:
         return Term(a.dimension, a.first, k, a.names | b.names, bare=a.bare and b.bare)
 
     def _power(self, a: Term, b: Term, k: int, kind: str) -> Term:
-        exponent = _worth(self._expression.code[b.first : b.last + 1])
+        exponent = _value(self._expression.code[b.first : b.last + 1])
         if isinstance(exponent, EXACT):
             return Term(a.dimension.raised(Fraction(exponent)), a.first, k, a.names, a.numbers, a.bare)
         if not self.inference.equal(self._finished(b).dimension, NUMBER):
@@ -340,8 +340,8 @@ class Walk:
         names = (term.names if other is None else term.names | other.names) - TIME
         known = self.inference.reduced
         place, beside = self._place(term), None if other is None else self._place(other)
-        mend = "" if function or not self.mends or known(needed).unknowns else self._mend(known(needed), place)
-        self.clashes.append(Clash(place, known(term.dimension), known(needed), beside, function, names, mend))
+        fix = "" if function or not self.fixes or known(needed).unknowns else self._fix(known(needed), place)
+        self.clashes.append(Clash(place, known(term.dimension), known(needed), beside, function, names, fix))
 
     def _place(self, term: Term) -> Place:
         """Where a term stands, with the brackets that belong to it."""
@@ -359,7 +359,7 @@ class Walk:
             start -= 1
         return Place(start, text[start:end])
 
-    def _mend(self, needed: Dimension, place: Place) -> str:
+    def _fix(self, needed: Dimension, place: Place) -> str:
         """The same term with one power, or one rate, changed, where that fits and no other such change does."""
         from eomgen.symbolic.expression.text import parse
 
@@ -371,7 +371,7 @@ class Walk:
             fitting = []
             for text in candidates:
                 try:
-                    walk = replace(self, mends=False, clashes=[])
+                    walk = replace(self, fixes=False, clashes=[])
                     found = self.inference.reduced(walk.of(parse(text, references=True)))
                 except ExpressionError:
                     continue
@@ -382,7 +382,7 @@ class Walk:
         return ""
 
 
-def _worth(code: tuple[Any, ...]) -> Any:
+def _value(code: tuple[Any, ...]) -> Any:
     """The number that a piece of code is, None with names in it."""
     if any(kind in ("name", "call", "part") for kind, _ in code):
         return None

@@ -16,7 +16,7 @@ from math import isqrt
 from typing import Any, TypeVar, overload
 
 from eomgen.errors import DerivationError, ExpressionError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.graph import CONSTANTS
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.numbers import Number
@@ -198,7 +198,7 @@ what stands n below the top, a part with a name | ("under", names): the parts th
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What an argument names: a tie (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate."""
+    """What an argument names: a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate."""
 
     name: str
     column: int = field(default=0, compare=False)
@@ -457,8 +457,8 @@ def apply_operation(stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar)
 def unknown(kind: str, name: str, known: Iterable[str], column: int) -> ExpressionError:
     """The error for a name that is not known, with the nearest one that is."""
     near = difflib.get_close_matches(name, list(known), n=1)
-    mend = f"did you mean '{near[0]}'?" if near else ""
-    return ExpressionError(f"unknown {kind} '{name}'", column, mend, len(name))
+    fix = f"did you mean '{near[0]}'?" if near else ""
+    return ExpressionError(f"unknown {kind} '{name}'", column, fix, len(name))
 
 
 # -------- functions -------------------------------------------------------------------------------------------

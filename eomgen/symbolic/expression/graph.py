@@ -56,7 +56,7 @@ class Graph:
         self._waves: dict[tuple[str, Node], Scalar] = {}  # of arguments that were met
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
-        self.spheres: list[tuple[Node, ...]] = []
+        self.unit_quaternions: list[tuple[Node, ...]] = []
         self.near: dict[Node, float] = {}
         self._found: dict[Any, dict[Any, Any]] = {}
 
@@ -69,7 +69,7 @@ class Graph:
         return {
             "nodes": nodes,
             "constants": sorted(x.index for x in self._constants),
-            "spheres": [tuple(x.index for x in symbols) for symbols in self.spheres],
+            "spheres": [tuple(x.index for x in symbols) for symbols in self.unit_quaternions],
             "near": {x.index: value for x, value in self.near.items()},
             "samples": [sampled_of(x.args[1]) for x in self.nodes if x.op == "sampled"],
         }
@@ -82,7 +82,7 @@ class Graph:
         for op, args in state["nodes"][1:]:
             nodes.append(self.held(op, tuple(nodes[a] if is_node else a for is_node, a in args)))
         self._constants = {nodes[k] for k in state["constants"]}
-        self.spheres = [tuple(nodes[k] for k in symbols) for symbols in state["spheres"]]
+        self.unit_quaternions = [tuple(nodes[k] for k in symbols) for symbols in state["spheres"]]
         self.near = {nodes[k]: value for k, value in state["near"].items()}
 
     def reduced(self, x: Node) -> tuple[Any, ...]:
@@ -120,7 +120,7 @@ class Graph:
 
     def hold_on_sphere(self, symbols: tuple[Node, ...]) -> None:
         """Symbols whose squares always add up to 1, as those of a unit quaternion: so are values chosen for them."""
-        self.spheres.append(symbols)
+        self.unit_quaternions.append(symbols)
 
     def hold_near(self, values: Mapping[Node, float]) -> None:
         """Numbers near which symbols have values at which formulas have some: where a model starts."""

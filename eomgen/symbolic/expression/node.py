@@ -13,7 +13,7 @@ class Owner(Protocol):
     """What a node asks of the graph that owns it."""
 
     pi: Node
-    spheres: list[tuple[Node, ...]]
+    unit_quaternions: list[tuple[Node, ...]]
     near: dict[Node, float]
 
     @property

@@ -20,7 +20,7 @@ from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 
 WAYS = ("cubic", "linear", "steps", "pchip")

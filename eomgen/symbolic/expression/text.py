@@ -11,7 +11,7 @@ from numbers import Rational
 from typing import Any
 
 from eomgen.errors import ExpressionError, NumberBeyond
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.formula import (
     NAMES,
     Call,
@@ -46,7 +46,7 @@ _REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w
 _DOTTED = re.compile(rf"{_NAME}(?:\.\w+)+")
 
 CASES = "nothing is compared here: an instant is an equation, x = 1; cases are made by max, min, abs, sign"
-_MENDS = {
+_FIXES = {
     "−": "write -",
     "–": "write -",
     "·": "write *",
@@ -113,13 +113,13 @@ def _strange(text: str, start: int) -> ExpressionError:
     if character == "." and start > 0 and (dotted := _DOTTED.match(text, _word_start(text, start))):
         length = dotted.end() - dotted.start()
         owner, _, what = dotted.group().partition(".")
-        mend = {"dot": f"the rate is written {owner}'", "ddot": f"it is written {owner}''"}.get(what, "")
+        fix = {"dot": f"the rate is written {owner}'", "ddot": f"it is written {owner}''"}.get(what, "")
         if owner in ("np", "numpy", "math", "sp", "sympy"):
-            mend = f"write {what}(...)"
-        return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), mend, length)
+            fix = f"write {what}(...)"
+        return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), fix, length)
     in_formula = character == "°" and not text[:start].strip().isdigit()
-    mend = degrees(text) if in_formula else _MENDS.get(character) or plainly(character)
-    return ExpressionError(f"unexpected character {character!r}", start, mend)
+    fix = degrees(text) if in_formula else _FIXES.get(character) or plainly(character)
+    return ExpressionError(f"unexpected character {character!r}", start, fix)
 
 
 def _word_start(text: str, end: int) -> int:
@@ -241,7 +241,7 @@ def as_expression(value: Any, *, references: bool = False) -> Expression:
         if not math.isfinite(value):
             raise ExpressionError(f"{value} is not a number that can be calculated with", length=len(str(value)))
         return _decimal(repr(float(value)) if isinstance(value, float) else str(value))
-    raise ExpressionError(f"{value!r} is neither a number nor a text", mend="write a number or an expression")
+    raise ExpressionError(f"{value!r} is neither a number nor a text", fix="write a number or an expression")
 
 
 def _decimal(text: str) -> Expression:
@@ -385,8 +385,8 @@ class _Parser:
         if name.text not in NAMES:
             error = unknown("function", name.text, NAMES, name.start)
             product = f"for a product write {name.text}*(...)"
-            mend = rate_of_call(self.text[name.start :]) or error.mend or product
-            raise ExpressionError(error.what, error.column, mend, error.length)
+            fix = rate_of_call(self.text[name.start :]) or error.fix or product
+            raise ExpressionError(error.what, error.column, fix, error.length)
         opening, count, begun, height = self.advance(), 0, len(self.code), self.height
         while self.token.text != ")" and (count == 0 or self.token.text == ","):
             if count:
@@ -445,8 +445,8 @@ class _Parser:
         if token.kind == "end" and not self.text.strip():
             return ExpressionError("the expression is empty")
         where = f"after '{before.text}'" if before.text else "at the beginning"
-        mend = "an equation has one =" if token.text == "=" else ""
-        return ExpressionError(f"a value is missing {where}", max(0, token.start - (token.kind == "end")), mend)
+        fix = "an equation has one =" if token.text == "=" else ""
+        return ExpressionError(f"a value is missing {where}", max(0, token.start - (token.kind == "end")), fix)
 
     def misplaced(self) -> ExpressionError:
         """The error for a token that cannot follow the value before it."""
@@ -455,8 +455,8 @@ class _Parser:
         if token.text == ")":
             return ExpressionError("')' closes nothing", token.start)
         if token.kind == "sign" and token.text != "(":
-            mend = decimal_comma(self.text, token.start) if token.text == "," else ""
-            return ExpressionError(f"'{token.text}' has no place here", token.start, mend, length)
+            fix = decimal_comma(self.text, token.start) if token.text == "," else ""
+            return ExpressionError(f"'{token.text}' has no place here", token.start, fix, length)
         what = f"no sign between '{before.text}' and '{token.text}'"
         if before.text in NAMES:
             return ExpressionError(what, token.start, f"write {before.text}({token.text})", length)
@@ -527,7 +527,7 @@ _LEAVES = ("number", "name", "call", "part")
 
 
 # -------- habits ----------------------------------------------------------------------------------------------
-# What hands write out of habit from other notations, and how it is written here: the mends of errors.
+# What hands write out of habit from other notations, and how it is written here: the fixes of errors.
 
 
 DEGREES = ("deg", "degree", "degrees", "grad", "Grad")
@@ -559,25 +559,25 @@ def spelled(letter: str) -> str:
 
 
 def invisible(character: str) -> str:
-    """The mend of what cannot be told from a blank, or from nothing; "" of what is seen."""
+    """The fix of what cannot be told from a blank, or from nothing; "" of what is seen."""
     if character in ("", "\n", "\t", " ") or (character.isprintable() and not character.isspace()):
         return ""
     return f"a character that is not seen stands there, U+{ord(character):04X}: write a plain blank, or nothing"
 
 
 def plainly(character: str) -> str:
-    """The mend of a character that stands for a plain one; "" of others."""
+    """The fix of a character that stands for a plain one; "" of others."""
     plain = unicodedata.normalize("NFKC", character)
     return f"write {plain}" if plain.isascii() and plain != character and plain.strip() else invisible(character)
 
 
 def two_values(text: str, place: int) -> str:
-    """The mend where two values stand side by side, the second at a place; "" for what is no habit."""
+    """The fix where two values stand side by side, the second at a place; "" for what is no habit."""
     power = _POWER.search(text, 0, place)
     if power is not None and power[1] in NAMES and text[place] == "(":
         return f"write {power[1]}{_in_parentheses(text, place)}^{power[2]}"
-    if mend := degrees(text):
-        return mend
+    if fix := degrees(text):
+        return fix
     given = _WITH_UNIT.fullmatch(text)
     if given is not None:
         value, unit = given[1], given[2] or given[3]
@@ -586,7 +586,7 @@ def two_values(text: str, place: int) -> str:
 
 
 def degrees(text: str) -> str:
-    """The mend of an angle in degrees: "angles are in rad here: write pi/2", or ""."""
+    """The fix of an angle in degrees: "angles are in rad here: write pi/2", or ""."""
     found = _DEGREES.search(text)
     if found is None:
         return ""
@@ -596,7 +596,7 @@ def degrees(text: str) -> str:
 
 
 def decimal_comma(text: str, place: int) -> str:
-    """The mend of a comma in a number, or ""."""
+    """The fix of a comma in a number, or ""."""
     found = next((each for each in _COMMA.finditer(text) if each.start() <= place < each.end()), None)
     return "" if found is None else f"write a decimal point: {found[1]}.{found[2]}"
 
@@ -608,7 +608,7 @@ def called_rate(text: str) -> tuple[str, int, int] | None:
 
 
 def rate_of_call(text: str) -> str:
-    """The mend of diff(phi, t), ddot(phi), phi(t) or pow(phi, 2), or ""."""
+    """The fix of diff(phi, t), ddot(phi), phi(t) or pow(phi, 2), or ""."""
     if of_time := _OF_TIME.match(text):
         return f"write {of_time[1]}: what moves depends on t by itself"
     if power := _POW.match(text):

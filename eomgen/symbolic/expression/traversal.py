@@ -12,7 +12,7 @@ from dataclasses import field
 from operator import attrgetter
 from typing import Any
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.graph import CONSTANTS, Graph
 from eomgen.symbolic.expression.node import Node, Owner, Scalar, op_bits
 from eomgen.symbolic.expression.rational import Fraction
@@ -113,7 +113,7 @@ class Symbols:
         q: generalized coordinates, nq, named `theta`.
         u: generalized speeds, nu, named `theta'` where u is a rate, else by the speed's name.
         a: accelerations u', nu, named `theta''` or `w1'`.
-        lam: multipliers of the closing rows, k, named `lam(tie, row)`, row from 1.
+        lam: multipliers of the closing rows, k, named `lam(constraint, row)`, row from 1.
         unknowns: numbers that are asked, by name, in the model's order.
     """
 

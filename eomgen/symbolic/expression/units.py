@@ -13,7 +13,7 @@ import re
 from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.formula import Expression, over
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
 from eomgen.symbolic.expression.text import as_expression, parse, parse_equation, skip_space
@@ -169,10 +169,10 @@ def parse_unit(text: str) -> Unit:
     """The unit that a text writes: `kg*m^2`, `m/s^2`, `kg m^2`, `N/(m*s)`; `1` is the plain number.
 
     Raises:
-        ExpressionError: there is no such unit; column and length say where, mend offers the nearest.
+        ExpressionError: there is no such unit; column and length say where, fix offers the nearest.
     """
     if not text.strip() or len(text) > LONGEST:
-        raise ExpressionError("a unit is missing" if not text.strip() else "the unit is too long", mend="write kg*m^2")
+        raise ExpressionError("a unit is missing" if not text.strip() else "the unit is too long", fix="write kg*m^2")
     total, opened, group, direction, needed = Unit(text), -1, 1, 1, True
     position = skip_space(text, 0)
     while position < len(text):
@@ -188,8 +188,8 @@ def parse_unit(text: str) -> Unit:
             needed, direction, position = False, 1, piece.end() - 1
         else:
             raised = position and text[position - 1].isalpha() and character.isdigit()
-            mend = f"write {text[:position]}^{text[position:]}" if raised else "write kg*m^2"
-            raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, mend)
+            fix = f"write {text[:position]}^{text[position:]}" if raised else "write kg*m^2"
+            raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, fix)
         position = skip_space(text, position + 1)
     if needed or opened >= 0:
         what = "'(' is never closed" if opened >= 0 else "a unit is missing at the end"
@@ -244,7 +244,7 @@ def seconds(typed: Any) -> float:
     """
     if (type(typed) is float and math.isfinite(typed)) or (type(typed) is int and typed.bit_length() < EXACT_INTEGER):
         return float(typed)
-    refused = UsageError(f"{typed!r} is no time", mend="write 5, or '5 s'")
+    refused = UsageError(f"{typed!r} is no time", fix="write 5, or '5 s'")
     try:
         value, unit = read_typed(typed)
         if not is_plain(value) or not (unit is None or unit.fits(parse_unit("s"))):
@@ -270,7 +270,7 @@ def read_typed(typed: Any) -> tuple[Expression, Unit | None]:
     if hasattr(typed, "to_base_units") and hasattr(typed, "dimensionality"):
         base = typed.to_base_units()
         if not base.dimensionality.keys() <= _OF_PINT.keys():
-            raise ExpressionError(f"'{typed}' is in units that mechanics does not have", mend="use m, kg, s, rad")
+            raise ExpressionError(f"'{typed}' is in units that mechanics does not have", fix="use m, kg, s, rad")
         powers = (f"{_OF_PINT[kind]}^{int(power)}" for kind, power in base.dimensionality.items())
         return as_expression(_plain(base.magnitude)), parse_unit("*".join(powers) or "1")
     return as_expression(_plain(typed)), None
@@ -308,7 +308,7 @@ def parse_typed(text: str, *, references: bool = False, start: int = 0) -> tuple
             unit = parse_unit(text[gap.end() :])
         except ExpressionError as error:
             if expression.names <= {"pi"} and text[gap.end() :].strip().isalpha():
-                raise ExpressionError(error.what, start + gap.end(), error.mend, error.length) from None
+                raise ExpressionError(error.what, start + gap.end(), error.fix, error.length) from None
             continue
         if not expression.names <= {"pi"} or expression.calls:
             what = f"names are in SI, and '{expression.text}' has the unit '{unit.text}' beside it"
@@ -324,7 +324,7 @@ def parse_typed_equation(text: str) -> tuple[tuple[Expression, Unit | None], tup
         ExpressionError: it is no equation; column and length say where.
     """
     if not isinstance(text, str):
-        raise ExpressionError(f"{text!r} is no equation", mend='write it as a text: "theta = pi/2"')
+        raise ExpressionError(f"{text!r} is no equation", fix='write it as a text: "theta = pi/2"')
     left, sign, right = text.partition("=")
     if not sign or not right.strip():
         parse_equation(text)

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import NAMES, function, over
 from eomgen.symbolic.expression.graph import LARGEST_POWER, Graph
@@ -78,7 +78,7 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
         way = _way(outputs, frozenset(x for x in values if x.op != "symbol"))
     missing = [x.name for x in way.symbols if x not in values]
     if missing:
-        raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}", mend="give it a value")
+        raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}", fix="give it a value")
     number, functions = arithmetic.number, arithmetic.functions
     known = [number(x) for x in way.constants]
     known += [values[x] for x in way.symbols]

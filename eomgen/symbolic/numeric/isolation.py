@@ -8,7 +8,7 @@ where Krawczyk's operator maps it into its own inside:
     K(x) = m - C f(m) + (1 - C f'(x)) (x - m),      m the middle of the box, C the inverse of f'(m)
 
 Where f' is singular at a root, boxes about it stay undecided down to the smallest size, a share of how far they are
-from 0: places of rest may be micrometres apart, and the range in which they are sought is a kilometre wide.
+from 0: equilibria may be micrometres apart, and the range in which they are sought is a kilometre wide.
 Source: Neumaier, Interval Methods for Systems of Equations (1990), sections 5.1 and 5.2.
 """
 
@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.traversal import order

@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 from typing import Any
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State, holds_op, linear_terms
 from eomgen.symbolic.expression.rational import Fraction

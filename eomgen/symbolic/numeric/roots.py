@@ -10,7 +10,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
 
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.numeric.arithmetic import balls
@@ -204,7 +204,7 @@ class Descent:
         unknowns: the symbols sought.
         values: of every other symbol, with 50 digits.
         telling: how many of the unknowns, the first ones, tell two roots apart and how near they are (None: all). The
-            others may be free at a root, as the multipliers of redundant ties are.
+            others may be free at a root, as the multipliers of redundant constraints are.
         scales: of the rows and of the columns (None: those of slopes at a few places).
         last: the slopes where they were asked last, by the unknowns there.
     """

@@ -48,7 +48,7 @@ def by_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Seq
         given: numbers of mpmath's, or exact ones.
         steps: each its operation, and the places of its arguments.
     """
-    if not _worth(len(given) + len(outputs), steps):
+    if not _value(len(given) + len(outputs), steps):
         return None
     with ctx.workprec(mp.prec):
         known = _balls(given)
@@ -61,7 +61,7 @@ def by_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Seq
 
 def in_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Sequence[int]) -> list[Any] | None:
     """The same of balls (x, r), |true - x| <= r, for balls; None where one of them has no end."""
-    if not _worth(len(given) + len(outputs), steps):
+    if not _value(len(given) + len(outputs), steps):
         return None
     with ctx.workprec(mp.prec):
         middles, radii = _balls(x for x, _ in given), _balls(r for _, r in given)
@@ -75,7 +75,7 @@ def in_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Seq
         return [(_rounded(ball.mid(), mp), _rounded(ball.rad(), mp)) for ball in found]
 
 
-def _worth(handed: int, steps: Sequence[_Step]) -> bool:
+def _value(handed: int, steps: Sequence[_Step]) -> bool:
     """Whether the steps are all known, and many beside what is handed over and back."""
     return HAS_BALLS and len(steps) >= WORTH * handed and {op for _, op, _ in steps} <= OPERATIONS.keys()
 

@@ -58,9 +58,9 @@ def _at(digits: int, scalars: Sequence[Scalar], values: Mapping[Node, Scalar | f
     """The balls at one precision."""
     arithmetic = balls(digits, last=digits == PRECISIONS[-1])
     used = frozenset(symbols_of(scalars))
-    asked = {x: v for x, v in values.items() if x.op != "symbol" or x in used}
-    number = {x: Fraction(v) if isinstance(v, float) and isfinite(v) else v for x, v in asked.items()}
+    requested = {x: v for x, v in values.items() if x.op != "symbol" or x in used}
+    number = {x: Fraction(v) if isinstance(v, float) and isfinite(v) else v for x, v in requested.items()}
     known = {x: v for x, v in number.items() if not isinstance(v, float)}
-    state: dict[Node, Ball] = dict.fromkeys(asked, (nan, 0))
+    state: dict[Node, Ball] = dict.fromkeys(requested, (nan, 0))
     state |= dict(zip(known, evaluate(tuple(known.values()), {}, arithmetic), strict=True))
     return evaluate(tuple(scalars), state, arithmetic)

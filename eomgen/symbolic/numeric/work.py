@@ -20,7 +20,7 @@ from enum import IntEnum
 from threading import Lock
 
 from eomgen.errors import EomgenError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 
 class Work(IntEnum):
@@ -69,7 +69,7 @@ class _Clock:
 
     seconds: float
     end: float
-    told: list[str] = field(default_factory=list)
+    reported: list[str] = field(default_factory=list)
     done: list[str] = field(default_factory=list)
     kept: str = "nothing is kept"
     closed: threading.Event = field(default_factory=threading.Event)
@@ -78,10 +78,10 @@ class _Clock:
 
     def error(self) -> OutOfPatience:
         """What was done, what was given up, and what helps."""
-        given_up = ", ".join(self.told[-2:]) or "the work"
+        given_up = ", ".join(self.reported[-2:]) or "the work"
         before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
         what = f"given up after {self.seconds:g} s, {self.kept}: {given_up}{before}"
-        return OutOfPatience(what, mend="ask for less, or wait longer: --patience SECONDS, --patience none")
+        return OutOfPatience(what, fix="ask for less, or wait longer: --patience SECONDS, --patience none")
 
 
 _CLOCK: ContextVar[_Clock | None] = ContextVar("patience", default=None)
@@ -139,7 +139,7 @@ def doing(what: str) -> Iterator[None]:
     if clock is None:
         yield
         return
-    clock.told.append(what)
+    clock.reported.append(what)
     over = False
     try:
         yield
@@ -149,7 +149,7 @@ def doing(what: str) -> Iterator[None]:
         raise
     finally:
         if not over:
-            clock.told.pop()
+            clock.reported.pop()
 
 
 @contextmanager
@@ -178,8 +178,8 @@ def patience(seconds: float | None) -> Iterator[None]:
 
 
 def _watch(clock: _Clock) -> None:
-    asked = (clock, clock.closed, threading.get_ident())
-    threading.Thread(target=_stop_late, args=asked, daemon=True).start()
+    requested = (clock, clock.closed, threading.get_ident())
+    threading.Thread(target=_stop_late, args=requested, daemon=True).start()
 
 
 def _stop_late(clock: _Clock, closed: threading.Event, thread: int) -> None:

@@ -16,7 +16,7 @@ from math import gcd
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import SUMS, Node, Scalar, holds_op
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
@@ -474,7 +474,7 @@ def number_text(c: Number) -> str:
     if _is_long(c):
         raise DerivationError(
             f"a number of {number_length(c)} digits came up, which is too long to print",
-            mend="scale the parameters: other units, or numbers nearer to 1",
+            fix="scale the parameters: other units, or numbers nearer to 1",
         )
     decimal = decimal_of(c)
     if decimal is None:

@@ -30,7 +30,7 @@ from eomgen.symbolic.print.names import index_latex, symbol_of
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 Marks = tuple[int, int]  # how many, and how they hang together
 
-_MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
+_MULTIPLIER = re.compile(r"lam\((?P<constraint>.*), (?P<row>\d+)\)")
 
 _ACCENTS = (
     "dot ddot dddot ddddot hat widehat bar overline underline vec tilde widetilde acute grave breve check mathring"
@@ -211,5 +211,5 @@ def length_of_name(name: str) -> int:
     """The letters and digits of a symbol: theta1' has two, m_cart five."""
     multiplier = _MULTIPLIER.fullmatch(name)
     if multiplier:
-        return 2 + len(multiplier["row"]) + length_of_latex(index_latex(multiplier["tie"]))
+        return 2 + len(multiplier["row"]) + length_of_latex(index_latex(multiplier["constraint"]))
     return length_of_latex(symbol_of(name.rstrip("'")).tex)

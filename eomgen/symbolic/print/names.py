@@ -8,7 +8,7 @@ from dataclasses import field, replace
 from difflib import get_close_matches
 
 from eomgen.errors import ExpressionError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 
 # -------- symbols ---------------------------------------------------------------------------------------------
 # How a name is set in LaTeX: theta1 -> \theta_{1}, mb -> m_{b}, k_max -> k_{\mathrm{max}}.
@@ -92,7 +92,7 @@ def symbol_of(name: str, indices: Mapping[str, str] | None = None) -> Symbol:
     """The symbol of a name without primes, by its own letters.
 
     Args:
-        indices: how the names of bodies, ties and forces are set in an index, where they declare it.
+        indices: how the names of bodies, constraints and forces are set in an index, where they declare it.
     """
     component = _COMPONENT.fullmatch(name)
     if component:
@@ -211,9 +211,9 @@ class _Tokens:
         self._k += bool(token)
         return token
 
-    def refuse(self, what: str, mend: str) -> ExpressionError:
+    def refuse(self, what: str, fix: str) -> ExpressionError:
         """What is wrong with the token."""
-        return ExpressionError(what, self.at, mend, max(len(self.now), 1))
+        return ExpressionError(what, self.at, fix, max(len(self.now), 1))
 
 
 def _joined(pieces: list[str]) -> str:
@@ -324,7 +324,7 @@ def _stranger(tokens: _Tokens) -> ExpressionError:
         return tokens.refuse(f"'{token}' is not LaTeX everywhere", f"write {LETTERS[token]}")
     if token.startswith("\\"):
         near = get_close_matches(token, COMMANDS, n=1, cutoff=0.7)
-        mend = f"did you mean {near[0]}?" if near else MADE_OF
-        return tokens.refuse(f"unknown command '{token}' in a symbol", mend)
+        fix = f"did you mean {near[0]}?" if near else MADE_OF
+        return tokens.refuse(f"unknown command '{token}' in a symbol", fix)
     shown = token if token.isprintable() else repr(token)[1:-1]
     return tokens.refuse(f"'{shown}' cannot stand here in a symbol", MADE_OF)

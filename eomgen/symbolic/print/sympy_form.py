@@ -216,7 +216,7 @@ def _read(e: Any, args: list[Any], graph: Owner, symbols: Mapping[str, Node]) ->
     if name in _FROM_SYMPY:
         return _FROM_SYMPY[name](graph, *args)
     raise DerivationError(
-        f"sympy's function '{name}' has no counterpart here: {e}", mend="write it by functions of the grammar"
+        f"sympy's function '{name}' has no counterpart here: {e}", fix="write it by functions of the grammar"
     )
 
 
@@ -225,7 +225,7 @@ def _read_leaf(e: Any, graph: Owner, symbols: Mapping[str, Node]) -> Scalar:
         if e.name not in symbols:
             raise DerivationError(
                 f"unknown symbol '{e.name}' in a sympy expression",
-                mend="name a coordinate, a parameter or an input of the model",
+                fix="name a coordinate, a parameter or an input of the model",
             )
         return symbols[e.name]
     if isinstance(e, sympy.Rational):
@@ -237,8 +237,8 @@ def _read_leaf(e: Any, graph: Owner, symbols: Mapping[str, Node]) -> Scalar:
     if e in (sympy.true, sympy.false):
         return int(bool(e))
     if isinstance(e, sympy.Float):
-        raise DerivationError(f"the decimal number {e} in a sympy expression", mend="write it as a Rational")
-    raise DerivationError(f"sympy's '{e}' has no counterpart here", mend="write it by functions of the grammar")
+        raise DerivationError(f"the decimal number {e} in a sympy expression", fix="write it as a Rational")
+    raise DerivationError(f"sympy's '{e}' has no counterpart here", fix="write it by functions of the grammar")
 
 
 def _read_product(e: Any, args: list[Scalar], graph: Owner) -> Scalar:
@@ -257,7 +257,7 @@ def _read_pieces(e: Any, args: list[tuple[Scalar, Scalar]], graph: Owner) -> Sca
     value, condition = args[-1]
     if type(condition) is Node or not condition:
         raise DerivationError(
-            f"a Piecewise without a value for every case: {e}", mend="add a last case with the condition True"
+            f"a Piecewise without a value for every case: {e}", fix="add a last case with the condition True"
         )
     for piece, condition in reversed(args[:-1]):
         value = graph.select(condition, piece, value)

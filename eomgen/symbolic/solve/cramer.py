@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.formula import inner, over
 from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, is_zero
 
@@ -138,7 +138,7 @@ def _by_determinants(block: Block, right: Sequence[Sequence[Scalar]]) -> dict[in
     if n > LARGEST_BLOCK:
         raise DerivationError(
             f"{n} unknowns hang together: they are not written out one by one",
-            mend="ask for numbers: give every parameter a value",
+            fix="ask for numbers: give every parameter a value",
         )
     minors: Minors = {}
     everything = tuple(range(n))

@@ -13,7 +13,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Scalar, is_zero
 
@@ -36,7 +36,7 @@ def factor_solution(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:
         if is_zero(rows[k][k]):
             raise DerivationError(
                 f"the mass matrix is singular: row {k + 1} has no inertia left",
-                mend="give every body that moves a mass, and every one that turns a moment of inertia",
+                fix="give every body that moves a mass, and every one that turns a moment of inertia",
             )
         _eliminate(rows, z, k, _partners(rows, k, pivots))
     a: list[Any] = [0] * len(z)
@@ -163,7 +163,7 @@ def zeros_of(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
     return _filled(_later(M), _touched(J))
 
 
-def zeros_with_ties(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
+def zeros_with_constraints(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
     """The same of M + J^T W J with any diagonal W."""
     later, touched = _later(M), _touched(J)
     for row in touched:

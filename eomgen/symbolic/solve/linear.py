@@ -23,7 +23,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.equality import equal_at_real_states
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import inner, over
@@ -121,7 +121,7 @@ class Pivots:
         steady: whether an atom of such symbols vanishes nowhere; rows are divided by no other.
         regular: what waits is solved by normal equations, however many unknowns hang together and depend on others.
         vanishes: whether an entry whose shadow is zero is left out. What stays is no pivot: what is zero in one piece
-            only, and where the equations are asked off the ties too what is zero on these only.
+            only, and where the equations are asked off the constraints too what is zero on these only.
     """
 
     rank: Callable[[Scalar], int] = _number_first

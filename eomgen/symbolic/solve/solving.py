@@ -16,7 +16,7 @@ from math import comb, gcd
 from random import Random
 
 from eomgen.errors import DerivationError
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import simplest

@@ -1,11 +1,12 @@
 """Degrees of freedom, closed constraints, and states beside a state.
 
-Ties, what was counted -> whether degrees of freedom and redundant rows are so, by the rank of differences.
+Constraints, what was counted -> whether degrees of freedom and redundant rows are so, by the rank of differences.
 
 J of every row that moves something: of a gap its differences (phi+ - phi-)/2h along the rates of the coordinates, of a
-row without a gap what its velocity has for each speed; at a state in which the ties hold, drawn by another lot.
+row without a gap what its velocity has for each speed; at a state in which the constraints hold, drawn by another lot.
 
-    f = nu - rank J,   rank of the rows that are not redundant = rank J,   a redundant row lies in the rows of its ties
+    f = nu - rank J,   rank of the rows that are not redundant = rank J,   a redundant row lies in the rows of its
+    constraints
 
 A row that only reacts has J = 0. Of a structure the rank is that of the forces and moments of all reactions in doubles.
 What is printed is read again, and says what machines get.
@@ -22,9 +23,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.rank import Freedom, RowName
-from eomgen.mechanics.constraints.rows import Row, Ties, ties_of
+from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics.loads import Applied
 from eomgen.mechanics.kinematics.motion import motion_of
@@ -37,7 +39,6 @@ from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.spatial import Vector
@@ -56,22 +57,22 @@ def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
     if found.by_rank is None:
         return ""
     try:
-        ties = ties_of(motion_of(scope_of(model)), modes=modes)
-        if wrong := _unnamed(ties, found):
+        constraints = constraints_of(motion_of(scope_of(model)), modes=modes)
+        if wrong := _unnamed(constraints, found):
             return wrong
-        if not ties.closing or len(ties.motion.scope.symbols.u) > MOST:
+        if not constraints.closing or len(constraints.motion.scope.symbols.u) > MOST:
             return ""
-        return _by_differences(ties, generic_state(ties, 29), found)
+        return _by_differences(constraints, generic_state(constraints, 29), found)
     except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):  # the count has said so
         return ""
 
 
-def _unnamed(ties: Ties, found: Freedom) -> str:
-    """That fewer rows are named as redundant than the count by components lacks; "" where ties act on no body.
+def _unnamed(constraints: Constraints, found: Freedom) -> str:
+    """That fewer rows are named as redundant than the count by components lacks; "" where constraints act on no body.
 
-    The count takes off every component that is held: what it lacks of the freedoms by rank is held twice.
+    The count takes off every component that is held: what it lacks of the degrees of freedom by rank is held twice.
     """
-    if found.by_rank is None or found.by_formula is None or not all(row.wrenches for row in ties.rows):
+    if found.by_rank is None or found.by_formula is None or not all(row.wrenches for row in constraints.rows):
         return ""
     lacking = found.by_rank - found.by_formula
     return f"{lacking} components are held twice, and {len(found.redundant)} named" * (lacking > len(found.redundant))
@@ -100,43 +101,47 @@ def _doubles(v: Vector, known: State) -> np.ndarray:
     return np.array([float(x) for x in evaluate(tuple(v), known, fifty_digits())])
 
 
-def lines_otherwise(lines: Sequence[str], told: Mapping[str, Any], found: Freedom) -> str:
+def lines_otherwise(lines: Sequence[str], reported: Mapping[str, Any], found: Freedom) -> str:
     """What is printed of a count, or told machines of it, otherwise than it was found; ""."""
     due = {
         "degrees_of_freedom": found.by_rank,
         "by_formula": found.by_formula,
         "closing": list(found.closing),
         "reaction_only": list(found.identical),
-        "redundant": [{"tie": r.tie, "row": r.number, "follows_from": list(r.others)} for r in found.redundant],
+        "redundant": [{"tie": r.constraint, "row": r.number, "follows_from": list(r.others)} for r in found.redundant],
     }
-    wrong = (f"machines get {name} = {told.get(name)}" for name, right in due.items() if told.get(name) != right)
-    return first_wrong(wrong) or first_wrong((*(_line_otherwise(line, told) for line in lines), *_unsaid(lines, told)))
+    wrong = (
+        f"machines get {name} = {reported.get(name)}" for name, right in due.items() if reported.get(name) != right
+    )
+    return first_wrong(wrong) or first_wrong(
+        (*(_line_otherwise(line, reported) for line in lines), *_unsaid(lines, reported))
+    )
 
 
-def _line_otherwise(line: str, told: Mapping[str, Any]) -> str:
+def _line_otherwise(line: str, reported: Mapping[str, Any]) -> str:
     """That a line says another thing than machines get."""
     for pattern, name in NUMBERS:
         number = pattern.fullmatch(line)
-        if number is not None and int(number[1]) != told[name]:
-            return f"'{line}' for {told[name]}"
+        if number is not None and int(number[1]) != reported[name]:
+            return f"'{line}' for {reported[name]}"
     for begin, name in LISTS.items():
         if line.startswith(begin):
             listed = [each for each in REMARK.sub("", line.removeprefix(begin)).split(", ") if each != "none"]
-            if listed != list(told[name]):
-                return f"'{line}' for {', '.join(told[name]) or 'none'}"
+            if listed != list(reported[name]):
+                return f"'{line}' for {', '.join(reported[name]) or 'none'}"
     if line.startswith("structure: "):
         extra = EXTRA.search(line)
-        if (int(extra[1]) if extra else 0) != told["indeterminacy"]:
-            return f"'{line}' for {told['indeterminacy']} reactions too many"
+        if (int(extra[1]) if extra else 0) != reported["indeterminacy"]:
+            return f"'{line}' for {reported['indeterminacy']} reactions too many"
     return ""
 
 
-def _unsaid(lines: Sequence[str], told: Mapping[str, Any]) -> Iterator[str]:
+def _unsaid(lines: Sequence[str], reported: Mapping[str, Any]) -> Iterator[str]:
     """That a redundant row is not named, or one that is not redundant."""
     rows = [row for row in map(REDUNDANT.fullmatch, lines) if row is not None]
-    said = [(row[2], int(row[1]), [] if row[3] in NO_TIES else row[3].split(", ")) for row in rows]
-    due = [(row["tie"], row["row"], row["follows_from"]) for row in told["redundant"]]
-    if told["degrees_of_freedom"] is not None and said != due:
+    said = [(row[2], int(row[1]), [] if row[3] in NO_CONSTRAINTS else row[3].split(", ")) for row in rows]
+    due = [(row["tie"], row["row"], row["follows_from"]) for row in reported["redundant"]]
+    if reported["degrees_of_freedom"] is not None and said != due:
         yield f"redundant rows {said} are printed for {due}"
 
 
@@ -150,16 +155,16 @@ NUMBERS = tuple(
     )
 )
 LISTS = {
-    "ties that close: ": "closing",
-    "ties that only react: ": "reaction_only",
+    "constraints that close: ": "closing",
+    "constraints that only react: ": "reaction_only",
     "bodies: ": "bodies",
     "coordinates: ": "coordinates",
     "open at the start: ": "open_at_start",
     "parameters without a value: ": "missing_values",
 }
 REMARK = re.compile(r" \((?:rows? \d[^)]*|driven|dependent)\)")
-REDUNDANT = re.compile(r"redundant: row (\d+) of tie '(.*)', it follows from (.*)")
-NO_TIES = ("the joints", "its other rows")
+REDUNDANT = re.compile(r"redundant: row (\d+) of constraint '(.*)', it follows from (.*)")
+NO_CONSTRAINTS = ("the joints", "its other rows")
 EXTRA = re.compile(r"(\d+) reactions? more than independent ones")
 
 
@@ -168,28 +173,28 @@ def _summed(formula: str) -> int:
     return sum((-1 if sign == "-" else 1) * int(factor or 1) * int(many) for sign, factor, many in terms)
 
 
-def _by_differences(ties: Ties, state: State, found: Freedom) -> str:
-    scope = ties.motion.scope
-    still = [row for row in ties.rows if row.identical and row.gap is not None]
-    for row, line in zip(still, _lines(ties, still, state), strict=True):
+def _by_differences(constraints: Constraints, state: State, found: Freedom) -> str:
+    scope = constraints.motion.scope
+    still = [row for row in constraints.rows if row.identical and row.gap is not None]
+    for row, line in zip(still, _lines(constraints, still, state), strict=True):
         if max(map(abs, line), default=0.0) > DIFFERENCE_AT_50:
-            return f"row {row.number} of '{row.tie}' restricts the motion, and is told only to react"
-    rows = [row for row in ties.rows if not row.identical]
-    J = {(row.tie, row.number): line for row, line in zip(rows, _lines(ties, rows, state), strict=True)}
+            return f"row {row.number} of '{row.constraint}' restricts the motion, and is told only to react"
+    rows = [row for row in constraints.rows if not row.identical]
+    J = {(row.constraint, row.number): line for row, line in zip(rows, _lines(constraints, rows, state), strict=True)}
     whole = _rank(J.values())
     f = len(scope.symbols.u) - len(scope.quaternions) - whole
     if f != found.by_rank:
         return f"by differences there are {f} degrees of freedom, not {found.by_rank}"
-    redundant: dict[RowName, tuple[str, ...]] = {(r.tie, r.number): r.others for r in found.redundant}
+    redundant: dict[RowName, tuple[str, ...]] = {(r.constraint, r.number): r.others for r in found.redundant}
     kept = [line for name, line in J.items() if name not in redundant]
     if _rank(kept) != whole or len(kept) != whole:
         return (
             f"{len(J) - whole} rows are redundant by differences, and without those that are named {_rank(kept)} remain"
         )
-    for (tie, number), others in redundant.items():
-        near = [line for name, line in J.items() if name[0] in (tie, *others) and name not in redundant]
-        if (tie, number) in J and _rank([*near, J[tie, number]]) != _rank(near):
-            return f"row {number} of '{tie}' does not follow from {', '.join(others) or 'its own rows'}"
+    for (constraint, number), others in redundant.items():
+        near = [line for name, line in J.items() if name[0] in (constraint, *others) and name not in redundant]
+        if (constraint, number) in J and _rank([*near, J[constraint, number]]) != _rank(near):
+            return f"row {number} of '{constraint}' does not follow from {', '.join(others) or 'its own rows'}"
     return ""
 
 
@@ -197,9 +202,9 @@ def _rank(lines: Iterable[Sequence[float]]) -> int:
     return rank(np.array(list(lines), dtype=float))
 
 
-def _lines(ties: Ties, rows: Sequence[Row], state: State) -> list[list[float]]:
+def _lines(constraints: Constraints, rows: Sequence[Row], state: State) -> list[list[float]]:
     """What each row has for each speed."""
-    scope, lines = ties.motion.scope, [list[float]() for _ in rows]
+    scope, lines = constraints.motion.scope, [list[float]() for _ in rows]
     places = [k for k, row in enumerate(rows) if row.gap is not None]
     gaps = tuple(row.gap for row in rows if row.gap is not None)
     others = tuple(row.velocity for row in rows if row.gap is None)
@@ -209,7 +214,7 @@ def _lines(ties: Ties, rows: Sequence[Row], state: State) -> list[list[float]]:
     rest = evaluate(others, still, fifty_digits())
     for k, u in enumerate(scope.symbols.u):
         moved = [flat[n * i + k] for i in range(len(scope.N))]
-        ways = [{**state, **_moved(ties, state, [h * x for x in moved])} for h in (STEP, -STEP)]
+        ways = [{**state, **_moved(constraints, state, [h * x for x in moved])} for h in (STEP, -STEP)]
         late, early = (evaluate(gaps, way, fifty_digits()) for way in ways)
         slopes = dict(zip(places, ((a - b) / (2 * STEP) for a, b in zip(late, early, strict=True)), strict=True))
         one = iter(evaluate(others, {**still, u: 1 + 0 * STEP}, fifty_digits()))
@@ -219,21 +224,21 @@ def _lines(ties: Ties, rows: Sequence[Row], state: State) -> list[list[float]]:
     return lines
 
 
-def _moved(ties: Ties, state: State, by: Sequence[Any]) -> State:
-    return {q: state[q] + x for q, x in zip(ties.motion.scope.symbols.q, by, strict=True)}
+def _moved(constraints: Constraints, state: State, by: Sequence[Any]) -> State:
+    return {q: state[q] + x for q, x in zip(constraints.motion.scope.symbols.q, by, strict=True)}
 
 
-# -------- kept ties -------------------------------------------------------------------------------------------
+# -------- kept constraints -------------------------------------------------------------------------------------------
 # System, state -> whether what stays as at the start is closed there.
 #
 # phi(q_0, t = 0) = 0,   q_0 as the coordinates are declared to start, quaternions of length 1
 
 
 def rows_that_stay(system: System) -> tuple[tuple[Row, Scalar], ...]:
-    """The rows whose ties say only that something stays as it is at the start, with their gaps."""
-    ties = system.scope.model.constraints
-    named = ((row, row.gap) for row in system.ties.rows if row.tie in ties and row.gap is not None)
-    return tuple((row, gap) for row, gap in named if ties[row.tie].stays(row.component))
+    """The rows whose constraints say only that something stays as it is at the start, with their gaps."""
+    constraints = system.scope.model.constraints
+    named = ((row, row.gap) for row in system.constraints.rows if row.constraint in constraints and row.gap is not None)
+    return tuple((row, gap) for row, gap in named if constraints[row.constraint].stays(row.component))
 
 
 def open_at_start(system: System, state: State) -> str:
@@ -246,7 +251,7 @@ def open_at_start(system: System, state: State) -> str:
     kept = rows_that_stay(system)
     for (row, _), gap in zip(kept, evaluate([gap for _, gap in kept], begun, fifty_digits()), strict=True):
         if abs(gap) > ZERO_AT_50 * (1 + max(map(abs, begun.values()))):
-            return f"'{row.tie}' is open by {float(gap):.10g} where it starts"
+            return f"'{row.constraint}' is open by {float(gap):.10g} where it starts"
     return ""
 
 
@@ -257,7 +262,7 @@ def springs_of_the_start(system: System) -> tuple[Applied, ...]:
 
 
 def pulled_at_start(system: System) -> str:
-    """Which of them is not slack where the motion starts, all ties closed; "" where all are.
+    """Which of them is not slack where the motion starts, all constraints closed; "" where all are.
 
     Raises:
         NoValue: the start is not known in numbers.
@@ -291,7 +296,8 @@ def _declared_start(scope: Scope, state: State) -> dict[Any, Any]:
 
 
 # -------- nearby ----------------------------------------------------------------------------------------------
-# Equations, a state -> states beside it that the ties allow, and how the system moves on from each, at 50 digits.
+# Equations, a state -> states beside it that the constraints allow, and how the system moves on from each, at 50
+# digits.
 #
 #     phi(q) = 0,   J u + sigma = 0               dependent coordinates and speeds follow the independent ones
 #     M a - J^T lam = forcing,   J a + gamma = 0
@@ -383,10 +389,10 @@ class Nearby:
         return evaluate(tuple(scalars), state, fifty_digits())
 
     def state(self, given: Mapping[Node, Any]) -> Numbers50:
-        """The state in which some are as `given`, the dependent ones as the ties say.
+        """The state in which some are as `given`, the dependent ones as the constraints say.
 
         Raises:
-            NoValue: the ties do not close there, or leave a coordinate or speed open.
+            NoValue: the constraints do not close there, or leave a coordinate or speed open.
         """
         state = self._closed({**self.numbers, **given})
         if not self._dependent_u:
@@ -401,7 +407,7 @@ class Nearby:
         ]
         found = solved_nearby(rows)
         if found is None:
-            raise NoValue("the ties do not determine the dependent speeds")
+            raise NoValue("the constraints do not determine the dependent speeds")
         return {**state, **dict(zip(self._dependent_u, found, strict=True))}
 
     def going(self, state: Numbers50) -> Going:
@@ -429,7 +435,7 @@ class Nearby:
             dict(zip(symbols.u, a, strict=True)),
         )
 
-    # -- the ties --------------------------------------------------------------------------------------------
+    # -- the constraints --------------------------------------------------------------------------------------------
 
     def _rows(self, state: Numbers50, bias: Sequence[Scalar]) -> tuple[list[DigitRow], DigitRow]:
         """(J, a bias of it) at a state."""
@@ -462,11 +468,11 @@ class Nearby:
             open_ = self.at(self.relations, state)
             step = solved_nearby([[*row, -x] for row, x in zip(self._slopes, open_, strict=True)])
             if step is None:
-                raise NoValue("the ties do not determine the dependent coordinates")
+                raise NoValue("the constraints do not determine the dependent coordinates")
             state = {**state, **{q: state[q] + d for q, d in zip(self._dependent_q, step, strict=True)}}
             if all(abs(d) < MET_AT_50 * (1 + abs(state[q])) for q, d in zip(self._dependent_q, step, strict=True)):
                 return state
-        raise NoValue("the ties do not close beside the state")
+        raise NoValue("the constraints do not close beside the state")
 
 
 def _first(rows: Sequence[Sequence[Any]], n: int) -> DigitRow | None:

@@ -1,7 +1,7 @@
 """Small motions -> what motions beside their reference do, by differences of the equations of motion.
 
 A motion starts at q_0 + h d, u_0 + h e, inputs w_0 + h f; the equations of motion say how it goes on. Nothing of how
-ties are taken out is used, and no derivative.
+constraints are taken out is used, and no derivative.
 """
 
 from __future__ import annotations
@@ -12,13 +12,13 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.reduction import NAME
 from eomgen.model.joints.ball import rotation_of
 from eomgen.model.values import quaternions_of
-from eomgen.proof.freedoms import Going, Nearby, Numbers50
+from eomgen.proof.degrees_of_freedom import Going, Nearby, Numbers50
 from eomgen.proof.in_numbers import STEP
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Matrix, apply, cross, plus, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import fifty_digits
@@ -83,7 +83,7 @@ class Differences:
 
     @cached_property
     def origin(self) -> Going:
-        """The reference, its ties closed to 50 digits."""
+        """The reference, its constraints closed to 50 digits."""
         return self.nearby.going(self.nearby.state({}))
 
     @cached_property

@@ -1,6 +1,6 @@
 """SmallMotions, a parameter -> how the reference and the equations of small motions change with it.
 
-The laws are those of the numbers, over values that carry their slopes: y + y_p dp. Of a place of rest
+The laws are those of the numbers, over values that carry their slopes: y + y_p dp. Of an equilibrium
 
     Z^T (M a - forcing) = 0,   G = 0:   K dq_i + d/dp Z^T (M a - forcing) = 0,   q' = P dq_i + what the relations ask
 
@@ -21,12 +21,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.first_order import MatrixEntry, Numbers, at, matrix_solution, negative
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM, ReferenceMotion
 from eomgen.mechanics.start.exact import Seeds
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -149,7 +149,7 @@ class ParameterSlopes:
         if not reference.is_exact:
             raise DerivationError(
                 "a steady motion without a closed form has no exact slope by a parameter",
-                mend="take a sweep over the parameter",
+                fix="take a sweep over the parameter",
             )
         nodes = (*symbols.q, *symbols.u)
         rates = tangent(tuple(reference.exact[x] for x in nodes), self.parameters)
@@ -168,9 +168,9 @@ class ParameterSlopes:
         aside = np.zeros(len(reference.system.symbols.q))
         if choice.relations:
             part = WithSlopes(reference.numbers, here)
-            asked = part.of([first.relations[i] for i in choice.relations if i < len(first.relations)])
+            requested = part.of([first.relations[i] for i in choice.relations if i < len(first.relations)])
             rows = at(Numbers(reference.numbers), [first.derivatives["G"][i] for i in choice.relations])
-            pushed = [[sloped(x).slope] for x in asked] + [[0.0]] * (len(choice.relations) - len(asked))
+            pushed = [[sloped(x).slope] for x in requested] + [[0.0]] * (len(choice.relations) - len(requested))
             G_d = [[row[k] for k in choice.dq] for row in rows]
             aside[list(choice.dq)] = floats(matrix_solution(Numbers({}), G_d, negative(pushed)))[:, 0]
         moved = {x: Fraction(slope) for x, slope in zip(reference.system.symbols.q, aside.tolist(), strict=True)}
@@ -181,8 +181,8 @@ class ParameterSlopes:
         step = -np.linalg.lstsq(K, left, rcond=RANK)[0]
         if np.max(abs(K @ step + left), initial=0.0) > CARRIED * np.max(abs(left), initial=0.0):
             raise DerivationError(
-                "the place of rest ends, or forks, at these values: it has no slope",
-                mend="take other values of the parameters",
+                "the equilibrium ends, or forks, at these values: it has no slope",
+                fix="take other values of the parameters",
             )
         found = aside + floats(reducing.P) @ step
         return np.where(abs(found) < COORDINATE_AT_50, 0.0, found)
@@ -220,7 +220,7 @@ class ParameterSlopes:
         if abs(l @ r) < NEARLY_SINGULAR or np.sum(abs(values - values[k]) <= NEARLY_SINGULAR * abs(values[k])) > 1:
             raise DerivationError(
                 "several motions have this frequency: each changes in its own way",
-                mend="take values at which they differ",
+                fix="take values at which they differ",
             )
         return complex(l @ change @ r / (l @ r))
 

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.programs import determinate
+from eomgen.frozen import dataclass
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model
 from eomgen.model.units import OUTPUT
@@ -24,7 +25,6 @@ from eomgen.proof.at_a_state import NumericState, off_by
 from eomgen.proof.check import Check, Tally, checked, differing
 from eomgen.proof.emitted_code import WORK
 from eomgen.proof.instant import second_definition
-from eomgen.records import dataclass
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.node import Scalar
@@ -41,7 +41,7 @@ _HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
 
 
 @dataclass(frozen=True)
-class ToldRun:
+class ReportedRun:
     """What is told of a run.
 
     Args:
@@ -57,28 +57,28 @@ class ToldRun:
     table: tuple[Sequence[str], Sequence[Sequence[str]]] | None = None
 
 
-def run_told(run: Trajectory, model: Model, told: ToldRun) -> Iterator[Check]:
+def run_reported(run: Trajectory, model: Model, reported: ReportedRun) -> Iterator[Check]:
     """Everything that is told of a run, against its states."""
-    return _RunTold(run, model, told).checks()
+    return _RunReported(run, model, reported).checks()
 
 
 @dataclass(frozen=True)
-class _RunTold:
+class _RunReported:
     run: Trajectory
     model: Model
-    told: ToldRun
+    reported: ReportedRun
 
     def checks(self) -> Iterator[Check]:
         tally = Tally(NAME, HOW)
-        for head, *texts in self.told.rows:
+        for head, *texts in self.reported.rows:
             tally.add(head, partial(self._ends, head, texts))
         tally.add("the columns told", self._complete)
         for name in self.run.coordinates:
             if f"{name}'" in self.own and len(self.run.t) > FINE:
                 tally.add(f"{name}'", partial(self._is_rate, name))
-        if self.told.table is not None:
-            for k, head in enumerate(self.told.table[0]):
-                tally.add(f"column {head}", partial(self._column, head, [row[k] for row in self.told.table[1]]))
+        if self.reported.table is not None:
+            for k, head in enumerate(self.reported.table[0]):
+                tally.add(f"column {head}", partial(self._column, head, [row[k] for row in self.reported.table[1]]))
         for what, wrong in self._of_entries():
             tally.add(what, wrong)
         if self.run.energy is not None and len(self.run.t):
@@ -136,7 +136,7 @@ class _RunTold:
 
     def _complete(self) -> str:
         """No column is left out, and none told twice."""
-        named = [match["name"] for head, *_ in self.told.rows if (match := _HEAD.fullmatch(head))]
+        named = [match["name"] for head, *_ in self.reported.rows if (match := _HEAD.fullmatch(head))]
         if len(self.run.t) and sorted(named) != sorted(self.own):
             return ", ".join(set(self.own).symmetric_difference(named)) or "one is told twice"
         return ""
@@ -178,41 +178,41 @@ class _RunTold:
         raise NoValue("no phase is long enough")
 
     def _of_entries(self) -> Iterator[tuple[str, Callable[[], str]]]:
-        told, own = self.told.entries, self.own
+        reported, own = self.reported.entries, self.own
         for key, place in (("start", 0), ("end", -1)):
-            for name, x in told.get(key, {}).items():
+            for name, x in reported.get(key, {}).items():
                 yield f"{key} of {name}", partial(self._entry, name, [x], [place])
-        for name, column in told.get("trajectory", {}).items():
+        for name, column in reported.get("trajectory", {}).items():
             places = [0, len(column) // 2, -1] if len(column) else []
             yield f"trajectory of {name}", partial(self._entry, name, [column[k] for k in places], places)
-        if told and len(self.run.t):
-            yield "time", lambda: _apart(told["time"], self.run.phases[-1].end, COMPUTED)
-            yield "energy drift", lambda: _none_apart(told["energy_drift"], self.run.drift)
-            yield "gap", lambda: _none_apart(told["gap"], self.run.gap)
-            yield "gap rate", lambda: _none_apart(told["gap_rate"], self.run.gap_rate)
-        for name, value in told.get("quantities", {}).items():
+        if reported and len(self.run.t):
+            yield "time", lambda: _apart(reported["time"], self.run.phases[-1].end, COMPUTED)
+            yield "energy drift", lambda: _none_apart(reported["energy_drift"], self.run.drift)
+            yield "gap", lambda: _none_apart(reported["gap"], self.run.gap)
+            yield "gap rate", lambda: _none_apart(reported["gap_rate"], self.run.gap_rate)
+        for name, value in reported.get("quantities", {}).items():
             yield f"{name} for machines", partial(self._quantity, name, value)
-        for name in self.run.quantities if self.told.whole or told else ():
-            rows = [row for row in self.told.whole if (m := _HEAD.fullmatch(row[0])) and m["name"] == name]
+        for name in self.run.quantities if self.reported.whole or reported else ():
+            rows = [row for row in self.reported.whole if (m := _HEAD.fullmatch(row[0])) and m["name"] == name]
             yield f"{name} of the run", partial(self._rows_of, name, rows)
-        if told and len(told.get("trajectory", own)) != len(own):
-            yield "trajectory", lambda: f"{len(told['trajectory'])} columns for {len(own)}"
+        if reported and len(reported.get("trajectory", own)) != len(own):
+            yield "trajectory", lambda: f"{len(reported['trajectory'])} columns for {len(own)}"
 
     def _entry(self, name: str, values: Sequence[float | None], places: Sequence[int]) -> str:
         if name not in self.own:
             return "there is no such column"
         return next(filter(None, (_none_apart(x, self.own[name][k]) for x, k in zip(values, places, strict=True))), "")
 
-    def _quantity(self, name: str, told: Mapping[str, Any]) -> str:
+    def _quantity(self, name: str, reported: Mapping[str, Any]) -> str:
         found = self.run.quantities[name]
-        size = parse_unit(told["unit"]).size if told["unit"] else 1.0
-        values = told["value"] if isinstance(told["value"], list) else [told["value"]]
+        size = parse_unit(reported["unit"]).size if reported["unit"] else 1.0
+        values = reported["value"] if isinstance(reported["value"], list) else [reported["value"]]
         rights = found.value if isinstance(found.value, tuple) else (found.value,)
-        if len(values) != len(rights) or len(told["t"]) != len(found.t):
+        if len(values) != len(rights) or len(reported["t"]) != len(found.t):
             return "another number of values"
         pairs = [*zip(values, rights, strict=True)]
         wrong = [_none_apart(None if x is None else x * size, right) for x, right in pairs]
-        wrong += [_apart(x, right, COMPUTED) for x, right in zip(told["t"], found.t, strict=True)]
+        wrong += [_apart(x, right, COMPUTED) for x, right in zip(reported["t"], found.t, strict=True)]
         return next(filter(None, wrong), "")
 
     def _rows_of(self, name: str, rows: Sequence[Sequence[str]]) -> str:

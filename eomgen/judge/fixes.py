@@ -13,11 +13,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
+from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
 from eomgen.judge.contributions import ANGLES, FEW, Contribution
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import PLAINEST, Corruption, Explanation, Samples, Share, samples_of
+from eomgen.judge.diagnosis import PLAINEST, Explanation, Mistake, Samples, Share, samples_of
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import (
     Amended,
@@ -32,7 +33,6 @@ from eomgen.judge.terms import (
     wrong_power,
 )
 from eomgen.judge.truth import truth_of
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Call, Expression, over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -48,7 +48,7 @@ ENERGIES = {"kinetic_energy": "T", "potential_energy": "V"}
 
 
 @dataclass(frozen=True)
-class Mends:
+class Fixes:
     """An equation of somebody that one change would make right."""
 
     author: Authored
@@ -76,38 +76,38 @@ class Mends:
     def _explanation(self, node: Node, amended: Amended) -> Explanation | None:
         """The change, where it makes the equation right, exactly."""
         difference, case = self.author.difference, self.author.case
-        (mended,) = substituted((difference,), {node: amended.to})
-        right, wrong = substituted((mended, difference), self.author.meant)
+        (corrected,) = substituted((difference,), {node: amended.to})
+        right, wrong = substituted((corrected, difference), self.author.meant)
         still = self.author.is_still
         found = is_zero_everywhere(case.system, right) if still else truth_of(case, right, self.author.kind)
         if not found.holds:
             return None
-        share = self._share(node, amended, mended)
+        share = self._share(node, amended, corrected)
         self._by[share] = wrong - right
         return Explanation((share,), 0, PLAINEST + amended.cost)
 
     # -- what is told ----------------------------------------------------------------------------
 
-    def _share(self, node: Node, amended: Amended, mended: Scalar) -> Share:
+    def _share(self, node: Node, amended: Amended, corrected: Scalar) -> Share:
         product, term = self._around(node)
         there, should = (self.author.plain(x) for x in (product, substituted((product,), {node: amended.to})[0]))
         term = product if product is not node else term
         around = self.author.plain(substituted((term,), {node: amended.to})[0]) if is_zero(should) else should
-        owners = self._owners(mended, around)
+        owners = self._owners(corrected, around)
         named = " and ".join(part.name for part in owners)
         body, force = (owners[0].body, owners[0].force) if len(owners) == 1 else ("", "")
         (ratio,) = (0,) if is_zero(should) else self.author.case.edits.written((over(there, should),))
         if type(ratio) is not Node and ratio not in (0, 1):
             rates = [x for x in symbols_of((there,)) if x.name.endswith("'")]
             name, kind = named or f"the term {self._text(product)}", "coriolis" if len(rates) == 2 else "factor"
-            return Share(Corruption(name, kind, (should,), amended.cost, body, force), Fraction(ratio))
+            return Share(Mistake(name, kind, (should,), amended.cost, body, force), Fraction(ratio))
         where = "" if term is node or len(self._text(term)) > SHORT else f"the term {self._text(term)}"
-        told = self._told(self.author.plain(node), self.author.plain(amended.to), there)
+        reported = self._reported(self.author.plain(node), self.author.plain(amended.to), there)
         place = ", ".join(filter(None, (named, where)))
-        text = f"in {place}{',' if named and where else ''} {told}" if place else told
+        text = f"in {place}{',' if named and where else ''} {reported}" if place else reported
         row = (there if is_zero(should) else should,)
-        corruption = Corruption(place or told, amended.kind, row, amended.cost, body, force, open=False, text=text)
-        return Share(corruption, Fraction(1))
+        mistake = Mistake(place or reported, amended.kind, row, amended.cost, body, force, open=False, text=text)
+        return Share(mistake, Fraction(1))
 
     def _around(self, node: Node) -> tuple[Node, Node]:
         """The product, and the term that is told, in which a node stands."""
@@ -124,7 +124,7 @@ class Mends:
     def _text(self, x: Scalar) -> str:
         return short_text(self.author.plain(x), self.author.case.system.scope.positive)
 
-    def _told(self, there: Scalar, should: Scalar, around: Scalar) -> str:
+    def _reported(self, there: Scalar, should: Scalar, around: Scalar) -> str:
         """What is wrong where one thing stands and another is meant, in a product."""
         if is_zero(should):
             return f"{term_text(there)} does not belong there"
@@ -134,21 +134,21 @@ class Mends:
         if number in (1, -1):
             (x, k), *rest = sorted(powers.items(), key=lambda each: -each[1])
             if not rest:
-                told = wrong_power(term_text(x), held.get(x, Fraction(0)) + k, held.get(x, Fraction(0)))
-                return told if number == 1 else f"{told}, and the sign is wrong"
+                reported = wrong_power(term_text(x), held.get(x, Fraction(0)) + k, held.get(x, Fraction(0)))
+                return reported if number == 1 else f"{reported}, and the sign is wrong"
             ((y, n), *more) = rest
             if number == 1 and not more and n == -k and held.get(y, 0) >= k:
                 there, should = power(y, k), power(x, k)
         return f"{term_text(there)} stands where {term_text(should)} is meant"
 
-    def _owners(self, mended: Scalar, around: Scalar) -> Sequence[Contribution]:
+    def _owners(self, corrected: Scalar, around: Scalar) -> Sequence[Contribution]:
         """The contributions in which the change is made: those whose terms, or else names, are the ones meant."""
         case, names = self.author.case, {call.name for call in self.author.written.calls}
         what = next((letter for name, letter in ENERGIES.items() if {name} == names), "motion")
         found: dict[str, Contribution] = {}
         if what != "motion" or (self.author.kind == "motion" and not names):
             called = {x: 0 for x in self.author.meant if x.name.endswith(")")}
-            sides = substituted((mended, self.author.difference), {**self.author.meant, **called})
+            sides = substituted((corrected, self.author.difference), {**self.author.meant, **called})
             found = self._of_terms(what, *sides)
         if 0 < len(found) <= FEW:
             return tuple(found.values())
@@ -158,7 +158,7 @@ class Mends:
         """Those of which a term is what the change makes, where most of the equation is made of such terms."""
         samples, positive = self.author.samples, self.author.case.system.scope.positive
         mine, before = terms_of(right, positive), terms_of(wrong, positive)
-        known = self.author.case.corruptions(what)
+        known = self.author.case.mistakes(what)
         theirs = [(part, x) for part in known.whole for row in known.rows(part) for x in terms_of(row, positive)]
         if samples is None or not mine or not theirs or len(mine) * len(theirs) > MOST_PAIRS:
             return {}
@@ -267,10 +267,10 @@ class Authored:
 
     @cached_property
     def samples(self) -> Samples | None:
-        case, ties = self.case, self.case.system.ties
+        case, constraints = self.case, self.case.system.constraints
         places = PLACES_OF_MOTION if self.kind == "motion" else PLACES
-        tied = bool(ties.rows) and not self.is_still
-        found = samples_of(case.system, tuple(self.meant.values()), on_ties=tied, places=places)
+        constrained = bool(constraints.rows) and not self.is_still
+        found = samples_of(case.system, tuple(self.meant.values()), on_constraints=constrained, places=places)
         if found is None or self.is_still:
             return found
         by_integrals = (case.speeds or case.by_momenta) if self.kind == "law" else None

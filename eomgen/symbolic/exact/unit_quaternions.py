@@ -15,7 +15,7 @@ from eomgen.symbolic.exact.rational_polynomial import Exponents, PowerSum
 from eomgen.symbolic.exact.terms import Key, Terms
 from eomgen.symbolic.expression.numbers import Number, tidy
 
-SphereSymbols = tuple[int, ...]  # the symbols, by index
+QuaternionSymbols = tuple[int, ...]  # the symbols, by index
 
 LARGEST_DEGREE = 12  # of a sum that is looked at in other forms
 
@@ -63,14 +63,14 @@ def _raised(exponents: Exponents, places: Sequence[int], powers: Sequence[int]) 
     return tuple(raised)
 
 
-def reduced_on(sphere: SphereSymbols, terms: Terms) -> Terms:
+def reduced_on(sphere: QuaternionSymbols, terms: Terms) -> Terms:
     """The sum with the square of the sphere's first symbol used up."""
     if not any(atom == sphere[0] and e > 1 for monomial, _ in terms for atom, e in monomial):
         return terms
     return _by_parts(sphere, terms, lambda polynomial: with_square_replaced(polynomial, 0, range(len(sphere))))
 
 
-def shortest_on(sphere: SphereSymbols, terms: Terms) -> Terms:
+def shortest_on(sphere: QuaternionSymbols, terms: Terms) -> Terms:
     """The sum with as few terms as its forms on the sphere have, each monomial of the other symbols by itself."""
     return _by_parts(sphere, terms, _shortest)
 
@@ -84,7 +84,7 @@ def _shortest(polynomial: PowerSum) -> PowerSum:
     return min(forms, key=lambda form: (len(form), sum(map(sum, form))))
 
 
-def _by_parts(sphere: SphereSymbols, terms: Terms, change: Callable[[PowerSum], PowerSum]) -> Terms:
+def _by_parts(sphere: QuaternionSymbols, terms: Terms, change: Callable[[PowerSum], PowerSum]) -> Terms:
     """The sum, of which `change` replaces what each product of other symbols and waves is multiplied by."""
     parts: dict[Key, dict[Exponents, Number]] = {}
     for (monomial, w), c in terms.items():

@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Check, Tally, attempted, checked, differing, first_wrong
 from eomgen.proof.reports_read import ColouredPoints, DrawnPanel, said_of
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.text import LONGEST, parse
 from eomgen.symbolic.expression.units import parse_unit
@@ -60,7 +60,9 @@ class PrintedModes:
     conditions: Sequence[float] = ()
 
 
-def small_motions_told(entries: Mapping[str, Any], printed: PrintedModes, values: Mapping[str, Any]) -> Iterator[Check]:
+def small_motions_reported(
+    entries: Mapping[str, Any], printed: PrintedModes, values: Mapping[str, Any]
+) -> Iterator[Check]:
     """Whatever has numbers.
 
     Args:
@@ -69,15 +71,15 @@ def small_motions_told(entries: Mapping[str, Any], printed: PrintedModes, values
     """
     if entries["state_matrix"] is None:
         return
-    told = ToldMotions(entries, printed, {name: float(x) for name, x in values.items()})
+    reported = ReportedMotions(entries, printed, {name: float(x) for name, x in values.items()})
     tally = Tally(NAME, HOW)
-    for what, wrong in told.everything():
+    for what, wrong in reported.everything():
         tally.add(what, wrong)
     yield from tally.checks()
 
 
 @dataclass(frozen=True)
-class ToldMotions:
+class ReportedMotions:
     """Small motions as machines get them: their matrices by name, in the shapes that they should have."""
 
     entries: Mapping[str, Any]
@@ -122,12 +124,12 @@ class ToldMotions:
         size = float(np.max(np.abs(numbers), initial=0.0))
         for row, right in zip(entry["exact"], entry["value"], strict=True):
             for text, number in zip(row, right, strict=True):
-                found = self._worth(text, self.values)
+                found = self._value(text, self.values)
                 if abs(found - number) > COMPUTED * (size + abs(found)):
                     return f"{text[:60]}: {differing(found, number) or found}"
         return ""
 
-    def _worth(self, text: str, values: Mapping[str, float]) -> float:
+    def _value(self, text: str, values: Mapping[str, float]) -> float:
         """A text of the grammar in numbers.
 
         Raises:
@@ -212,24 +214,27 @@ class ToldMotions:
         return ""
 
     def _printed_conditions(self) -> str:
-        told = self.entries["conditions"]
-        if len(told) != len(self.printed.conditions):
-            return f"{len(self.printed.conditions)} are printed of {len(told)}" if self.printed.conditions else ""
-        for text, number in zip(told, self.printed.conditions, strict=True):
-            if not math.isnan(number) and (wrong := differing(number, self._worth(text, self.values), SEVEN_DIGITS)):
+        reported = self.entries["conditions"]
+        if len(reported) != len(self.printed.conditions):
+            return f"{len(self.printed.conditions)} are printed of {len(reported)}" if self.printed.conditions else ""
+        for text, number in zip(reported, self.printed.conditions, strict=True):
+            if not math.isnan(number) and (wrong := differing(number, self._value(text, self.values), SEVEN_DIGITS)):
                 return wrong
         return ""
 
-    def _transfer(self, told: Mapping[str, Any]) -> str:
+    def _transfer(self, reported: Mapping[str, Any]) -> str:
         """(s 1 - A)^-1 B at a number s."""
-        i, j = self.entries["coordinates"].index(told["coordinate"]), self.entries["inputs"].index(told["input"])
+        i, j = (
+            self.entries["coordinates"].index(reported["coordinate"]),
+            self.entries["inputs"].index(reported["input"]),
+        )
         B = np.array(self.entries["input_matrix"]).astype(complex)
         sizes = abs(np.linalg.eigvals(self.A))
         rate = float(np.mean(sizes[sizes > 0])) if np.any(sizes > 0) else 1.0
         for s in (rate * (0.7 + 0.9j), rate * (-0.4 + 2.3j)):
             answers = np.linalg.solve(s * np.eye(len(self.A)) - self.A, B)[:, j]
             above, below = (
-                sum(self._worth(text, self.values) * s**k for k, text in enumerate(told[part]))
+                sum(self._value(text, self.values) * s**k for k, text in enumerate(reported[part]))
                 for part in ("numerator", "denominator")
             )
             if abs(above / below - answers[i]) > SAME_PLACE * abs(answers).max():
@@ -299,7 +304,7 @@ def responses_drawn(entries: Mapping[str, Any], panels: Sequence[DrawnPanel], le
     Args:
         letters: how the names of coordinates and inputs are set.
     """
-    drawn = _Drawn(ToldMotions(entries, PrintedModes({}), {}), letters)
+    drawn = _Drawn(ReportedMotions(entries, PrintedModes({}), {}), letters)
     return attempted(DRAWN, BY_PENCIL, lambda: drawn.wrong_responses(panels))
 
 
@@ -311,7 +316,7 @@ def roots_drawn(
     Args:
         letters: how the names of parameters are set.
     """
-    drawn = _Drawn(ToldMotions(entries, PrintedModes({}), {}), letters)
+    drawn = _Drawn(ReportedMotions(entries, PrintedModes({}), {}), letters)
     return attempted(DRAWN, BY_PENCIL, lambda: drawn.wrong_roots(panels, model))
 
 
@@ -341,13 +346,13 @@ class Pencil:
 
 @dataclass(frozen=True)
 class _Drawn:
-    told: ToldMotions
+    reported: ReportedMotions
     letters: Mapping[str, str]
 
     def pencil(self, matrix: Callable[[str], np.ndarray]) -> Pencil:
         """By matrices as they are named."""
         M, C, K, E, F = map(matrix, ("mass", "rates", "stiffness", "kinematic_rates", "kinematic_places"))
-        if self.told.entries["second_order"]:
+        if self.reported.entries["second_order"]:
             if F.any():
                 raise NoValue("rates have parts along the places")
             C = C @ E
@@ -358,7 +363,7 @@ class _Drawn:
     # -- Bode's diagrams -----------------------------------------------------------------------------------
 
     def wrong_responses(self, panels: Sequence[DrawnPanel]) -> str:
-        entries = self.told.entries
+        entries = self.reported.entries
         sizes, phases = panels
         if (sizes.scales, phases.scales) != (("log", "log"), ("log", "linear")) or sizes.hidden or phases.hidden:
             return "the axes are not those of the curves"
@@ -368,8 +373,8 @@ class _Drawn:
             for k, w in enumerate(entries["inputs"])
         }
         omega = sizes.curves[0].places[:, 0] if sizes.curves else np.ones(1)
-        pencil, B = self.pencil(self.told.matrix), self.told.matrix("input")
-        right = np.concatenate([np.zeros((self.told.m, B.shape[1])), B])
+        pencil, B = self.pencil(self.reported.matrix), self.reported.matrix("input")
+        right = np.concatenate([np.zeros((self.reported.m, B.shape[1])), B])
         answers, rounding = pencil.answers(omega, right)
         of_colour = {curve.color: curve.places for curve in phases.curves}
         for curve in sizes.curves:
@@ -421,11 +426,11 @@ class _Drawn:
         """A matrix at other values of the parameters."""
         values = {x: float(value) for x, value in known.items()} | {"pi": math.pi}
         rows = [[float(x.evaluate(values)) for x in row] for row in self._read(name)]
-        return self.told.shaped(name, np.array(rows, dtype=float))
+        return self.reported.shaped(name, np.array(rows, dtype=float))
 
     def _read(self, name: str) -> list[list[Expression]]:
         if name not in self._expressions:
-            exact = self.told.entries[name]["exact"]
+            exact = self.reported.entries[name]["exact"]
             texts = [text for row in exact for text in row]
             if sum(map(len, texts)) > 10 * LONGEST:
                 raise NoValue("too long to be read back")
@@ -476,12 +481,14 @@ def linear_entries(entries: Mapping[str, Any], A: np.ndarray, B: np.ndarray) -> 
         A, B: the state matrix and the input matrix, proven by themselves.
     """
     if entries["state_matrix"] is not None:
-        told = _Told(entries, A, B)
-        wrong = first_wrong((told.parts(), told.state_form(), told.state_space(), told.eigenvalues(), told.modes()))
+        reported = _Reported(entries, A, B)
+        wrong = first_wrong(
+            (reported.parts(), reported.state_form(), reported.state_space(), reported.eigenvalues(), reported.modes())
+        )
         yield checked("what is told machines is what its names say, by the state matrix", wrong, "floating point")
 
 
-class _Told:
+class _Reported:
     def __init__(self, entries: Mapping[str, Any], A: np.ndarray, B: np.ndarray) -> None:
         self.entries, self.A, self.B = entries, A, B
 
@@ -516,10 +523,10 @@ class _Told:
 
     def state_space(self) -> str:
         """y are the coordinates: C_y = [1 0], D_y = 0."""
-        told, n = self.entries["state_space"], len(self.entries["coordinates"])
+        reported, n = self.entries["state_space"], len(self.entries["coordinates"])
         due = {"A": self.A, "B": self.B, "C_y": np.eye(n, len(self.A)), "D_y": np.zeros((n, self.B.shape[1]))}
         for letter, right in due.items():
-            value = told[letter]["value"] if letter in told else None
+            value = reported[letter]["value"] if letter in reported else None
             if value is not None and right.size and away(np.array(value, dtype=float), right):
                 return f"{letter} of the state space is another one"
         return ""
@@ -536,9 +543,9 @@ class _Told:
     def modes(self) -> str:
         for k, mode in enumerate(self.entries["modes"], start=1):
             x, frequency = complex(*mode["eigenvalue"]), mode["frequency"].value
-            told = [frequency, mode["hertz"], mode["damping_ratio"]]
+            reported = [frequency, mode["hertz"], mode["damping_ratio"]]
             due = [x.imag, x.imag / math.tau, -x.real / abs(x) if x else 0.0] if x.imag else [0.0, 0.0, None]
-            for name, a, b in zip(("frequency", "hertz", "damping ratio"), told, due, strict=True):
+            for name, a, b in zip(("frequency", "hertz", "damping ratio"), reported, due, strict=True):
                 if a is not None and b is not None and abs(a - b) > SAME_PLACE * (1 + abs(x)):
                     return f"the {name} of mode {k} is {a:.10g} for {b:.10g}"
                 if x.imag and a is None:
@@ -556,8 +563,8 @@ class _Told:
         if said == "asymptotically stable" and not all(x.real < 0 for x in values):
             return "not all motions fade"
         swings = any(x.imag for x in growing)
-        told = {"flutter": swings, "divergence": bool(growing) and not swings}
-        return first_wrong(f"'{word}' of {growing}" for word, so in told.items() if (word in why) != so)
+        reported = {"flutter": swings, "divergence": bool(growing) and not swings}
+        return first_wrong(f"'{word}' of {growing}" for word, so in reported.items() if (word in why) != so)
 
 
 def away(found: np.ndarray, right: np.ndarray) -> bool:

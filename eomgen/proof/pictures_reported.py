@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.mechanics.kinematics.scene import SystemScene
@@ -29,8 +30,7 @@ from eomgen.model.shapes import Shape
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
-from eomgen.proof.run_told import state_of_row
-from eomgen.records import dataclass
+from eomgen.proof.run_reported import state_of_row
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue
@@ -44,12 +44,12 @@ Corners = tuple[np.ndarray, np.ndarray]
 
 
 @dataclass(frozen=True)
-class ToldArrow:
+class ReportedArrow:
     """An arrow.
 
     Args:
         role: "force" or "reaction".
-        of: the force, joint or tie that it stands for.
+        of: the force, joint or constraint that it stands for.
         begin, tip: its ends, d.
     """
 
@@ -60,7 +60,7 @@ class ToldArrow:
 
 
 @dataclass(frozen=True)
-class ToldPicture:
+class ReportedPicture:
     """What a picture shows at one state, places of the ground's axes, d = 2 or 3 each.
 
     Args:
@@ -78,7 +78,7 @@ class ToldPicture:
 
     bodies: Mapping[str, np.ndarray]
     ends: Mapping[str, tuple[np.ndarray, np.ndarray]]
-    arrows: Sequence[ToldArrow]
+    arrows: Sequence[ReportedArrow]
     points: Mapping[str, np.ndarray]
     size: float
     otherwise: frozenset[str] = frozenset()
@@ -89,10 +89,10 @@ class ToldPicture:
     masses: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
-def pictures_told(told: Iterable[tuple[NumericState, ToldPicture]]) -> Iterator[Check]:
+def pictures_reported(reported: Iterable[tuple[NumericState, ReportedPicture]]) -> Iterator[Check]:
     """Of each state what is shown of it."""
     tally = Tally(NAME, HOW)
-    for state, picture in told:
+    for state, picture in reported:
         shown = _Shown(state.equations.system, state.values, state, picture)
         for name in state.equations.system.scope.model.bodies:
             if name not in picture.otherwise:
@@ -129,7 +129,7 @@ class _Shown(InNumbers):
     """A picture at its state."""
 
     numeric: NumericState
-    picture: ToldPicture
+    picture: ReportedPicture
 
     @property
     def near(self) -> float:
@@ -265,8 +265,8 @@ class _Shown(InNumbers):
         return f"{outside[0]} is left out" if outside else ""
 
     def _rolled(self, name: str) -> list[TouchingRound]:
-        """As what a body without a shape rolls, where a tie says how large it is."""
-        meetings = [tie.meeting() for tie in self.system.scope.model.constraints.values()]
+        """As what a body without a shape rolls, where a constraint says how large it is."""
+        meetings = [constraint.meeting() for constraint in self.system.scope.model.constraints.values()]
         found = [each.what for each in meetings if each is not None and isinstance(each.what, TouchingRound)]
         return [x for x in found if x.body == name and (x.radius is not None or x.semiaxes is not None)]
 
@@ -399,7 +399,7 @@ class _Shown(InNumbers):
         return at, np.array([float(x) for x in pushed[: self.d]])
 
     def _reaction(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
-        """(place, resultant) of the reactions of a joint or tie; None where some have no single value."""
+        """(place, resultant) of the reactions of a joint or constraint; None where some have no single value."""
         names = [f"reaction_{axis}({owner})" for axis in "xyz"[: self.d]]
         found = [self.numeric.reactions.get(name) for name in names]
         if any(x is None or not np.isfinite(x) for x in found):
@@ -412,7 +412,7 @@ class _Shown(InNumbers):
     def _of_contact(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
         """(place, resultant) of the rows of a contact: each along its own force, friction along its tangents."""
         at, total = None, np.zeros(self.d)
-        for row in (row for row in self.system.ties.rows if row.tie == owner):
+        for row in (row for row in self.system.constraints.rows if row.constraint == owner):
             braking = (("t", row.tangent), ("s", row.cross_tangent)) if row.friction is not None else ()
             for label, pushes in ((row.component, row.pushes), *braking):
                 push = next((x for x in pushes if isinstance(x, PointForce) and x.place[0] is not None), None)
@@ -431,14 +431,14 @@ class _Shown(InNumbers):
 # -- what a page is told -------------------------------------------------------------------------------------------
 
 
-def picture_of_page(told: Mapping[str, Any], slots: Sequence[float]) -> ToldPicture:
+def picture_of_page(reported: Mapping[str, Any], slots: Sequence[float]) -> ReportedPicture:
     """What a page draws by the scene that it is told, with the numbers of a frame in its slots."""
-    return _Page(told, slots).picture
+    return _Page(reported, slots).picture
 
 
 @dataclass(frozen=True)
 class _Page:
-    told: Mapping[str, Any]
+    reported: Mapping[str, Any]
     slots: Sequence[float]
 
     def number(self, x: Any) -> float:
@@ -449,10 +449,10 @@ class _Page:
 
     @cached_property
     def poses(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        plane = self.told["space"] == "plane"
+        plane = self.reported["space"] == "plane"
         d = 2 if plane else 3
         found: list[tuple[np.ndarray, np.ndarray]] = []
-        for frame in self.told["frames"]:
+        for frame in self.reported["frames"]:
             R, p = np.eye(d), np.zeros(d)
             if frame["pose"] is not None:
                 numbers = self.spot(frame["pose"])
@@ -469,11 +469,11 @@ class _Page:
         return found
 
     @property
-    def picture(self) -> ToldPicture:
+    def picture(self) -> ReportedPicture:
         bodies: dict[str, list[np.ndarray]] = {}
         masses: dict[str, np.ndarray] = {}
         ends, arrows, left, joints = {}, [], set[str](), []
-        for mark in self.told["marks"]:
+        for mark in self.reported["marks"]:
             R, p = self.poses[mark["frame"]]
             role, of, kind = mark["role"], mark["of"], mark["kind"]
             if role == "body":
@@ -491,19 +491,19 @@ class _Page:
             elif kind == "arrow" and role in ("force", "reaction"):
                 at, way = R @ self.spot(mark["at"]) + p, R @ self.spot(mark["vector"])
                 arrows.append(
-                    ToldArrow(role, of, at, at + way) if mark["outward"] else ToldArrow(role, of, at - way, at)
+                    ReportedArrow(role, of, at, at + way) if mark["outward"] else ReportedArrow(role, of, at - way, at)
                 )
-        points = {point["name"]: self.spot(point["at"]) for point in self.told["points"]}
+        points = {point["name"]: self.spot(point["at"]) for point in self.reported["points"]}
         shown = {name: np.concatenate(clouds) for name, clouds in bodies.items() if name not in left}
         clouds = [*(x for each in bodies.values() for x in each), *masses.values(), *(x[None] for x in points.values())]
         cloud = np.concatenate(clouds)
         finite = cloud[np.isfinite(cloud).all(axis=1)]
         size = float(np.max(np.ptp(finite, axis=0))) if len(finite) else 1.0
-        return ToldPicture(shown, ends, arrows, points, size or 1.0, frozenset(left), joints, masses=masses)
+        return ReportedPicture(shown, ends, arrows, points, size or 1.0, frozenset(left), joints, masses=masses)
 
     @property
     def _bodies(self) -> set[str]:
-        return {frame["name"] for frame in self.told["frames"]} - {""}
+        return {frame["name"] for frame in self.reported["frames"]} - {""}
 
     def _own(self, kind: str, mark: Mapping[str, Any]) -> np.ndarray | None:
         """The places of a form in its own axes that reach farthest; None of what has no length of its own."""

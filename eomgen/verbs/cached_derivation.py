@@ -3,7 +3,7 @@
 Kept is what was told: the text, the lines beside it, the exit code, of results whose certificate holds. It is found by
 the digest of the model's text, what was asked, every file of this package, and the versions below. It is believed where
 
-    the file is this user's alone, whole, and made for this key (`eomgen.kept`), and
+    the file is this user's alone, whole, and made for this key (`eomgen.disk_cache`), and
     the equations of motion, derived anew from the model as it was read now, have the values that they had then
 
 in doubles, at a state that the key draws: M a - forcing - J^T lam, J a + gamma, J u + sigma, N u + nu, T and V, bit for
@@ -24,15 +24,15 @@ from typing import Any
 
 import numpy
 
-from eomgen import kept
+from eomgen import disk_cache
 from eomgen.errors import EomgenError
 from eomgen.files import beside
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Scalar
@@ -44,7 +44,7 @@ LIBRARIES = ("numpy", "mpmath", "quicktions", "python_flint", "sympy", "scipy")
 
 
 @dataclass(frozen=True)
-class KeptDerivation:
+class CachedDerivation:
     """One derivation among those that are kept.
 
     Args:
@@ -57,10 +57,10 @@ class KeptDerivation:
 
     def found(self) -> tuple[str, tuple[str, ...], int] | None:
         """(text, lines, code) as they were told; None where it was not derived before, or is not believed."""
-        for path, content in kept.contents(kept.cache_place(), self.key[:32], SUFFIX):
+        for path, content in disk_cache.contents(disk_cache.cache_place(), self.key[:32], SUFFIX):
             entry = _entry(content)
             if entry is not None and entry["key"] == self.key and entry["values"] == self.values:
-                kept.used(path)
+                disk_cache.used(path)
                 return entry["text"], tuple(entry["lines"]), entry["code"]
         return None
 
@@ -71,10 +71,10 @@ class KeptDerivation:
             return
         entry = {"key": self.key, "values": values, "text": text, "lines": lines, "code": code}
         try:
-            with beside(kept.cache_place()) as place:
+            with beside(disk_cache.cache_place()) as place:
                 made = place / f"made{SUFFIX}"
                 made.write_text(json.dumps(entry), encoding="utf-8")
-                kept.put_whole(made, kept.cache_place(), self.key[:32])
+                disk_cache.put_whole(made, disk_cache.cache_place(), self.key[:32])
         except OSError:
             return
 
@@ -87,7 +87,7 @@ class KeptDerivation:
             return None
 
 
-def kept_derivation(data: bytes, name: str, model: Model, asked: Mapping[str, Any]) -> KeptDerivation | None:
+def cached_derivation(data: bytes, name: str, model: Model, requested: Mapping[str, Any]) -> CachedDerivation | None:
     """Where a derivation would be kept; None where this package is not made of files.
 
     Args:
@@ -99,9 +99,9 @@ def kept_derivation(data: bytes, name: str, model: Model, asked: Mapping[str, An
     package = _package()
     if package is None:
         return None
-    parts = (package, repr(name).encode(), repr(sorted(asked.items())).encode(), data)
+    parts = (package, repr(name).encode(), repr(sorted(requested.items())).encode(), data)
     content = b"".join(len(part).to_bytes(8, "big") + part for part in parts)
-    return KeptDerivation(sha256(content).hexdigest(), model)
+    return CachedDerivation(sha256(content).hexdigest(), model)
 
 
 @cache
@@ -131,8 +131,8 @@ def _entry(content: bytes) -> dict[str, Any] | None:
 def _values(model: Model, rng: Random) -> list[str]:
     equations = equations_of_motion(system_of(model, _modes(model)))
     symbols = equations.symbols
-    balance, ties = equations.residual
-    rows = [*balance, *ties, *_linear(equations.J, symbols.u, equations.sigma)]
+    balance, constraints = equations.residual
+    rows = [*balance, *constraints, *_linear(equations.J, symbols.u, equations.sigma)]
     rows += [*_linear(equations.N, symbols.u, equations.nu), equations.T, equations.V]
     state = {x: rng.uniform(0.3, 1.2) for x in sorted(symbols_of(rows), key=lambda x: x.name)}
     return [float(x).hex() for x in evaluate(rows, state, FLOAT)]

@@ -1,4 +1,5 @@
-"""Systems written from short pieces of text, for the laws of ties; and the velocities of their material points."""
+"""Systems written from short pieces of text, for the laws of constraints; and the velocities of their material
+points."""
 
 from __future__ import annotations
 
@@ -48,7 +49,7 @@ def disc(name: str, joint: str, mass: str = "m", radius: str = "R") -> str:
     return f"[bodies.{name}]\n{shape}\njoint = {{ {joint} }}\n"
 
 
-def tie(kind: str, fields: str, name: str = "tie") -> str:
+def constraint(kind: str, fields: str, name: str = "constraint") -> str:
     return f'[constraints.{name}]\nkind = "{kind}"\n{fields}\n'
 
 
@@ -60,7 +61,9 @@ def accelerations(system: System, **values: float) -> tuple[dict[str, float], di
     """Accelerations by the names of the coordinates and multipliers by their labels, at a state."""
     a, lam = solved(system, GIVEN | values)
     names = [q.name for q in system.symbols.q]
-    return dict(zip(names, a, strict=True)), {r.label[4:-1]: x for r, x in zip(system.ties.closing, lam, strict=True)}
+    return dict(zip(names, a, strict=True)), {
+        r.label[4:-1]: x for r, x in zip(system.constraints.closing, lam, strict=True)
+    }
 
 
 def frozen_velocity(system: System, body: str | None, place: np.ndarray, state: State) -> np.ndarray:

@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 
 from eomgen.codegen.expressions import RankedText, ranked_number
-from eomgen.records import dataclass
+from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
 

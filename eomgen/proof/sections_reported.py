@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import ExpressionError
+from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies.wrenches import Axes
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.mechanics.rigidity.velocity_plan import members_of
@@ -26,7 +27,6 @@ from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReaction
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.declared_loads import declared_pushes
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.text import LONGEST, parse
@@ -34,11 +34,11 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_d
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
 NAME, HOW = "section forces as they are told are those that were found", "heads and texts read back, random values"
-Told = Scalar | str
+Reported = Scalar | str
 
 
 @dataclass(frozen=True)
-class ToldSections:
+class ReportedSections:
     """What is told of one body.
 
     Args:
@@ -48,12 +48,12 @@ class ToldSections:
     """
 
     variable: str
-    pieces: Sequence[Mapping[str, Told]]
-    extremes: Sequence[Mapping[str, Told]]
+    pieces: Sequence[Mapping[str, Reported]]
+    extremes: Sequence[Mapping[str, Reported]]
 
 
-def sections_told(
-    found: Mapping[str, SectionForces], told: Iterable[tuple[str, ToldSections]], values: Mapping[str, Any]
+def sections_reported(
+    found: Mapping[str, SectionForces], reported: Iterable[tuple[str, ReportedSections]], values: Mapping[str, Any]
 ) -> Iterator[Check]:
     """Of each body what is told, as often as it is told.
 
@@ -61,16 +61,16 @@ def sections_told(
         values: of parameters: near to them everything has a value.
     """
     tally, near = Tally(NAME, HOW), {name: float(x) for name, x in values.items()}
-    for body, each in told:
+    for body, each in reported:
         tally.add(body, partial(_wrong, found[body], each, near))
     return tally.checks()
 
 
-def _wrong(forces: SectionForces, told: ToldSections, near: Mapping[str, float]) -> str:
-    if len(told.pieces) != len(forces.pieces) or len(told.extremes) != len(forces.extremes):
-        return f"{len(told.pieces)} pieces and {len(told.extremes)} extremes are told"
-    values = _Values(told.variable, near)
-    for piece, row in zip(forces.pieces, told.pieces, strict=True):
+def _wrong(forces: SectionForces, reported: ReportedSections, near: Mapping[str, float]) -> str:
+    if len(reported.pieces) != len(forces.pieces) or len(reported.extremes) != len(forces.extremes):
+        return f"{len(reported.pieces)} pieces and {len(reported.extremes)} extremes are told"
+    values = _Values(reported.variable, near)
+    for piece, row in zip(forces.pieces, reported.pieces, strict=True):
         start, end = values.of(piece.start), values.of(piece.end)
         ends = (("from", start), ("to", end))
         wrong = [differing(values.of(row[name]), right, CARRIED) for name, right in ends]
@@ -87,14 +87,14 @@ def _wrong(forces: SectionForces, told: ToldSections, near: Mapping[str, float])
             wrong.append(f"dM/dx = {slope:.10g}, V = {V:.10g}")
         if any(wrong):
             return next(filter(None, wrong))
-    for extreme, one in zip(told.extremes, forces.extremes, strict=True):
+    for extreme, one in zip(reported.extremes, forces.extremes, strict=True):
         for name, due in (("x", one.x), ("M", one.M)):
             if apart := differing(values.of(extreme[name]), values.of(due), CARRIED):
                 return f"{name} of an extreme: {apart}"
     return ""
 
 
-def _rise(values: _Values, row: Mapping[str, Told], x: float, h: float) -> float:
+def _rise(values: _Values, row: Mapping[str, Reported], x: float, h: float) -> float:
     return values.of(row["M"], x + h) - values.of(row["M"], x - h)
 
 
@@ -110,19 +110,19 @@ class _Values:
         self.variable, self.near, self.random = variable, near, Random(3)
         self.known = dict[str, float]()
 
-    def of(self, told: Told, x: float = 0.0) -> float:
+    def of(self, reported: Reported, x: float = 0.0) -> float:
         """A scalar, or a text of the grammar, in numbers.
 
         Raises:
             NoValue: it has none.
         """
-        if isinstance(told, str):
-            found = self._of_text(told, x)
-        elif type(told) is Node:
-            symbols = symbols_of((told,))
-            found = evaluate((told,), {s: self._symbol(s.name, x) for s in symbols}, FLOAT)[0]
+        if isinstance(reported, str):
+            found = self._of_text(reported, x)
+        elif type(reported) is Node:
+            symbols = symbols_of((reported,))
+            found = evaluate((reported,), {s: self._symbol(s.name, x) for s in symbols}, FLOAT)[0]
         else:
-            found = float(told)
+            found = float(reported)
         if not math.isfinite(found):
             raise NoValue("at random values it has none")
         return float(found)
@@ -147,7 +147,8 @@ class _Values:
 
 
 # -------- works told ------------------------------------------------------------------------------------------
-# Steps of virtual work as they are told -> a check: the blocks move as their ties let them, the loads work so much.
+# Steps of virtual work as they are told -> a check: the blocks move as their constraints let them, the loads work so
+# much.
 #
 # Taken as they stand, tables by their heads and texts for machines, at one choice of the parameters, delta = 1:
 #
@@ -157,13 +158,13 @@ class _Values:
 
 
 WORKS_NAME = "virtual displacements and works are told as they are"
-WORKS_HOW = "wrenches of every tie, declared forces, balance of the bodies"
+WORKS_HOW = "wrenches of every constraint, declared forces, balance of the bodies"
 MIDDLE = "middle of "
 SaidWork = Scalar | str
 
 
 @dataclass(frozen=True)
-class ToldBlock:
+class ReportedBlock:
     """A block that moves.
 
     Args:
@@ -177,7 +178,7 @@ class ToldBlock:
 
 
 @dataclass(frozen=True)
-class ToldMotion:
+class ReportedMotion:
     """A row of the table of blocks, by its heads; the row of a load, where it has a place.
 
     Args:
@@ -193,7 +194,7 @@ class ToldMotion:
 
 
 @dataclass(frozen=True)
-class ToldWork:
+class ReportedWork:
     """How one reaction is found.
 
     Args:
@@ -204,18 +205,18 @@ class ToldWork:
     """
 
     name: str
-    blocks: Sequence[ToldBlock]
+    blocks: Sequence[ReportedBlock]
     along: SaidWork
     works: Sequence[tuple[str, SaidWork]]
     value: SaidWork
-    rows: Sequence[ToldMotion]
-    places: Sequence[ToldMotion]
+    rows: Sequence[ReportedMotion]
+    places: Sequence[ReportedMotion]
     printed: Sequence[tuple[str, SaidWork]]
     left: SaidWork
     last: SaidWork
 
 
-def works_told(found: StaticReactions, state: State, told: Iterable[ToldWork]) -> Iterator[Check]:
+def works_reported(found: StaticReactions, state: State, reported: Iterable[ReportedWork]) -> Iterator[Check]:
     """Of structures in the plane.
 
     Args:
@@ -225,7 +226,7 @@ def works_told(found: StaticReactions, state: State, told: Iterable[ToldWork]) -
         Tally(WORKS_NAME, WORKS_HOW),
         _Works(found, {**state, **dict.fromkeys(found.structure.unknowns, 0)}, state),
     )
-    for each in told:
+    for each in reported:
         tally.add(each.name, partial(proof.wrong, each))
     return tally.checks()
 
@@ -241,10 +242,10 @@ class _Works:
     state: State
     whole: State
 
-    def wrong(self, told: ToldWork) -> str:
-        reaction = self.found.by_name[told.name]
-        field = _Field(self, told)
-        along, R = self.worth(told.along), self.balanced(reaction)
+    def wrong(self, reported: ReportedWork) -> str:
+        reaction = self.found.by_name[reported.name]
+        field = _Field(self, reported)
+        along, R = self.worth(reported.along), self.balanced(reaction)
         factors = self.factors(reaction)
         for j, (owner, _) in enumerate(self.found.structure.pushes):
             work, size = field.work_of(j)
@@ -253,14 +254,14 @@ class _Works:
         if wrong := field.wrong_works():
             return wrong
         given = 0.0 if reaction.work is None else self.worth(reaction.work.given)
-        total = sum(self.worth(work) for _, work in told.works)
-        size = sum(abs(self.worth(work)) for _, work in told.works) + abs(along * R)
+        total = sum(self.worth(work) for _, work in reported.works)
+        size = sum(abs(self.worth(work)) for _, work in reported.works) + abs(along * R)
         if abs(along * (R - given) + total) > CARRIED * (1 + size):
             return f"the works come to {total:.6g}, for {-along * (R - given):.6g}"
-        values = (("machines", told.value), ("people", told.last))
+        values = (("machines", reported.value), ("people", reported.last))
         if off := next((who for who, x in values if abs(self.worth(x) - R) > CARRIED * (1 + abs(R))), ""):
             return f"another value is told to {off} than {R:.10g}"
-        here, beside = (self.worth(told.left, R + step, told.name) for step in (0, 1))
+        here, beside = (self.worth(reported.left, R + step, reported.name) for step in (0, 1))
         if abs(here) > CARRIED * (1 + size) or abs(abs(beside - here) - abs(along)) > CARRIED * (1 + abs(along)):
             return "the equation that is printed is another one"
         return field.wrong_rows()
@@ -269,15 +270,15 @@ class _Works:
     def numbers(self) -> dict[Node, float]:
         return {node: float(x) for node, x in self.state.items()}
 
-    def worth(self, told: SaidWork, R: float = 0.0, asked: str = "") -> float:
+    def worth(self, reported: SaidWork, R: float = 0.0, requested: str = "") -> float:
         """In numbers, delta = 1; of the equation with R, which an unknown load has under its own name."""
-        if isinstance(told, str):
-            return self._of_text(told)
-        if not isinstance(told, Node):
-            return float(told)
-        known = {x: self.numbers.get(x, 1.0 if x.name.startswith("\u03b4") else R) for x in symbols_of((told,))}
-        known |= {x: R for x in known if x.name == asked}
-        return float(evaluate((told,), known, FLOAT)[0])
+        if isinstance(reported, str):
+            return self._of_text(reported)
+        if not isinstance(reported, Node):
+            return float(reported)
+        known = {x: self.numbers.get(x, 1.0 if x.name.startswith("\u03b4") else R) for x in symbols_of((reported,))}
+        known |= {x: R for x in known if x.name == requested}
+        return float(evaluate((reported,), known, FLOAT)[0])
 
     def _of_text(self, text: str) -> float:
         if len(text) > LONGEST:
@@ -334,14 +335,14 @@ class _Field:
     """Velocities of all that moves, as machines are told of the blocks."""
 
     proof: _Works
-    told: ToldWork
+    reported: ReportedWork
 
     @cached_property
     def motions(self) -> dict[str, np.ndarray]:
         """body or node -> (w, v_x, v_y) of the point at the ground's origin; what is not told is at rest."""
         found: dict[str, np.ndarray] = {}
         ends = {f"{truss} {member}": pair for truss, member, pair in members_of(self.proof.found.system)}
-        for block in self.told.blocks:
+        for block in self.reported.blocks:
             own = np.array([self.proof.worth(x) for x in (block.spin, *block.shift[:2])])
             for part in block.parts:
                 found |= dict.fromkeys(ends.get(part, (part,)), own)
@@ -367,7 +368,7 @@ class _Field:
     def wrong_works(self) -> str:
         """The work of a force is that of what its fields declare."""
         model = self.proof.found.system.scope.model
-        for who, works in (("machines", self.told.works), ("people", self.told.printed)):
+        for who, works in (("machines", self.reported.works), ("people", self.reported.printed)):
             stated: dict[str, float] = {}
             for name, work in works:
                 stated[name] = stated.get(name, 0.0) + self.proof.worth(work)
@@ -383,9 +384,9 @@ class _Field:
 
     def wrong_rows(self) -> str:
         """Printed centres, turns and shifts are those of the blocks; those of loads of their places."""
-        if len(self.told.rows) != len(self.told.blocks):
-            return f"{len(self.told.rows)} blocks are printed of {len(self.told.blocks)}"
-        for k, (row, block) in enumerate(zip(self.told.rows, self.told.blocks, strict=True), start=1):
+        if len(self.reported.rows) != len(self.reported.blocks):
+            return f"{len(self.reported.rows)} blocks are printed of {len(self.reported.blocks)}"
+        for k, (row, block) in enumerate(zip(self.reported.rows, self.reported.blocks, strict=True), start=1):
             own = np.array([self.proof.worth(x) for x in (block.spin, *block.shift[:2])])
             moved = np.array([self.proof.worth(x) for x in row.shift])
             if row.center is not None:
@@ -395,7 +396,7 @@ class _Field:
                 np.abs([self.proof.worth(row.spin) - own[0], *(moved - own[1:])]) > CARRIED * (1 + abs(own).max())
             ):
                 return f"block {k} is printed with another motion"
-        for row in self.told.places:
+        for row in self.reported.places:
             words = [row.at] if not row.at.startswith(MIDDLE) else row.at.removeprefix(MIDDLE).split(", ")
             places = [self.proof.place(each) for each in words]
             if all(places):

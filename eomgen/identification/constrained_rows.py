@@ -1,4 +1,4 @@
-"""System -> rows of Y at states that keep the ties, along the motions that these allow, with 50 digits."""
+"""System -> rows of Y at states that keep the constraints, along the motions that these allow, with 50 digits."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
@@ -27,7 +27,8 @@ STEPS = 3  # of Newton's method from a root with 30 digits: each doubles them
 def sampled_rows(
     system: System, rows: Sequence[ScalarRow], columns: Sequence[int], seed: int
 ) -> tuple[np.ndarray, State]:
-    """(W at generic states that keep the ties, along the motions that these allow, the last of these); 50 digits.
+    """(W at generic states that keep the constraints, along the motions that these allow, the last of these); 50
+    digits.
 
     Of a part that moves by itself a state gives only as many rows as that has motions, however many the system has:
     states are added until they bring nothing new.
@@ -35,14 +36,14 @@ def sampled_rows(
     parts: list[np.ndarray] = []
     have = quiet = 0
     reduced = Reduced({})
-    for state, along in tied_states(system, Random(seed)):
+    for state, along in constrained_states(system, Random(seed)):
         parts.append(columns_along(system, rows, columns, state, along))
         have += len(along)
         least = ROUNDED_AWAY * max(map(abs, parts[-1].flat), default=0)
         new = [reduced.takes({j: x for j, x in enumerate(row) if abs(x) > least}) for row in parts[-1]]
         quiet = 0 if any(new) else quiet + 1
-        told_apart = len(reduced.rows) == len(columns) or quiet >= QUIET
-        if not len(along) or (told_apart and have >= len(columns) + MORE):
+        reported_apart = len(reduced.rows) == len(columns) or quiet >= QUIET
+        if not len(along) or (reported_apart and have >= len(columns) + MORE):
             break
     return np.vstack(parts) if have else np.zeros((0, len(columns)), dtype=object), state
 
@@ -50,33 +51,33 @@ def sampled_rows(
 def columns_along(
     system: System, rows: Sequence[ScalarRow], columns: Sequence[int], state: State, along: np.ndarray
 ) -> np.ndarray:
-    """Columns of Y at a state along the motions that the ties allow."""
+    """Columns of Y at a state along the motions that the constraints allow."""
     entries = tuple(row[j] for row in rows for j in columns)
     Y = np.array(evaluate(entries, state, fifty_digits()), dtype=object).reshape(len(rows), len(columns))
     found: np.ndarray = along.dot(Y)
     return found
 
 
-def tied_states(system: System, rng: Random, *, shaken: bool = False) -> Iterator[tuple[State, np.ndarray]]:
-    """(a generic state that keeps the ties, the motions that they allow there), without end."""
-    symbols, ties = system.symbols, system.ties
+def constrained_states(system: System, rng: Random, *, shaken: bool = False) -> Iterator[tuple[State, np.ndarray]]:
+    """(a generic state that keeps the constraints, the motions that they allow there), without end."""
+    symbols, constraints = system.symbols, system.constraints
     size = len(symbols.u)
-    J = tuple(x for row in ties.J for x in row)
+    J = tuple(x for row in constraints.J for x in row)
     given = {} if shaken else values_of_parameters(system.scope, None)
     while True:
-        state = _closed_to_the_last_digit(system, generic_state(ties, rng, shaken=shaken, spreads=FAR) | given)
-        numbers = np.array(evaluate((*J, *ties.sigma), state, fifty_digits()), dtype=object)
+        state = _closed_to_the_last_digit(system, generic_state(constraints, rng, shaken=shaken, spreads=FAR) | given)
+        numbers = np.array(evaluate((*J, *constraints.sigma), state, fifty_digits()), dtype=object)
         there, sigma = numbers[: len(J)].reshape(-1, size), numbers[len(J) :]
         along, u = _allowed(there, sigma, size, rng)
         state = state | dict(zip(symbols.u, u, strict=True))
-        gamma = np.array(evaluate(ties.gamma, state, fifty_digits()), dtype=object)
+        gamma = np.array(evaluate(constraints.gamma, state, fifty_digits()), dtype=object)
         _, a = _allowed(there, gamma, size, rng)
         yield state | dict(zip(symbols.a, a, strict=True)), along
 
 
 def _closed_to_the_last_digit(system: System, state: State) -> State:
     """A state whose gaps are closed, by Newton's method with 50 digits; of gaps that follow from others any."""
-    gaps, free = (*gaps_of(system.ties), *norms_of(system.ties)), movable(system.ties)
+    gaps, free = (*gaps_of(system.constraints), *norms_of(system.constraints)), movable(system.constraints)
     if not gaps:
         return state
     slopes = tuple(x for row in jacobian(gaps, free) for x in row)
@@ -89,7 +90,7 @@ def _closed_to_the_last_digit(system: System, state: State) -> State:
 
 
 def _allowed(J: np.ndarray, right: np.ndarray, size: int, rng: Random | None) -> tuple[np.ndarray, list[Any]]:
-    """(a motion that the ties allow in each row, an x with J x + right = 0, random where it is free)."""
+    """(a motion that the constraints allow in each row, an x with J x + right = 0, random where it is free)."""
     number = fifty_digits().number
     kept, K = echelon_in_digits(J, right)
     free = [j for j in range(size) if j not in kept]

@@ -6,8 +6,8 @@ from difflib import get_close_matches
 from itertools import islice
 from typing import Any
 
+from eomgen.frozen import dataclass
 from eomgen.model.positions import DocumentPath
-from eomgen.records import dataclass
 from eomgen.symbolic.expression.text import other_words
 
 
@@ -18,13 +18,13 @@ class Decimal(str):
 
 
 @dataclass(frozen=True)
-class Finding:
+class Diagnostic:
     """One thing wrong, at a path into the model.
 
     Args:
         path: keys and indices that lead to the culprit.
         what: what is wrong, the culprit printed.
-        mend: the nearest right thing, or "".
+        fix: the nearest right thing, or "".
         column, length: the culprit within the text of an expression (None: all of it).
         key: the culprit is the key itself, not its value.
         raw: what could not be read (names in it count as used).
@@ -34,7 +34,7 @@ class Finding:
 
     path: DocumentPath
     what: str
-    mend: str = ""
+    fix: str = ""
     column: int | None = None
     length: int | None = None
     key: bool = False
@@ -118,7 +118,7 @@ def unknown_keys(
     raw: Mapping[str, Any],
     known: Iterable[str],
     path: DocumentPath,
-    found: list[Finding],
+    found: list[Diagnostic],
     what: str,
     *,
     needed: Iterable[str] = (),
@@ -133,12 +133,12 @@ def unknown_keys(
     read: dict[str, str] = {}
     listed = ", ".join(f"'{name}'" for name in known)
     for k, key in enumerate(strange):
-        mend = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
+        fix = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
         guess = meant(str(key), known)[:1] if k < MOST_OFFERS else ()
         if only and not guess:
-            mend, guess = f"write '{only}': it is needed here ({mend})", (only,)
+            fix, guess = f"write '{only}': it is needed here ({fix})", (only,)
         instead = guess[0] if guess and guess[0] not in (*raw, *read) else ""
         read |= {instead: key} if instead else {}
-        told = f"unknown key '{key}' in {what}"
-        found.append(Finding((*path, key), told, mend, key=True, raw=raw[key], instead=instead))
+        reported = f"unknown key '{key}' in {what}"
+        found.append(Diagnostic((*path, key), reported, fix, key=True, raw=raw[key], instead=instead))
     return read

@@ -55,7 +55,7 @@ def guarded(verb: Callable[[], int], words: Sequence[str]) -> int:
         if not sys.warnoptions:
             warnings.simplefilter("ignore")  # of libraries, to their callers: what a user is to know, verbs say
         try:
-            return _told(*_outcome(verb, words), wants_json)
+            return _reported(*_outcome(verb, words), wants_json)
         except ReaderGone:
             return CLOSED_PIPE
         except WriteFailed as error:
@@ -69,7 +69,7 @@ def problems_of(error: EomgenError) -> tuple[Problem, ...]:
     """What an error tells, one by one."""
     if isinstance(error, ModelError):
         return error.problems
-    return (Problem(error.where, error.what, mend=error.mend),)
+    return (Problem(error.where, error.what, fix=error.fix),)
 
 
 def failure(code: int, problems: Sequence[Problem]) -> str:
@@ -111,11 +111,11 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
     except ReaderGone:
         raise
     except MemoryError:
-        code, found = MEMORY, (Problem("", "there is not enough memory for that", mend="ask for less"),)
+        code, found = MEMORY, (Problem("", "there is not enough memory for that", fix="ask for less"),)
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] == "eomgen":
             return _internal(error, words)
-        missing = ToolMissing(f"the package '{error.name}' is not installed", mend=f"pip install {error.name}")
+        missing = ToolMissing(f"the package '{error.name}' is not installed", fix=f"pip install {error.name}")
         code, found = missing.exit_code, problems_of(missing)
     except OSError as error:
         if error.errno not in NO_ROOM:
@@ -132,21 +132,21 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
 def _internal(error: Exception, words: Sequence[str]) -> tuple[int, tuple[Problem, ...], str]:
     """A mistake of ours: it says so, and its report can be sent."""
     what = f"internal error: {type(error).__name__}: {error}".splitlines()[0][:LONGEST]
-    told = "".join(traceback.format_exception(error))
+    reported = "".join(traceback.format_exception(error))
     about = f"eomgen {__version__}, Python {platform.python_version()}, {platform.platform()}"
-    mend = "this is a mistake of eomgen, not of your model; "
+    fix = "this is a mistake of eomgen, not of your model; "
     try:
         handle, path = tempfile.mkstemp(prefix="eomgen-report-", suffix=".txt")
         with open(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
-            file.write(f"{about}\neomgen {' '.join(words)}\n\n{told}")
-        mend += f"please send the report {path} and the model file"
+            file.write(f"{about}\neomgen {' '.join(words)}\n\n{reported}")
+        fix += f"please send the report {path} and the model file"
     except OSError as full:
-        mend += f"its report cannot be written ({full.strerror}), it is: {told}"
-    problem = Problem("", what, mend=mend)
+        fix += f"its report cannot be written ({full.strerror}), it is: {reported}"
+    problem = Problem("", what, fix=fix)
     return INTERNAL, (problem,), str(problem)
 
 
-def _told(code: int, problems: tuple[Problem, ...], text: str, wants_json: bool) -> int:
+def _reported(code: int, problems: tuple[Problem, ...], text: str, wants_json: bool) -> int:
     """The problems on stderr, and for machines on stdout where they are asked for."""
     if text:
         say(text)
