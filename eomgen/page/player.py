@@ -21,6 +21,7 @@ from eomgen.codegen.targets.javascript import javascript_expression
 from eomgen.codegen.vectors import vectors
 from eomgen.documents.latex_math import notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
+from eomgen.frozen import dataclass
 from eomgen.model.contacts import contacts_of, pieces_of
 from eomgen.model.parts import Model
 from eomgen.model.units import units_of
@@ -31,7 +32,6 @@ from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.pictures_reported import picture_of_page, pictures_reported, states_shown
 from eomgen.proof.reports_read import columns_unpacked, unpacked
-from eomgen.frozen import dataclass
 from eomgen.scene.connections import reaction_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import joined, phase_frames
