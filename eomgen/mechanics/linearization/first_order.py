@@ -38,12 +38,12 @@ OWN = 0.2  # of what a column adds to those chosen, against the best
 
 @dataclass(frozen=True)
 class Choice:
-    """What stays independent, and which rows are solved for the rest.
+    """The independent coordinates and speeds, and the rows that are solved for the dependent ones.
 
     Args:
-        q, dq: coordinates that stay, and those that follow by the rows `relations`.
-        u, du: speeds that stay, and those that follow by the closing rows `constraints`.
-        standing: whether small turns of bodies that spin are about axes that stand still; else about their own.
+        q, dq: independent coordinates, and the dependent ones, given by the rows `relations`.
+        u, du: independent speeds, and the dependent ones, given by the velocity rows `constraints`.
+        standing: True if small turns of spinning bodies are about axes fixed in space; else about body axes.
     """
 
     q: tuple[int, ...]
@@ -97,7 +97,7 @@ class FirstOrder:
 
     @cached_property
     def held(self) -> frozenset[Node]:
-        """What stands in the equations of motion, in the rates and in the relations."""
+        """Symbols that occur in the equations of motion, in the rates and in the relations."""
         scope, rows = self.system.scope, (*self.equations.M, *self.equations.J, *self.rows)
         entries = (x for row in (*rows, *scope.N) for x in row)
         return frozenset(symbols_of((*entries, *self.residual, *scope.rates, *self.relations)))
@@ -133,8 +133,7 @@ class FirstOrder:
 
     @cached_property
     def _unmoved(self) -> dict[Node, Scalar]:
-        """Accelerations that are 0 in every state that is looked at: all of them at rest, where no constraint asks
-        for one."""
+        """Accelerations that are 0 in every state considered: all of them at rest, if no constraint needs one."""
         e, s = self.equations, self.system.symbols
         requested = substituted(e.gamma, dict.fromkeys(s.u, 0))
         return dict.fromkeys(s.a, 0) if self.at_rest and all(map(is_zero, requested)) else {}
@@ -170,10 +169,11 @@ def choice_of(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[st
     turning = {e.name: abs(float(reference.numbers[e])) for four in first.system.scope.quaternions for e in four}
 
     def late(name: str, stays: bool) -> tuple[int, float]:
-        """Of what is solved first: of the model's dependent ones; of others those with coefficients that stay, then
-        those of coordinates on which nothing depends, as the place of a wheel, of which the speeds turn with it.
+        """Rank of a variable: those of the highest rank become dependent first.
 
-        Of a quaternion the largest of its four.
+        First the model's dependent ones; of the others those with constant coefficients, then those of coordinates on
+        which nothing depends, such as the position of a wheel, whose velocity turns with it. Of a quaternion the
+        largest of its four components.
         """
         usual = float(stays) + 0.5 * (name in coordinates and name not in first.seen)
         return 0 if name in wanted else 2 if name in dependent else 1, turning.get(name, usual)
@@ -206,7 +206,7 @@ def _elsewhere(reference: ReferenceMotion) -> dict[Node, Any]:
 
 
 def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
-    """Of each column whether it is the same in both."""
+    """True for each column that is the same in both matrices, up to rounding."""
     return np.asarray(np.all(abs(A - B) <= SOLVED * abs(A).max(initial=0), axis=0))
 
 
@@ -251,7 +251,7 @@ Entries = list[list[MatrixEntry]]
 
 
 class NumberField(Protocol):
-    """Where entries come from."""
+    """Source of the entries of the matrices: exact scalars, or numbers at one state."""
 
     def of(self, scalars: Iterable[Scalar]) -> list[MatrixEntry]:
         """The scalars at the state."""
@@ -346,7 +346,7 @@ def _inner(row: list[tuple[int, MatrixEntry]], column: list[MatrixEntry | None])
 
 
 def _is_one(A: Entries) -> bool:
-    """Whether A is the unit matrix, written so."""
+    """True if A is written as the unit matrix, in integers."""
     n = len(A)
     return n > 0 and all(
         len(row) == n and all(type(x) is int and x == (i == j) for j, x in enumerate(row)) for i, row in enumerate(A)

@@ -72,7 +72,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, REGULAR, SQUARED_SINE
 MOST_EXACT = 16  # speeds of equations that are written exactly
 MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
 NEARBY = 0.5  # of a radian, metre, or of the start's own value: farther away the start means another place
-MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
+MOST_FOLLOWING = 8  # dependent coordinates or speeds that are eliminated exactly
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ class SmallMotions:
         first: the equations of motion from which they come.
         choice: what stays independent in them.
         kept: the coordinates that carry the motion, by their places among the independent ones.
-        wanted: the names of those that are asked; () for all.
+        wanted: the names of the requested coordinates; () for all.
     """
 
     reference: ReferenceMotion
@@ -112,12 +112,12 @@ class SmallMotions:
 
     @property
     def is_second_order(self) -> bool:
-        """Whether they are M q'' + C q' + K q = B w."""
+        """True if the equations have the form M q'' + C q' + K q = B w."""
         return is_second_order(self.numbers)
 
     @property
     def forced(self) -> bool:
-        """Whether forces change with t about an equilibrium: they are taken as they are at t = 0."""
+        """True if forces change with t about an equilibrium: they are taken as they are at t = 0."""
         equations = self.first.equations
         rows = (*equations.forcing, *equations.gamma, *equations.sigma)
         return self.reference.at_rest and depends_on_any(rows, (self.first.system.symbols.t,))
@@ -149,11 +149,11 @@ def small_motions_of(
 
     Args:
         about: "equilibrium", "start" or "steady".
-        wanted: the coordinates in which they are asked; () for all.
+        wanted: the coordinates in which they are requested; () for all.
         guess: values of coordinates in place of `near` and `start`.
     Raises:
-        DerivationError: no equilibrium; the start is no steady motion; nothing can move; the coordinates asked do not
-            move by themselves.
+        DerivationError: no equilibrium; the start is no steady motion; nothing can move; the requested coordinates do
+            not move by themselves.
     """
     refuse_motion(system.scope.model)
     if not system.symbols.u:
@@ -188,7 +188,9 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError(
-            "the constraints leave no freedom: there are no small motions", "coordinates", fix="take a constraint away"
+            "the constraints leave no degree of freedom: there are no small motions",
+            "coordinates",
+            fix="remove a constraint",
         )
     choice, raw, kept = _steady_equations(first, choice, reference, wanted)
     refuse_corners(first.looked_at(at_rest=False), choice, reference, raw, kept)
@@ -207,8 +209,9 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
 
 
 def _refuse_fork(reference: ReferenceMotion) -> None:
-    """A place at which constraints depend on one another that do not beside it: what they leave to first order is no
-    motion.
+    """Refuses a place where constraints depend on one another that are independent near it.
+
+    What they leave free to first order is no motion.
 
     Raises:
         DerivationError: it is one.
@@ -218,14 +221,14 @@ def _refuse_fork(reference: ReferenceMotion) -> None:
     except (DerivationError, MissingValues):  # the constraints close nowhere near: there is but this place
         return
     if fork is not None:
-        what = f"the place is {fork.words}: beside it there are no small motions of one kind"
+        what = f"the place is {fork.words}: near it there are no small motions of one kind"
         raise DerivationError(
             what, f"constraints.{fork.constraints[0]}", "give `near` values that lead to another place"
         )
 
 
 def _stiffness_beside(small: SmallMotions) -> np.ndarray:
-    """How large the entries of K are beside an equilibrium that is known in numbers only."""
+    """Largest size of each entry of K at states near an equilibrium that is known in numbers only; 0 otherwise."""
     largest, reference = np.zeros_like(floats(small.numbers.K)), small.reference
     if reference.place is None or reference.is_exact:
         return largest
@@ -304,7 +307,7 @@ def _exact_field(reference: ReferenceMotion, first: FirstOrder, choice: Choice) 
     return Exact(reference.exact, reference.system.scope.positive, reference.trial)
 
 
-# -- whether it is a reference ---------------------------------------------------------------------------------
+# -- test of the reference --------------------------------------------------------------------------------------
 
 
 def _balanced(
@@ -338,7 +341,7 @@ def _near(
     """The equilibrium, or of a start that moves the steady motion, near a start that is none.
 
     Raises:
-        DerivationError: the start is told, and what is nearest to it where that is far away, or not found.
+        DerivationError: the nearest such motion is far away, which the message gives, or none is found.
     """
     what = f"the start is no steady motion: '{wrong}' is accelerated there"
     symbols, number = system.symbols, {x: float(value) for x, value in start.numbers.items()}
@@ -364,7 +367,7 @@ def _near(
 
 
 def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:
-    """What an explicit time moves, as the seat of a joint, may accelerate the others where all forces balance.
+    """Refuses a place where all forces balance, but a motion given in t, as of the seat of a joint, accelerates others.
 
     Raises:
         DerivationError: it does.
@@ -385,7 +388,7 @@ def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) ->
 
 
 def _with_family(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
-    """Rest beside drives with all its places."""
+    """Relative rest, with the family of all places of the same kind."""
     choice = choice_of(first, reference, ())
     return replace(reference, family=family_of(first, reference, (), [first.system.symbols.q[k] for k in choice.q]))
 
@@ -393,7 +396,11 @@ def _with_family(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMoti
 def _other_rest(
     system: System, guess: Mapping[str, float] | None, why: EomgenError
 ) -> tuple[ReferenceMotion, FirstOrder]:
-    """Rest beside what the model drives steadily, or the start without speeds."""
+    """Rest relative to what the model drives at a steady rate, or the start with all speeds 0.
+
+    Raises:
+        EomgenError: `why`, where neither is balanced.
+    """
     first = first_order_of(system)
     driven = any(part.driven for part in system.scope.model.coordinates.values())
     ways: tuple[Callable[[], ReferenceMotion], ...] = (
@@ -421,7 +428,7 @@ def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
 # Reference -> the same with what its constraints say of coordinates and speeds that nobody stated, in closed form.
 
 
-MOST = 8  # dependent speeds that are taken out exactly
+MOST = 8  # dependent speeds that are eliminated exactly
 
 
 def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
@@ -501,7 +508,7 @@ def refuse_corners(
             raise DerivationError(
                 f"{' and '.join(named) or 'the forces'}: a corner or a jump at the place of reference",
                 "linearize",
-                "take a place beside it, or forces that are smooth there",
+                "choose a place near it, or forces that are smooth there",
             )
 
 
@@ -546,7 +553,7 @@ def steady_coordinates(
 def _unsteady(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> list[dict[Node, Any]]:
-    """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
+    """Changes of coordinates and t up to later states, if the equations differ at one of these; else none."""
     moving, t, graph = reference.moving, first.system.symbols.t, first.equations
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
     timed = depends_on_any((*graph.forcing, *graph.gamma, *graph.sigma), (t,))
@@ -579,9 +586,10 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
 def _changed(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> Callable[[Mapping[Node, Any]], bool]:
-    """Whether the equations are others at a shifted state; they are those here where they hold nothing that shifts.
+    """Test of a shift: True if the equations differ at the shifted state from those at the reference.
 
-    At rest a force that t alone changes is no other equation: it stands on the right side, as an input does.
+    Only symbols that occur in the equations count. At rest a force that changes with t alone does not count: it is on
+    the right side, as an input is.
     """
     t = first.system.symbols.t
     here, held = list(_compared(raw, kept)), first.held

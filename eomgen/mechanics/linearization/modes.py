@@ -50,7 +50,7 @@ from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 # -------- modes -----------------------------------------------------------------------------------------------
-# Small motions -> what is asked of them: frequencies in their order, exact where they are known so, and entries.
+# Small motions -> what is requested of them: frequencies in their order, exact where they are known so, and entries.
 
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
@@ -70,12 +70,12 @@ class Frequency:
 
 @dataclass(frozen=True)
 class Modes:
-    """What follows from the equations of small motions.
+    """Eigenvalues, frequencies, shapes, transfer functions and stability that follow from small motions.
 
     Args:
         small: the equations.
-        in_full: whether a polynomial and conditions that are too long to be printed are brought into their shortest
-            form all the same, as machines get them; else they stay as they came.
+        in_full: True if a polynomial and conditions too long to be printed are still brought into their shortest
+            form, for machine-readable results; else they stay as they were derived.
     """
 
     small: SmallMotions
@@ -120,7 +120,7 @@ class Modes:
 
     @cached_property
     def is_conservative(self) -> bool:
-        """Whether there is nothing but M and a symmetric K, known exactly."""
+        """True if the exact equations hold only M and a symmetric K; False too where they are not known exactly."""
         e = self.small.exact
         if e is None or not self.small.is_second_order or not all(is_zero(x) for row in e.C for x in row):
             return False
@@ -128,7 +128,7 @@ class Modes:
 
     @cached_property
     def transfers(self) -> tuple[TransferFunction, ...]:
-        """From inputs to coordinates: exact where that can be, else in floats, of systems of few states."""
+        """Transfer functions from inputs to coordinates: exact where possible, else in floats for few states."""
         exact, small = self.small.exact, self.small
         found = () if exact is None else transfer_functions(exact, self.positive, small.reference.trial)
         if found or not small.numbers.inputs or not small.reference.valued or len(small.state_matrix) > MOST_STATES:
@@ -164,7 +164,7 @@ class Modes:
         return found
 
     def _ordered(self, candidates: list[tuple[float, Scalar]]) -> bool:
-        """Whether the frequencies are real and in the same order at all values that are tried for the parameters."""
+        """True if the frequencies are real and in the same order at all values tried for the parameters."""
         modes = self.spectrum.oscillating
         inner = [w for mode in modes if (w := self._exact(mode, candidates)) is not None]
         reference, rng = self.small.reference, Random(5)
@@ -307,7 +307,7 @@ class Mode:
 
     @property
     def kind(self) -> str:
-        """What it does, in words."""
+        """Behaviour of the mode in words: it oscillates, fades, grows, or stays."""
         real = self.eigenvalue.real
         if self.eigenvalue == 0:
             return "stays as it is, or drifts"
@@ -374,7 +374,7 @@ def _is_undamped(small: SmallMotions) -> bool:
 
 
 def _is_symmetric(A: np.ndarray, sign: int) -> bool:
-    """Whether A = sign A^T: entries of slow motions count, whatever stiff ones stand beside them."""
+    """True if A = sign A^T, each entry compared with the size of its own row and column, so that slow motions count."""
     rows = np.maximum(abs(A).max(axis=1), abs(A).max(axis=0))
     limit = ITERATED * np.minimum.outer(rows, rows) + ROUNDING * abs(A).max()
     return bool(np.all(abs(A - sign * A.T) <= limit))
@@ -413,7 +413,10 @@ def _general(small: SmallMotions, still: int) -> list[Mode]:
 
 
 def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
-    """Parts that are what rounding leaves of 0 taken out: real ones all where nothing fades unless another grows."""
+    """Eigenvalues in which parts of the size of rounding errors are 0.
+
+    Of undamped equations, whose eigenvalues have real parts of both signs or none, a coarser limit for the real parts.
+    """
     e = small.numbers
     gyroscopic = small.is_second_order and _is_symmetric(floats(e.C), -1) and _is_symmetric(floats(e.K), 1)
     largest = abs(values).max(initial=0)
@@ -433,7 +436,7 @@ def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -
 
 
 def _shape(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> dict[Node, complex]:
-    """The coordinates of the whole model, the largest 1; noise taken out."""
+    """The coordinates of the whole model in one mode, the largest 1; parts of the size of rounding are 0."""
     whole = floats(small.whole.P) @ _with_others(small, v, eigenvalue)
     largest = whole[np.argmax(abs(whole) * (1 - COMPUTED * np.arange(len(whole))))] if len(whole) else 0
     whole = whole / largest if largest else whole
@@ -447,8 +450,8 @@ def _shape(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> dict[Node
 def _with_others(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> np.ndarray:
     """The independent coordinates of the whole system while those of v move in a mode.
 
-    (A - lambda) x = 0 with the part v of x known: the others follow, as the track of a wheel does. Beside a motion that
-    stays as it is they stay too.
+    (A - lambda) x = 0 with the part v of x known: the others follow, as the track of a wheel does. With lambda = 0
+    they are 0.
     """
     every, known = small.whole.coordinates, small.numbers.coordinates
     places = [every.index(q) for q in known]
@@ -491,7 +494,7 @@ def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[M
 
 
 def _leads_on(small: SmallMotions, drift: np.ndarray) -> bool:
-    """Whether all equations are the same after a displacement along a drift: it is a steady motion nearby."""
+    """True if all equations are the same after a displacement along a drift: the drift leads to a steady motion."""
     shape = _shape(small, drift.astype(complex), 0)
     numbers = small.reference.numbers
     there = {q: numbers[q] + ALONG * x.real for q, x in shape.items()}
@@ -504,7 +507,7 @@ def _leads_on(small: SmallMotions, drift: np.ndarray) -> bool:
 
 
 def _grows_like_time(small: SmallMotions, drift: np.ndarray, values: Sequence[complex]) -> str:
-    """That a zero eigenvalue has fewer modes than it counts for; what grows."""
+    """Sentence that says which coordinates grow like t: 0 is a defective eigenvalue (fewer modes than its order)."""
     shape = _shape(small, drift.astype(complex), 0)
     names = ", ".join(q.name for q, x in shape.items() if abs(x) > SHARE) or "some speeds"
     others = "; all other motions oscillate or fade" if any(values) else ""
@@ -512,7 +515,7 @@ def _grows_like_time(small: SmallMotions, drift: np.ndarray, values: Sequence[co
 
 
 def _drifting(modes: Sequence[Mode]) -> str:
-    """That of motions which stay as they are, or drift, terms of higher order decide; what moves in them."""
+    """Sentence that says which coordinates stay anywhere or drift to first order; higher-order terms decide on them."""
     moving = [
         q.name
         for q in (modes[0].shape if modes else ())
@@ -576,7 +579,7 @@ def _as_floats(A: Any, kind: type) -> np.ndarray:
 
 
 def count_of_zeros(e: LinearEquations, polynomial: Polynomial | None, trial: Mapping[Node, Any]) -> int:
-    """How many eigenvalues are 0.
+    """Number of eigenvalues that are 0.
 
     Args:
         polynomial: p(s), where it is known exactly.
@@ -645,7 +648,7 @@ def _groups(values: Sequence[complex] | np.ndarray) -> list[list[int]]:
 
 
 def defective(e: LinearEquations, values: Sequence[complex]) -> bool:
-    """Whether an eigenvalue of the imaginary axis has fewer modes than it counts for."""
+    """True if an eigenvalue on the imaginary axis, 0 excepted, has fewer modes than its multiplicity."""
     A, B = _pencil(e)
     for group in _groups(values):
         x = 1j * np.mean([values[k].imag for k in group])

@@ -1,8 +1,8 @@
-"""SmallMotions, a parameter -> how the reference and the equations of small motions change with it.
+"""SmallMotions, a parameter -> derivatives of the reference and of the equations of small motions with respect to it.
 
 The laws are those of the numbers, over values that carry their slopes: y + y_p dp. Of an equilibrium
 
-    Z^T (M a - forcing) = 0,   G = 0:   K dq_i + d/dp Z^T (M a - forcing) = 0,   q' = P dq_i + what the relations ask
+    Z^T (M a - forcing) = 0,   G = 0:   K dq_i + d/dp Z^T (M a - forcing) = 0,   q' = P dq_i + the part due to G_p
 
 and of a simple eigenvalue, with A r = lambda r and l^H A = lambda l^H,
 
@@ -120,11 +120,11 @@ class WithSlopes:
 
 @dataclass(frozen=True)
 class ParameterSlopes:
-    """What a parameter changes.
+    """Derivatives of the reference and of the matrices with respect to a parameter.
 
     Args:
         small: the small motions; all parameters have values.
-        parameters: how the parameters change.
+        parameters: the direction in which the parameters change.
     """
 
     small: SmallMotions
@@ -136,7 +136,7 @@ class ParameterSlopes:
 
     @cached_property
     def state(self) -> dict[Node, float]:
-        """How q and u of the reference change.
+        """Derivatives of q and u of the reference.
 
         Raises:
             DerivationError: the place does not change smoothly, or a steady motion has no closed form.
@@ -226,7 +226,7 @@ class ParameterSlopes:
 
 
 def _of_inputs(reference: ReferenceMotion, seeds: Seeds) -> dict[Node, Scalar]:
-    """How the inputs change."""
+    """Derivatives of the inputs."""
     system = reference.system
     inputs = [(node, system.inputs[name]) for name, node in system.symbols.inputs.items()]
     changes = tangent(tuple(value for _, value in inputs), seeds)

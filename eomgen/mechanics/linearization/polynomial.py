@@ -45,12 +45,12 @@ class Polynomial:
 
     @property
     def is_long(self) -> bool:
-        """Whether its coefficients are too long for any formula."""
+        """True if its coefficients are too long for any formula."""
         return sum(map(text_size, self.coefficients)) > LONG
 
     @property
     def is_even(self) -> bool:
-        """Whether only even powers occur: no motion grows or fades unless another fades or grows."""
+        """True if only even powers occur: the roots come in pairs +s and -s."""
         return all(is_zero(c) for c in self.coefficients[1::2])
 
     def at(self, s: Any) -> Any:
@@ -124,7 +124,7 @@ def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node], *, in_f
 
 
 def _stays_long(expansion: Expansion, terms: Iterable[Terms]) -> bool:
-    """Whether sums are long, and no common divisor could make them short."""
+    """True if the sums are long, and no common divisor could make them short."""
     divided = any(e < 0 and expansion.atoms.is_a(a, "sum") for each in terms for m, _ in each for a, e in m)
     return not divided and sum(text_size(expansion.atoms.node(each)) for each in terms) > LONG
 
@@ -167,7 +167,7 @@ class PolynomialFactors:
     positive: Collection[Node]
 
     def written(self, a: Scalar) -> Scalar:
-        """In the symbols of the model."""
+        """The scalar in the symbols of the model, in its simplest form."""
         return simplest(self.as_it_came(a), Work.ANSWER, self.positive)
 
     def as_it_came(self, a: Scalar) -> Scalar:
@@ -176,7 +176,7 @@ class PolynomialFactors:
 
 
 def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> PolynomialFactors:
-    """Those that hold s and more.
+    """Factors of x that hold s, each as often as it occurs.
 
     Raises:
         TooLarge: it is too much work.
@@ -254,12 +254,12 @@ MOST_EVEN = 4  # degree in s^2 of one whose coefficients are written as conditio
 
 @dataclass(frozen=True)
 class Conditions:
-    """What must be positive.
+    """Conditions of stability: expressions that must be positive.
 
     Args:
         expressions: for all motions to fade; those of even factors of p(s) to oscillate.
-        fading, oscillating: whether there are factors of which it is said.
-        zeros: how many times p(s) holds the factor s: motions that stay as they are, of which nothing is said.
+        fading, oscillating: True if p(s) has factors of this kind.
+        zeros: the order of the root s = 0: motions that stay as they are, of which nothing is said.
     """
 
     expressions: tuple[Scalar, ...] = ()
@@ -269,7 +269,7 @@ class Conditions:
 
     @property
     def words(self) -> str:
-        """What all motions then do."""
+        """Behaviour of all motions under the conditions: "oscillate", "fade" or both."""
         said = [word for word, holds in (("oscillate", self.oscillating), ("fade", self.fading)) if holds]
         return " or ".join(said)
 
@@ -283,13 +283,15 @@ def stability_conditions(
     conservative: bool,
     in_full: bool = True,
 ) -> Conditions:
-    """Of Routh and Hurwitz for each factor of p(s), in the fewer ones of Lienard and Chipart: all coefficients, every
-    other determinant. Of an even factor, what makes all s^2 real and negative.
+    """Routh-Hurwitz conditions for each factor of p(s), in the shorter form of Lienard and Chipart.
+
+    All coefficients and every other Hurwitz determinant are positive. For an even factor: all s^2 are real and
+    negative.
 
     Args:
-        trial: values of the parameters: leading coefficients keep the signs that they have there, as det M does.
-        conservative: whether all s^2 are real in any case.
-        in_full: whether those of a long polynomial are brought into their shortest form too.
+        trial: values of the parameters: leading coefficients have the same signs everywhere as there, as det M does.
+        conservative: True if all s^2 are real in any case.
+        in_full: True if the conditions of a long polynomial are brought into their shortest form too.
     Source: Gantmacher, The Theory of Matrices, vol. 2, chapter 15.
     """
     zeros = next(k for k, c in enumerate(polynomial.coefficients) if not is_zero(c))
@@ -335,7 +337,7 @@ def _polynomials(polynomial: Polynomial, s: Node, positive: Collection[Node], le
 
 
 def _conditions(polynomial: Polynomial, conservative: bool) -> list[Scalar] | None:
-    """What must be positive; None where that is too long to be written."""
+    """Expressions that must be positive for one factor; None where they are too long to be written."""
     n, c = polynomial.degree, polynomial.coefficients
     if not polynomial.is_even:
         return [*c[:-1], *_determinants(polynomial)] if n <= MOST_CONDITIONS else None

@@ -36,7 +36,7 @@ from eomgen.symbolic.numeric.evaluation import fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
 
 # -------- reduction -------------------------------------------------------------------------------------------
-# Reference -> LinearEquations: the equations of motion to first order, constraints and dependent speeds taken out.
+# Reference -> LinearEquations: the equations of motion to first order, constraints and dependent speeds eliminated.
 #
 # With a' the accelerations and lam the multipliers of the reference, small motions satisfy
 #
@@ -229,10 +229,10 @@ def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> d
 
 
 def unsettled(reducing: Reducing, share: float) -> list[int]:
-    """Which of the independent speeds a force is left to accelerate: more than rounding leaves.
+    """Indices of the independent speeds with an unbalanced force larger than rounding errors.
 
     Args:
-        share: of the largest force, below which one is none.
+        share: of the largest force, below which a force counts as 0.
     """
     found = reducing.unbalanced
     scale = max(map(abs, (*reducing.field.of(reducing.first.equations.forcing), *reducing.forces)), default=0)
@@ -250,11 +250,11 @@ def _size(row: list[MatrixEntry], unit: list[float]) -> float:
 
 
 # -------- forms -----------------------------------------------------------------------------------------------
-# LinearEquations -> the same over fewer coordinates: as many as speeds where that can be, and those that are asked.
+# LinearEquations -> the same over fewer coordinates: as many as speeds where that can be, and the requested ones.
 #
 # Of second order are equations with q_i' = u_i. Coordinates on which nothing depends and that have no speed of their
-# own (the track of a wheel) are left out. Where the user asks for some coordinates alone, the others go by what they
-# keep: nothing of them acts on those asked, or their momenta stay (Routh):
+# own (the track of a wheel) are left out. Where the user requests some coordinates alone, the others are eliminated by
+# what they conserve: nothing of them acts on the requested ones, or their momenta are constant (Routh):
 #
 #     M_oo u_o + M_oc u_c + C_oc q_c = 0
 #     M = M_cc - M_co M_oo^-1 M_oc,  C = C_cc - M_co M_oo^-1 C_oc - C_co M_oo^-1 M_oc,  K = K_cc - C_co M_oo^-1 C_oc
@@ -272,11 +272,11 @@ def floats(A: Entries) -> np.ndarray:
 
 
 def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Collection[str] = ()) -> tuple[int, ...]:
-    """The coordinates that stay beside the speeds, as many as these where that can be; decided by numbers.
+    """The coordinates that stay with the speeds, as many as these where possible; decided by numbers.
 
     Args:
-        wanted: coordinates that go last.
-        dependent: those that go first, by name.
+        wanted: names of the coordinates that are left out last.
+        dependent: names of those that are left out first.
     """
     kept = list(range(len(equations.coordinates)))
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
@@ -293,7 +293,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
 
 
 def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
-    """Of these coordinates those on which the motion depends, and those with a speed of their own."""
+    """Those of the coordinates `kept` on which the motion depends, and those with a speed of their own."""
     K, F, E = (without_noise(floats(x), COMPUTED) for x in (equations.K, equations.F, equations.E))
     own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
     seen = {j for j in kept if np.any(K[:, j])} | {*own}
@@ -308,16 +308,16 @@ def _strangeness(row: np.ndarray) -> int:
 
 
 def equations_without_rounding(e: LinearEquations, nearby: np.ndarray) -> LinearEquations:
-    """The equations in numbers, 0 where an entry is what is left of it: beside its row and column, or the whole.
+    """The equations in numbers; an entry of the size of rounding errors, against its row and column or all, is 0.
 
-    Of C also beside what inertia and stiffness make of a rate: sqrt(M K).
+    Entries of C are also compared with the damping unit made of inertia and stiffness, sqrt(M K).
 
     Args:
-        nearby: how large the entries of K are beside the place, where what vanishes there does not.
+        nearby: sizes of the entries of K at states near the place, where what vanishes there does not.
     """
     M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
     usual = np.sqrt(abs(M).max(initial=0)) * np.sqrt(abs(K).max(initial=0))
-    masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M is none beside those of its own two speeds, however light
+    masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M counts against those of its own two speeds, however light
     M = np.where(abs(M) > SOLVED * np.outer(masses, masses), M, 0.0)
     K = np.where(abs(K) > COMPUTED * nearby, K, 0.0)
     return replace(e, M=[[*row] for row in M.tolist()], C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
@@ -354,7 +354,7 @@ def _can_be_of_second_order(field: NumberField, equations: LinearEquations) -> b
 
 
 def is_second_order(equations: LinearEquations) -> bool:
-    """Whether q_i' = u_i."""
+    """True if q_i' = u_i for all coordinates: E is the unit matrix and F is 0."""
     n = len(equations.speeds)
     return (
         len(equations.coordinates) == n
@@ -364,7 +364,7 @@ def is_second_order(equations: LinearEquations) -> bool:
 
 
 def _second_order(field: NumberField, e: LinearEquations) -> LinearEquations:
-    """With u_i = E^-1 (q_i' - F q_i), and E^-T in front."""
+    """The equations in q_i, q_i', q_i'': u_i = E^-1 (q_i' - F q_i), premultiplied by E^-T."""
     if is_second_order(e):
         return e
     n = len(e.speeds)
@@ -378,18 +378,18 @@ def _second_order(field: NumberField, e: LinearEquations) -> LinearEquations:
     return replace(e, M=M, C=C, K=K, B=B, E=one, F=[[0] * n for _ in range(n)])
 
 
-# -- only those that are asked ---------------------------------------------------------------------------------
+# -- only the requested coordinates ------------------------------------------------------------------------------
 
 
 def restricted(
     field: NumberField, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
 ) -> LinearEquations:
-    """The equations of the coordinates that are asked, alone.
+    """The equations of the requested coordinates alone.
 
     Args:
-        decided: the same equations in numbers, by which it is seen what acts on what.
+        decided: the same equations in numbers, which show what acts on what.
     Raises:
-        DerivationError: the others act on them, and keep no momenta.
+        DerivationError: the others act on them, and their momenta are not constant.
     """
     names = [q.name for q in equations.coordinates]
     if not wanted or list(wanted) == names:
@@ -414,7 +414,7 @@ def restricted(
 
 
 def _drives(decided: LinearEquations, C: np.ndarray, c: Indices, o: Indices) -> bool:
-    """Whether inputs change momenta that act on the coordinates asked through their rates."""
+    """True if inputs change momenta that act, through their rates, on the requested coordinates."""
     B = floats(decided.B)
     return bool(B.size and np.any(B[o]) and np.any(C[np.ix_(c, o)]))
 
@@ -500,7 +500,7 @@ class SpinAxis:
 
     @property
     def labels(self) -> tuple[str, ...]:
-        """What the small turns are called."""
+        """Names of the small turns."""
         if self.standing:
             return tuple(f"{NAME}{axis}_{self.body}" for axis in "xyz")
         return tuple(NAME + w.name for w in self.speeds)

@@ -46,7 +46,8 @@ class ReferenceMotion:
         numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
         place: the equilibrium, where it was sought.
         family: the steady motions that one belongs to, where it was sought and they could be written.
-        beside: the start, which was asked and is none, and to which this one is near; None where none was asked.
+        beside: the requested start, which is no equilibrium or steady motion but is near this one; None where no start
+            was requested.
     """
 
     system: System
@@ -59,18 +60,18 @@ class ReferenceMotion:
 
     @cached_property
     def is_exact(self) -> bool:
-        """Whether everything is known in closed form."""
+        """True if all coordinates and speeds are known in closed form."""
         symbols = self.system.symbols
         return all(x in self.exact for x in (*symbols.q, *symbols.u))
 
     @cached_property
     def at_rest(self) -> bool:
-        """Whether all speeds are 0, not only nearly."""
+        """True if all speeds are exactly 0."""
         return all(is_zero(self.exact.get(u, u)) for u in self.system.symbols.u)
 
     @cached_property
     def valued(self) -> bool:
-        """Whether all parameters have values."""
+        """True if all parameters have values."""
         return not self.system.symbols.parameters.keys() - exact_parameters(self.system.scope.model).keys()
 
     @cached_property
@@ -101,7 +102,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
 
 
 def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
-    """The place at which all is at rest beside what the model drives at a steady rate: a bead on a hoop that turns.
+    """Relative equilibrium, at rest relative to what the model drives at a steady rate: a bead on a turning hoop.
 
     forcing + J^T lam = 0 at u = 0, forcing with the inertia forces of the drives' motion.
 
@@ -117,7 +118,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
     own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
     if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
         raise DerivationError(
-            "rest beside drives is sought of coordinates that are all free or driven",
+            "relative rest is sought only where every coordinate is free or driven",
             "coordinates",
             fix='ask about = "start"',
         )
@@ -189,7 +190,7 @@ def in_closed_form(reference: ReferenceMotion, state: Mapping[Node, Scalar]) -> 
 
 
 def _short(state: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
-    """What a formula can hold of a state: a double with all its digits is a number, and no part of a formula."""
+    """Entries of a state that can be in a formula; a double with all its digits is a number, and no part of one."""
     return {node: x for node, x in state.items() if not holds_many_digits(x)}
 
 
@@ -232,10 +233,10 @@ class Family:
         conditions: what vanishes, of both.
         formulas: those that follow, as functions of the held; {}: no closed form.
         state: everything in closed form at the values of the start; {}: not known so.
-        zeros: coordinates that are held at 0, by which other conditions are kept.
+        zeros: coordinates that are held at 0, by which other conditions are satisfied.
         others: those that follow, in all the motions with the same values held that were found, this one first.
         closed: the same as functions of the held; {} for one that has no closed form.
-        complete: whether there are no others, where `where` says.
+        complete: True if there are no others in the region that `where` names.
     """
 
     held: tuple[Node, ...]

@@ -69,7 +69,7 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         what = "the constraints leave no motion free, so none is steady"
-        raise DerivationError(what, "linearize.about", 'leave a freedom, or ask about = "equilibrium"')
+        raise DerivationError(what, "linearize.about", 'leave a degree of freedom, or set about = "equilibrium"')
     free = _free(first, choice)
     for mask in (free > STATED, np.ones(len(free), dtype=bool)):
         found = _sought(first, choice, reference.numbers, mask) if np.any(mask) else None
@@ -95,7 +95,7 @@ def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], change
 
 
 def _free(first: FirstOrder, choice: Choice) -> np.ndarray:
-    """Of the independent coordinates and speeds, how freely they may change: what nobody states before guesses."""
+    """Rank of each independent coordinate and speed: how freely it may change, unstated ones before guesses."""
     symbols, model = first.system.symbols, first.system.scope.model
     places = [model.coordinates[symbols.q[k].name] for k in choice.q]
     found = [STATED if part.driven else _freedom(part.start, part.near) for part in places]
@@ -110,7 +110,7 @@ def _freedom(stated: object, near: object) -> int:
 
 
 def _needed(here: Here, free: np.ndarray) -> np.ndarray:
-    """Which of the independent ones suffice for the equations: the freest; none of those below STATED."""
+    """Mask of the independent variables that suffice to solve the equations: the freest, none below STATED."""
     scaled = here.slopes * here.sizes / here.row_sizes[:, None]
     allowed = np.flatnonzero(free >= STATED)
     _, columns = determined(scaled[:, allowed], [(int(free[k]), 0.0) for k in allowed])
@@ -130,7 +130,7 @@ def _sought(first: FirstOrder, choice: Choice, start: Mapping[Node, Any], mask: 
 
 @dataclass(frozen=True)
 class _Residuals:
-    """What is to vanish, rows and columns free of units, by what the mask frees."""
+    """Residuals that are to vanish as functions of the variables in the mask; rows and columns free of units."""
 
     mask: np.ndarray
 
@@ -181,7 +181,7 @@ class Here:
 
     @property
     def _seen(self) -> tuple[np.ndarray, np.ndarray]:
-        """Where entries of K and F are more than rounding, beside C w, M w^2 and E w of the fastest speed w."""
+        """Masks of the entries of K and F above rounding errors, compared with C w, M w^2 and E w of the fastest w."""
         e = self.equations
         w = max(abs(float(self.state[u])) for u in e.speeds)
         M, C, K, F, E = (abs(floats(x)) for x in (e.M, e.C, e.K, e.F, e.E))
@@ -215,7 +215,7 @@ class Here:
 
     @property
     def sizes(self) -> np.ndarray:
-        """What counts as a change of 1: of a coordinate itself, if it is more; the speeds by how fast it moves."""
+        """Unit of change of each variable: of a coordinate max(1, |q|), of a speed the fastest speed, at least 1."""
         symbols = self.first.system.symbols
         places = [max(1.0, abs(float(self.state[symbols.q[k]]))) for k in self.choice.q]
         speeds = [abs(float(self.state[symbols.u[k]])) for k in self.choice.u]
@@ -227,10 +227,10 @@ class Here:
         return not unsettled(self.reducing, ITERATED) and bool(np.all(moving <= ITERATED * max(1.0, *abs(self.rates))))
 
     def moved(self, step: np.ndarray) -> Here:
-        """After a step of the independent ones, the others following.
+        """The state after a step of the independent variables, the dependent ones following.
 
         Raises:
-            NoValue: the constraints do not close there.
+            NoValue: the constraints cannot be satisfied there.
         """
         symbols, number = self.first.system.symbols, fifty_digits().number(1)
         n = len(self.choice.q)
@@ -241,7 +241,7 @@ class Here:
         following = [q for q in (symbols.q[k] for k in self.choice.dq) if q in moved]
         found = nearest_root(self.first.relations, state, following) if following else state
         if found is None:
-            raise NoValue("the constraints do not close")
+            raise NoValue("the constraints cannot be satisfied")
         return self.at(self.first, self.choice, self._with_speeds(found))
 
     def _with_speeds(self, state: State) -> State:
@@ -262,7 +262,7 @@ class Here:
 
 
 MOST_OPERATIONS = 600  # of the equations of motion that are written as conditions
-MOST_OF_CONSTRAINTS = 250  # of the rows by which speeds are taken out
+MOST_OF_CONSTRAINTS = 250  # of the rows by which speeds are eliminated
 MOST_FOLLOWING = 4  # dependent coordinates and speeds
 LONGEST = 1_200  # characters of conditions that are solved
 MOST_SOUGHT = 2  # unknowns of which all values are sought
@@ -288,7 +288,7 @@ def family_of(
 
 
 def _is_small(first: FirstOrder, choice: Choice) -> bool:
-    """Whether the conditions are written in a second or two."""
+    """True if the conditions are small enough to be written in a second or two."""
     driven = sum(part.driven for part in first.system.scope.model.coordinates.values())
     if len(choice.dq) - driven + len(choice.du) > MOST_FOLLOWING or operations(first.residual).total > MOST_OPERATIONS:
         return False
@@ -339,9 +339,9 @@ class _Writing:
 
     @cached_property
     def _fixed(self) -> State | None:
-        """What need not be sought: coordinates on which nothing depends, drives, inputs, speeds that are 0; all exact.
+        """Exact values that need not be sought: coordinates on which nothing depends, drives, inputs, zero speeds.
 
-        None where the start does not say them exactly.
+        None where the start does not give them exactly.
         """
         symbols, exact, numbers = self.first.system.symbols, self.reference.exact, self.reference.numbers
         still = {u: 0 for u in self._independent if u in symbols.u and numbers[u] == 0}
@@ -362,7 +362,7 @@ class _Writing:
 
     @cached_property
     def _zeros(self) -> tuple[Node, ...]:
-        """Held coordinates that are 0, where conditions are more than unknowns: some are kept by them, by symmetry."""
+        """Held coordinates that are 0, if there are more conditions than unknowns: by symmetry they satisfy some."""
         if len(self._all) <= len(self._unknowns):
             return ()
         exact = self.reference.exact
@@ -371,7 +371,7 @@ class _Writing:
 
     @cached_property
     def _conditions(self) -> tuple[Scalar, ...]:
-        """What vanishes, beside what is 0."""
+        """Expressions that vanish, with the zeros put in; those that are then identically 0 are left out."""
         if not self._zeros:
             return self._all
         left = substituted(self._all, dict.fromkeys(self._zeros, 0))
@@ -380,7 +380,7 @@ class _Writing:
 
     @cached_property
     def _all(self) -> tuple[Scalar, ...]:
-        """What vanishes."""
+        """Expressions that vanish in a steady motion: unbalanced forces, rates and relations."""
         first, choice = self.first, self.choice
         field = self._at(self._fixed or {})
         rates = [first.system.scope.rates[first.system.symbols.q.index(q)] for q in self._seen]
@@ -420,7 +420,7 @@ class _Writing:
         return state if all(self._located.agrees(value, x) for x, value in state.items()) else {}
 
     def _with_others(self, family: Family) -> Family:
-        """With every motion that has the same values held, as far as they are found."""
+        """The family with every other motion found that has the same values held."""
         unknowns, conditions = self._unknowns, self._conditions
         if not unknowns or len(unknowns) != len(conditions) or len(unknowns) > MOST_SOUGHT:
             return family

@@ -41,7 +41,7 @@ class TransferFunction:
 def transfer_functions(
     e: LinearEquations, positive: Collection[Node], trial: Mapping[Node, Any]
 ) -> tuple[TransferFunction, ...]:
-    """From every input to every coordinate, by Cramer's rule; () where it is too much work.
+    """Transfer functions from every input to every coordinate, by Cramer's rule; () where it is too much work.
 
     Args:
         trial: values of the parameters, at which the leading coefficient below is positive, as det M is.
@@ -66,7 +66,7 @@ def transfer_functions(
 def _shortened(
     above: Polynomial, below: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any]
 ) -> tuple[Polynomial, Polynomial]:
-    """Without the factors that they have in common; powers of s alone where that is too much work."""
+    """Numerator and denominator without common factors; only powers of s are cancelled where it is too much work."""
     a, b = list(above.coefficients), list(below.coefficients)
     while len(a) > 1 and len(b) > 1 and is_zero(a[0]) and is_zero(b[0]):
         a, b = a[1:], b[1:]
@@ -136,7 +136,7 @@ def state_names(e: LinearEquations) -> tuple[str, ...]:
 
 
 def exact_state_space(small: SmallMotions, outputs: Sequence[str]) -> StateMatrices | None:
-    """In scalars of the parameters; None where they are not known so, or it is too much work."""
+    """State-space matrices in scalars of the parameters; None where unknown in closed form, or too much work."""
     e = small.exact
     if e is None or len(e.speeds) > MOST:
         return None
