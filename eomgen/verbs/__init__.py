@@ -1,1 +1,1 @@
-"""What each command of the command line gives, one verb a file. No physics, no printing."""
+"""The commands of the command line, one a file: each gives a document. No physics, no printing."""

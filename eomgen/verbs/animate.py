@@ -63,7 +63,7 @@ NOTHING_MOVES = "nothing moves: all frames show the same"
 
 @dataclass(frozen=True, repr=False)
 class PlayerFrame:
-    """A run's player, which shows itself in a notebook: a page of its own that asks nobody for anything."""
+    """A run's player, which shows itself in a notebook: a page of its own that loads nothing from elsewhere."""
 
     page: str
 
@@ -78,7 +78,7 @@ class PlayerFrame:
 
 @dataclass(frozen=True)
 class Showing:
-    """How a motion is shown.
+    """Options of a moving picture.
 
     Args:
         fps: frames a second.
@@ -106,7 +106,7 @@ class Showing:
         return frame_times(end, self.fps, self.speed)
 
     def of_a_swing(self, output: str) -> int:
-        """How many frames a period has.
+        """Number of frames in one period of a small motion.
 
         Raises:
             UsageError: as of `times`.
@@ -184,7 +184,7 @@ def _followed(equations: Equations, time: float | None, showing: Showing, output
 
 
 def movie_read_back(run: Trajectory, movie: Movie) -> Iterator[Check]:
-    """Whether frames show the run."""
+    """Checks that the frames of a moving picture show the states of its run."""
     if movie.scene is None:
         return iter(())
     return pictures_reported(
@@ -267,7 +267,7 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
 def _reported(
     model: Model, summary: str, movies: Sequence[Movie], output: str, showing: Showing, run: Trajectory | None
 ) -> Document:
-    """What was written; a run that did not reach its end fails, though what there is of it is shown."""
+    """Document that names the files written; it fails where the run stopped early, though that part of it is shown."""
     failed = "" if run is None or run.ok else run.message
     count, still = len(movies[0].times), all(movie.stands_still for movie in movies)
     reported_already = run is not None and bool(run.still)
@@ -349,7 +349,7 @@ def refuse_ending(path: str) -> None:
 
 
 def _written(output: str, count: int) -> str:
-    """What was written; a page has no frames."""
+    """Names the file written and, for anything but a page, the number of its frames."""
     return output if _ending(output) == ".html" else f"{count} frame{'s' * (count > 1)}: {output}"
 
 
@@ -367,14 +367,17 @@ def _shown(run: Trajectory, times: np.ndarray, showing: Showing, strip: bool) ->
 
 
 def _round(run: Trajectory, step: float) -> float | None:
-    """After which part of a step, 1/ROUNDS at least, all stands as at first; None: it has not moved."""
+    """Shortest time, a step or a part of it down to 1/ROUNDS, after which everything is back where it started [s].
+
+    None if nothing has moved.
+    """
     times = np.array([0.0, *(step / k for k in range(ROUNDS, 0, -1))])
     back = movie_of(run, times).as_at_first[1:]
     return None if back.all() else float(times[1:][back][0])
 
 
 def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movie]:
-    """The slowest small motions, as many as the file shows beside one another.
+    """The slowest small motions, as many as the file shows side by side.
 
     Raises:
         UsageError: it shows fewer.
@@ -390,7 +393,7 @@ def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movi
 
 
 def write_movies(movies: Sequence[Movie], path: str, showing: Showing, progress: Progress | None) -> None:
-    """Movies side by side into a file, the ending says of which kind."""
+    """Writes movies side by side into a file; the ending of its name says of which kind."""
     made = {
         ".mp4": lambda: mp4(movies, showing.fps, progress),
         ".png": lambda: strip(movies[0]),

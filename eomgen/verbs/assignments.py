@@ -1,4 +1,4 @@
-"""What a user types on the command line: NAME=VALUE and equations, in the units of the file."""
+"""Values typed on the command line: NAME=VALUE and equations, in the units of the file."""
 
 from __future__ import annotations
 

@@ -1,14 +1,14 @@
-"""A derivation that was proven before, told again: by the content of all that it hangs on, and checked before.
+"""Cache of proven derivations: one is found by the content of all that it depends on, and checked before it is shown.
 
-Kept is what was told: the text, the lines beside it, the exit code, of results whose certificate holds. It is found by
-the digest of the model's text, what was asked, every file of this package, and the versions below. It is believed where
+Cached are the text, the lines printed with it and the exit code of results whose certificate holds. An entry is found
+by the digest of the model's text, the options, every file of this package, and the versions below. It is trusted where
 
     the file is this user's alone, whole, and made for this key (`eomgen.disk_cache`), and
     the equations of motion, derived anew from the model as it was read now, have the values that they had then
 
 in doubles, at a state that the key draws: M a - forcing - J^T lam, J a + gamma, J u + sigma, N u + nu, T and V, bit for
 bit. That is of the equations; how they are written, and that they were proven, the digest alone says. The state is
-drawn by no secret: against somebody who may write as this user nothing is kept safe here.
+drawn by no secret: the cache does not protect against somebody who may write as this user.
 """
 
 from __future__ import annotations
@@ -45,10 +45,10 @@ LIBRARIES = ("numpy", "mpmath", "quicktions", "python_flint", "sympy", "scipy")
 
 @dataclass(frozen=True)
 class CachedDerivation:
-    """One derivation among those that are kept.
+    """One derivation of the cache.
 
     Args:
-        key: the digest of all that it hangs on.
+        key: the digest of all that it depends on.
         model: as it was read now.
     """
 
@@ -56,7 +56,7 @@ class CachedDerivation:
     model: Model
 
     def found(self) -> tuple[str, tuple[str, ...], int] | None:
-        """(text, lines, code) as they were told; None where it was not derived before, or is not believed."""
+        """(text, lines, code) as they were printed; None where it was not derived before, or is not trusted."""
         for path, content in disk_cache.contents(disk_cache.cache_place(), self.key[:32], SUFFIX):
             entry = _entry(content)
             if entry is not None and entry["key"] == self.key and entry["values"] == self.values:
@@ -65,7 +65,7 @@ class CachedDerivation:
         return None
 
     def keep(self, text: str, lines: tuple[str, ...], code: int) -> None:
-        """Keeps what was told; where it cannot be written, nothing."""
+        """Stores what was printed; does nothing where it cannot be written."""
         values = self.values
         if values is None:
             return
@@ -88,13 +88,13 @@ class CachedDerivation:
 
 
 def cached_derivation(data: bytes, name: str, model: Model, requested: Mapping[str, Any]) -> CachedDerivation | None:
-    """Where a derivation would be kept; None where this package is not made of files.
+    """The entry of a derivation in the cache; None where this package is not made of files.
 
     Args:
         data: the model's text.
-        name: by which problems tell of its file.
+        name: of its file, in error messages.
         model: what was read of it, with the values that were typed.
-        asked: all that was typed besides.
+        requested: all that was typed besides.
     """
     package = _package()
     if package is None:
@@ -144,7 +144,7 @@ def _linear(A: Sequence[Sequence[Scalar]], x: Sequence[Scalar], b: Sequence[Scal
 
 
 def _modes(model: Model) -> ContactModes | None:
-    """How the contacts are at the start, where there are any."""
+    """Contact modes at the start; None if the model has no contacts."""
     if not contacts_of(model):
         return None
     from eomgen.mechanics.statics.contacts import contacts_at_start

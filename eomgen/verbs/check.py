@@ -22,7 +22,7 @@ from eomgen.verbs.outcome import listed
 
 
 def check_document(model: Model) -> Document:
-    """The model's parts and its degrees of freedom, by rank beside the count by formula."""
+    """The model's parts and its degrees of freedom, by rank and by the counting formula."""
     model = with_nodes_balanced(model)
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
@@ -62,7 +62,7 @@ def _start_lines(found: Checked) -> list[str]:
 
 
 def _rest_lines(found: Checked) -> list[str]:
-    """What has no coordinates, what does not touch, what is not derived."""
+    """Lines about a mechanism or structure without coordinates, open contacts, and parts that are not derived yet."""
     mobility, structure, waiting = found.mobility, found.structure, found.unbuilt
     lines = [] if mobility is None else [f"mobility: {mobility}, the bodies free to move but for their constraints"]
     lines += [] if structure is None else [f"structure: {_held(structure)}"]
@@ -76,7 +76,7 @@ def _truss(name: str, truss: Truss) -> str:
 
 
 def _held(structure: Structure) -> str:
-    """How a structure stands, by the rank of what holds it; forces that are asked for hold it too."""
+    """Stability and statical determinacy of a structure, by the rank of its supports and the forces to be found."""
     unknowns = f", held by {listed(p.name for p in structure.unknowns)} too" if structure.unknowns else ""
     extra = structure.indeterminacy
     surplus = "" if not extra else f"{extra} reaction{'s' if extra > 1 else ''} more than independent ones"

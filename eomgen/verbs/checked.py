@@ -1,4 +1,4 @@
-"""Model -> Checked: what is declared, how free it is, how its loops close at the start."""
+"""Model -> Checked: its degrees of freedom, the closure of its loops at the start, and cautions."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from eomgen.model.values import exact_parameters
 
 @dataclass(frozen=True)
 class LoopStart:
-    """How loops close at the start.
+    """Closure of the loops at the start.
 
     Args:
         begun: the start; None where nothing closes, or a value is missing.
@@ -45,13 +45,13 @@ class LoopStart:
 
 @dataclass(frozen=True)
 class Checked:
-    """What is found in a model without a mistake.
+    """Results of checking a model without mistakes.
 
     Args:
         open: the contacts that do not touch at the start.
         mobility, structure: of what has no coordinates; None of all else.
-        cautions: what will be refused, or hardly is meant.
-        modes: how the contacts are at the start.
+        cautions: warnings of what other commands will refuse, or of what is probably a mistake.
+        modes: the contact modes at the start.
     """
 
     model: Model
@@ -90,7 +90,7 @@ class Checked:
 
 
 def checked_model(model: Model) -> Checked:
-    """What a model is found to be.
+    """Checks a model: degrees of freedom, redundancy, closure of loops, cautions.
 
     Raises:
         ModelError: declared speeds that do not stand for the rates.
@@ -165,7 +165,7 @@ def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Prob
 
 
 def _misplaced(model: Model) -> Iterator[Problem]:
-    """Constraints whose start lies where hardly anybody means it: in a bowl that is rolled on outside."""
+    """Constraints whose start is probably a mistake: inside a bowl that is to be rolled on outside."""
     try:
         motion = motion_of(scope_of(model))
         for name, constraint in model.constraints.items():
@@ -185,7 +185,7 @@ def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:
 
 
 def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> LoopStart:
-    """How loops close at the start.
+    """Finds how the loops close at the start, and in which other ways they could.
 
     Raises:
         ModelError: declared speeds that do not stand for the rates.

@@ -35,7 +35,7 @@ def derive_document(
     Args:
         full: everything is printed, however long.
         units: those of names, equations, reactions and outputs too.
-        diff: the file of another model: what differs from it is told instead.
+        diff: the file of another model: the differences from it are reported instead.
         data: the texts for machines are proven, too.
     """
     if diff is not None:
@@ -50,7 +50,7 @@ def derive_document(
 
 
 def _with_units(equations: Equations, document: Document) -> Document:
-    """With a section of units, and the same for machines."""
+    """Adds a section of units to a document, for people and for machines."""
     found = units_of_model(equations.model, equations.speeds)
     found = {**found, "reactions": {named.name: named.unit for named in _reacting(equations)}}
     grids = tuple(Grid((HEADS[key], "unit"), tuple(found[key].items())) for key in HEADS if found[key])
@@ -60,7 +60,7 @@ def _with_units(equations: Equations, document: Document) -> Document:
 
 
 def _reacting(equations: Equations) -> tuple[NamedReaction, ...]:
-    """The reactions; () where forces act at no place, or a body is held by nothing."""
+    """The reactions; () where forces act at no place, or a body is unsupported."""
     try:
         return tuple(named_reactions(balance_of(equations.system)))
     except DerivationError:

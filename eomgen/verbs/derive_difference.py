@@ -1,4 +1,4 @@
-"""eomgen derive --diff: what differs between two models, down to their equations of motion."""
+"""eomgen derive --diff: the differences between two models, down to their equations of motion."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Difference:
 
     @cached_property
     def declared(self) -> dict[str, tuple[list[str], list[str]]]:
-        """Of each table that names the parts: (what only the other has, what only this one has)."""
+        """{table of parts: (names that only the other model declares, names that only this one declares)}."""
         found = {}
         for table in DECLARED:
             own, other = (list(getattr(e.model, table) or ()) for e in (self.first, self.second))
@@ -89,7 +89,7 @@ class Difference:
         return tuple(_compared(name, *(row.get(name) for row in rows)) for name in names)
 
     def entries(self) -> Mapping[str, Any]:
-        """For machines."""
+        """Entries of the JSON document."""
         return {
             "name": self.first.model.name,
             "other": self.second.model.name,
@@ -110,7 +110,7 @@ class Difference:
 
     @property
     def steps(self) -> tuple[Step, ...]:
-        """For people."""
+        """Sections of the text: the declarations, then the equations of motion."""
         return (*self._declarations, Step("equations", "Equations of motion", tuple(self._statements)))
 
     @property
@@ -143,7 +143,7 @@ class Difference:
 
 
 def difference_document(model: Model, other: Model, *, method: str, certify: bool) -> Document:
-    """What differs between this model and another, with the proofs of both."""
+    """Differences between this model and another, with the proofs of both."""
     found = Difference(pipeline.derive(model, method), pipeline.derive(other, method))
     document = replace(document_of(model, f"difference from {other.name}", found.steps), entries=found.entries)
     return proven(document, _both(found.first.certify(), found.second.certify()) if certify else None)

@@ -1,4 +1,4 @@
-"""eomgen doctor: what this machine can do."""
+"""eomgen doctor: the tools and optional packages that this machine has."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ EXTRAS = {"formulas": "math-core", "PDF": "typst", "space": "jupyter-threejs-sag
 
 
 def doctor_document() -> Document:
-    """What this machine can do."""
+    """Versions of the tools and packages that are there, and what is not possible without the missing ones."""
     rows: list[tuple[str, str | None]] = [("eomgen", __version__), ("python", platform.python_version())]
     for package in ("sympy", "numpy", "scipy", "matplotlib", "click", "platformdirs", "quicktions", "python-flint"):
         try:
@@ -41,7 +41,7 @@ def doctor_document() -> Document:
 
 
 def _without(what: str) -> str:
-    """What a missing tool means."""
+    """Consequence of a missing tool or package, and how to install it."""
     return {
         "C compiler": ": equations run in numpy, some 30 times slower; install cc or `pip install ziglang`",
         "cache": ": it cannot be written, code is compiled anew each time",

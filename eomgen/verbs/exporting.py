@@ -15,10 +15,10 @@ from eomgen.proof.imported import imported_otherwise, unsaid_otherwise
 
 
 def refuse_strange_endings(output: str) -> None:
-    """Before any work.
+    """Refuses a file name that does not end in .urdf, before any work.
 
     Raises:
-        UsageError: the file is called like no robot.
+        UsageError: another ending.
     """
     if Path(output).suffix.lower() != ".urdf":
         raise UsageError(f"'{output}' is no name for a robot: the ending is .urdf", fix="name it so")

@@ -13,7 +13,7 @@ from eomgen.verbs.outcome import listed
 
 
 def freedom_lines(model: Model, freedom: Freedom) -> list[str]:
-    """The count by rank beside that by formula, and what stands behind it."""
+    """Lines that state the degrees of freedom by rank and by formula, and the reasons for both."""
     if freedom.by_rank is None:
         lines = [f"degrees of freedom: not counted yet ({freedom.not_counted})"]
         return lines if freedom.by_formula is None else [*lines, _formula_line(model, freedom)]
@@ -35,7 +35,7 @@ def freedom_lines(model: Model, freedom: Freedom) -> list[str]:
 
 
 def _constraints(rows: Sequence[RowName], beside: Sequence[str]) -> str:
-    """The constraints of rows; these too of a constraint that stands beside them with others: floor (rows 2 and 3)."""
+    """Names the constraints of rows, with row numbers where other rows of it are named too: floor (rows 2 and 3)."""
     return listed(
         f"{constraint} ({_numbered(numbers)})" if constraint in beside else constraint
         for constraint, numbers in _by_constraint(rows).items()
@@ -56,8 +56,8 @@ def _numbered(numbers: Sequence[int]) -> str:
 
 
 def _velocity_lines(freedom: Freedom) -> list[str]:
-    """Of constraints that are velocities: which of them are holonomic, what they keep, and how many degrees of
-    freedom in position."""
+    """Lines about velocity constraints: the holonomic ones with their integrals, and the degrees of freedom in
+    position."""
     found = freedom.integrability
     if found is None:
         return []

@@ -20,13 +20,13 @@ from eomgen.model.parts import Model
 LARGEST = 200_000_000  # bytes of a file
 BIASED = (
     "rates come of noisy columns, which moves parameters by more than their deviations say, by about as far as each "
-    "line tells: measure rates and accelerations, or filter all columns alike"
+    "line says: measure rates and accelerations, or filter all columns alike"
 )
-POOR = 100.0  # a condition number beyond which parameters are hardly told apart
+POOR = 100.0  # a condition number beyond which parameters can hardly be distinguished
 
 
 def identify_document(model: Model, *, data: str | None = None, certify: bool = True) -> Document:
-    """The parameters that fit a measured motion; without one the groups of them that motions tell apart.
+    """The parameters that fit a measured motion; without one the groups of them that motions can distinguish.
 
     Raises:
         UsageError: the file holds no samples of the coordinates.

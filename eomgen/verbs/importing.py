@@ -19,10 +19,10 @@ OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}
 
 
 def refuse_other_endings(output: str | None) -> None:
-    """Before any work.
+    """Refuses a file name that does not end in .toml, before any work.
 
     Raises:
-        UsageError: the file that is to be written is called like no model file.
+        UsageError: another ending.
     """
     if output is not None and Path(output).suffix.lower() != ".toml":
         raise UsageError(f"'{output}' is no name for a model file: the ending is .toml", fix="name it so")
@@ -31,7 +31,7 @@ def refuse_other_endings(output: str | None) -> None:
 def import_document(
     file: str, *, output: str | None = None, floating: bool = False, model: str | None = None
 ) -> Document:
-    """The model file, written where that is asked; what of the robot's file has no counterpart in it.
+    """The model file, written where an output is given; and what of the robot's file has no counterpart in it.
 
     Raises:
         ModelError: no robot can be read from the file.
@@ -60,7 +60,7 @@ def import_document(
 
 
 def _otherwise(file: str, robot: ImportedRobot) -> str:
-    """What of a robot's file is otherwise in the model, by another reading of it; "" where nothing is."""
+    """First difference between a robot's file, read in another way, and the model; "" if there is none."""
     root = first_element(robot.source)
     if bare := without_units(robot.model):
         return bare

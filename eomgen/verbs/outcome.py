@@ -1,4 +1,4 @@
-"""A result -> its document; what its start had to become."""
+"""Result -> its document, with notes of what was changed in its start."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:
-    """What is found, proven where that is asked for, its picture in a file where one is."""
+    """Document of a result, with its proof where that is requested; its picture is saved where a file is given."""
     panels = () if plot is None else found.picture.saved(plot)
     certificate = found.certify() + found.drawn_checks(panels) if certify else None
     document = proven(found.document, certificate)
@@ -33,7 +33,7 @@ def with_start_reported(document: Document, model: Model, run: Trajectory | None
     nothing closes its constraints.
 
     Args:
-        run: the motion that it tells of: that nothing moves is a note too.
+        run: the motion that it reports: that nothing moves is a note too.
     """
     if run is not None and run.still:
         document = replace(document, notes=(*document.notes, run.still))
@@ -43,7 +43,7 @@ def with_start_reported(document: Document, model: Model, run: Trajectory | None
         words = _begun(model).words
     except OpenConstraints as error:
         return with_open_constraints(document, error)
-    except (DerivationError, ModelError):  # told by the verb, where it needs a start
+    except (DerivationError, ModelError):  # reported by the verb, where it needs a start
         return document
     return replace(document, notes=(*document.notes, f"The start was {words}.")) if words else document
 
@@ -54,7 +54,7 @@ def with_constraints_closed(document: Document, system: System) -> Document:
         start_of_motion(system)
     except OpenConstraints as error:
         return with_open_constraints(document, error)
-    except (DerivationError, ModelError):  # told by the verbs that need a start
+    except (DerivationError, ModelError):  # reported by the verbs that need a start
         pass
     return document
 
@@ -65,7 +65,7 @@ def with_open_constraints(document: Document, error: OpenConstraints) -> Documen
 
 
 def named_open(model: Model, error: OpenConstraints) -> OpenConstraints:
-    """Which of its constraints stays open at the start, and by how much, where all that is known is that one does."""
+    """The same error with the constraint that stays open at the start and by how much, where that can be found."""
     try:
         _begun(model)
     except OpenConstraints as exact:

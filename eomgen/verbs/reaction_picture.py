@@ -32,7 +32,7 @@ def reaction_picture(model: Model, view: str | None = None, time: float | None =
 
 
 def turn_of(system: System) -> float | None:
-    """How long the slowest joint takes for a turn that is driven at a constant rate [s]; None: there is none."""
+    """Longest time for one turn among the joints that are driven at a constant rate [s]; None if there is none."""
     scope, driven = system.scope, [q for q in system.symbols.q if system.scope.model.coordinates[q.name].driven]
     turned = {
         x

@@ -106,7 +106,7 @@ def reactions(
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: no equation, or no coordinate of that name.
-        DerivationError: a body is held by nothing; a force acts at no place.
+        DerivationError: a body is unsupported; a force acts at no place.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
     held = bool(in_loads(model))
@@ -141,7 +141,7 @@ def reactions_document(
 
     Args:
         at, from_rest: as of `reactions`.
-        plot: the file of the picture of them along the motion, if one is asked for; view, time: as of that picture.
+        plot: the file of the picture of them along the motion, if one is requested; view, time: as of that picture.
         certify: whether it is proven.
     """
     found = reactions(model, at=at, from_rest=from_rest)
@@ -249,10 +249,10 @@ def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> C
 def _answers(
     model: Model, requested: Mapping[str, str], at: WrittenEquation | AtRest | str | None, from_rest: bool
 ) -> tuple[dict[str, Quantity], Callable[[Mapping[str, Quantity]], Certificate]]:
-    """The answers to outputs that ask for reactions, or sums of them, in their order; and their proof.
+    """The answers to outputs that request reactions, or sums of them, in their order; and their proof.
 
     Args:
-        asked: {text: unit}.
+        requested: {text: unit}.
     """
     instant = None if at is None else _instant(model, at)
     from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
@@ -265,7 +265,7 @@ def _answers(
 
 
 def _proof_of_answers(solved: answers.Answers, found: Mapping[str, Quantity]) -> Certificate:
-    """That of the outputs by which they were asked, under the names of the reactions."""
+    """Proof of the outputs that stand for reactions, under the names of the reactions."""
     names = dict(zip(solved, found, strict=True))
     solved.update(zip(solved, found.values(), strict=True))
 
@@ -309,11 +309,11 @@ def _checked(model: Model, where: str, **changes: Any) -> Model:
         raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", fix=error.fix) from error
 
 
-# -- as it is told -----------------------------------------------------------------------------------
+# -- texts -----------------------------------------------------------------------------------
 
 
 def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
-    """Each reaction by name and in words, then as `solve` tells its answers.
+    """Each reaction by name and in words, then as `solve` prints its answers.
 
     Args:
         below: what may be added to indeterminate ones follows below.
@@ -337,7 +337,7 @@ def _laws_in(equations: Equations, found: Mapping[str, Quantity]) -> dict[str, s
 
 
 def _law_statements(laws: Mapping[str, str]) -> Iterable[Statement]:
-    """How that moves which is driven, once."""
+    """States the laws of the driven coordinates, once."""
     if laws:
         yield prose("")
         yield prose("What is driven moves as given:")
@@ -345,7 +345,7 @@ def _law_statements(laws: Mapping[str, str]) -> Iterable[Statement]:
 
 
 def _open_statements(space: list[dict[str, str]]) -> Iterable[Statement]:
-    """What may be added to the indeterminate ones without a trace."""
+    """States the self-stresses: what may be added to indeterminate reactions and leaves the equations satisfied."""
     for number, shares in enumerate(space, start=1):
         k = "k" if len(space) == 1 else f"k{number}"
         yield prose("")
@@ -354,7 +354,7 @@ def _open_statements(space: list[dict[str, str]]) -> Iterable[Statement]:
 
 
 def _sum_statements(sums: Mapping[str, Quantity]) -> Iterable[Statement]:
-    """What has one value only together."""
+    """States the sums of indeterminate reactions that have one value."""
     if sums:
         yield prose("")
         yield prose("Sums in which that leaves no trace have one value:")

@@ -1,4 +1,4 @@
-"""eomgen report: what the verbs find of a model, joined to one page, paper or notebook."""
+"""eomgen report: the results of the verbs for one model, joined to one page, paper or notebook."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ SAMPLES = 401  # instants of the motion, in drawings and in the table that is of
 MOST_RELEASED = 8  # reactions whose virtual displacement a page plays
 LANGUAGES = ("c", "numpy")
 SETTING = ("assumptions", "data", "freedom", "coordinates")  # steps that say what is given
-UNFIT = (DerivationError, MissingValues, RunFailed)  # why a section that nobody asked for is empty
+UNFIT = (DerivationError, MissingValues, RunFailed)  # reasons that leave a section empty that nobody requested
 CAPTIONS = {
     "statics": "Loads and reactions; normal force N, shear force V and bending moment M along the beams.",
     "kinematics": "Centres of rotation and velocities.",
@@ -73,11 +73,11 @@ EPOCH = (1980, 1, 1, 0, 0, 0)  # of files in archives: the same bytes at any tim
 
 @dataclass(frozen=True)
 class Subject:
-    """A model, and what is asked of it; each result is found once.
+    """A model and the options of its report; each result is found once.
 
     Args:
         time: how long the motion is followed [s]; None: as `run_of_a_page` has it.
-        certify: whether results are proven.
+        certify: results are proven.
         origin: the name of the model's file, "" for none.
         source: its text.
     """
@@ -90,7 +90,7 @@ class Subject:
 
     @property
     def stem(self) -> str:
-        """Under which files are offered."""
+        """Stem of the names under which files are offered."""
         return identifier(Path(self.origin).stem if self.origin else self.model.name)
 
     @cached_property
@@ -112,11 +112,11 @@ class Subject:
 
     @cached_property
     def documents(self) -> dict[str, Document]:
-        """Those that were asked for, by section."""
+        """The documents found so far, by section."""
         return {}
 
     def document(self, key: str) -> Document:
-        """The document of a verb, proven where that is asked; no listings are left in it."""
+        """The document of a verb, proven if `certify` is set; its listings are typeset."""
         if key not in self.documents:
             self.documents[key] = with_listings_typeset(_derived(self) if key == "derivation" else self._reported(key))
         return self.documents[key]
@@ -232,7 +232,7 @@ def form_of(path: str) -> str:
 
 
 def _figure_read_back(subject: Subject, run: Trajectory) -> Iterator[Check]:
-    """Whether the picture of the model shows where its motion starts."""
+    """Checks that the picture of the model shows it where its motion starts."""
     scene = scene_of(subject.model)
     for _, state in states_shown(run, run.t[:1]):
         if [q.name for q in state.equations.symbols.q] == [q.name for q in scene.system.symbols.q]:
@@ -240,7 +240,7 @@ def _figure_read_back(subject: Subject, run: Trajectory) -> Iterator[Check]:
 
 
 def _player_read_back(subject: Subject, found: Report) -> Iterator[Check]:
-    """Whether the player of the page holds the run."""
+    """Checks that the player of the page holds the run."""
     live = next((section.live for section in found.sections if section.key == "motion" and section.live), None)
     try:
         page = "" if live is None else live()
@@ -279,7 +279,7 @@ def report_document(
 
 
 def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str] = ()) -> Report:
-    """The report of a model: the sections that fit it, and those that are asked for.
+    """The report of a model: the sections that fit it, and those that are requested.
 
     Raises:
         UsageError: there is no such section; one is wanted and left out.
@@ -337,10 +337,10 @@ def fitting(subject: Subject) -> tuple[str, ...]:
 
 
 def _made(subject: Subject, key: str, requested: bool) -> ReportSection | None:
-    """A section; one that fits and cannot be had says why. None: there is nothing in it.
+    """A section; one that fits but is not possible says why. None: there is nothing in it.
 
     Raises:
-        DerivationError, MissingValues, RunFailed: why one that is asked for cannot be had.
+        DerivationError, MissingValues, RunFailed: the reason that a requested one is not possible.
     """
     try:
         section = MADE[key](subject)
@@ -357,7 +357,7 @@ def _setting(subject: Subject) -> ReportSection | None:
 
 
 def _steps(key: str) -> Callable[[Subject], ReportSection]:
-    """What a verb finds, without what stands in sections of its own."""
+    """Function that makes the section of a verb, without the steps that have sections of their own."""
 
     def made(subject: Subject) -> ReportSection:
         own = (*SETTING, *(("reactions",) if key == subject.main[0] else ()))
@@ -425,7 +425,7 @@ def _released(found: Result) -> ReportSection | None:
 
 
 def _played(played: Playable, words: str = "") -> ReportSection:
-    """What moves in a page, under words of its own."""
+    """Section with a player of a motion, under words of its own."""
 
     @cache
     def live() -> Html:

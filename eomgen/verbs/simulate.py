@@ -50,7 +50,7 @@ def simulate_document(
     units: bool = False,
     certify: bool = True,
 ) -> Document:
-    """The motion from the start; trajectory and picture are written where they are asked for."""
+    """The motion from the start; trajectory and picture are written where files are given."""
     _check_ending(output)
     equations = pipeline.derive(model)
     run = simulated(
@@ -94,7 +94,7 @@ def simulate_document(
 
 
 def _reported(statements: Sequence[Statement], payload: Mapping[str, Any], output: str | None) -> ReportedRun:
-    """What is told of a run, as it stands in the text, the entries and the file."""
+    """The reported values of a run, as they stand in the text, the entries and the file."""
     grids = {
         cell_text(grid.head[-1]): [list(map(cell_text, row)) for row in grid.rows]
         for grid in statements
@@ -137,7 +137,7 @@ def _write_run(run: Trajectory, output: str, units: Mapping[str, Unit] | None) -
 
 
 def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
-    """Where the motion ended, and how well the laws were kept."""
+    """Statements of a run: its phases, the values at start and end, and how well the conservation laws hold."""
     shown = run.phases[:MOST_REPORTED] if len(run.phases) > 1 else ()
     lines = [f"from {phase.start:.6g} s: {phase.ended_by}" for phase in shown]
     lines += [f"and {len(run.phases) - MOST_REPORTED} phases more"] if len(run.phases) > MOST_REPORTED else []
@@ -157,7 +157,7 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
 
 
 def _accuracy(run: Trajectory) -> Accuracy | None:
-    """How many digits hold, where that is known with as much work again."""
+    """Estimate of the correct digits; None where the run was cut short or the second run would take too long."""
     cut = run.status in ("interrupted", "out of patience") or run.evaluations > MOST_AGAIN
     return None if cut or not len(run.t) else run.accuracy
 

@@ -1,4 +1,4 @@
-"""eomgen solve: what the file asks in [outputs]."""
+"""eomgen solve: the outputs that the file requests in [outputs]."""
 
 from __future__ import annotations
 

@@ -39,7 +39,7 @@ MOST_PROVEN = 10_000  # runs whose rows are looked at one by one
 
 @dataclass(frozen=True)
 class SweepRequested:
-    """What is typed beside the model."""
+    """Options of a sweep, as typed."""
 
     over: tuple[str, ...]
     random: tuple[str, ...]
@@ -170,7 +170,10 @@ def _payload(found: Sweep, files: list[str]) -> dict[str, Any]:
 
 
 def _proof(found: Sweep) -> Certificate | None:
-    """That of the first run that came to its end: its equations, its motion, what is asked of it; and made again."""
+    """Proof of the first run that came to its end: its equations, its motion, its outputs, and the same run made again.
+
+    None if no run did.
+    """
     first = next((row for row in found.ledger.rows() if row[2] in ("finished", "computed")), None)
     if first is None:
         return None
@@ -192,7 +195,7 @@ def _proof(found: Sweep) -> Certificate | None:
 
 
 def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[Model, Trajectory]]) -> Iterator[Check]:
-    """What the table tells of the first run, of the last, and of one between, drawn by the plan: each made anew.
+    """Checks the table's rows of the first run, the last, and one between drawn by the plan: each is made anew.
 
     Args:
         made: (model, run) of those that are made anew already.
@@ -200,7 +203,7 @@ def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[
     plan = found.plan
     done = [row for row in found.ledger.rows() if row[2] != FAILED]
     between = [Random(plan.hash).choice(done[1:-1])] if len(done) > 2 else []
-    tally = Tally("what is asked of a run is answered as its samples and equations say", "first, last, one between")
+    tally = Tally("the outputs of a run have the values that its samples and equations give", "first, last, between")
     for row in {row[0]: row for row in (*done[:1], *between, *done[-1:])}.values():
         reported = dict(zip(plan.requested, row[4 + len(plan.runs.names) :], strict=True))
         model, run = made.get(row[0], (None, None))
@@ -215,7 +218,7 @@ def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[
 def _answered_otherwise(
     plan: SweepPlan, model: Model, reported: Mapping[str, float | None], run: Trajectory | None
 ) -> Iterator[tuple[str, Callable[[], str]]]:
-    """(what is asked of a run, how what is told of it differs): by its samples, by `solve`, by derivatives alone."""
+    """(output of a run, function that says how its reported value differs): by its samples, or by `solve`."""
     how = plan.how
     outputs = {text: requested_of(plan.model, text) for text in plan.requested if text not in plan.slopes}
     for text, output in outputs.items():
@@ -232,10 +235,10 @@ def _run_anew(model: Model, how: Stepped, coarser: float = 1.0) -> Trajectory:
 
 
 def _sampled_otherwise(model: Model, how: Stepped, run: Trajectory, output: Output, reported: float | None) -> str:
-    """How what is told differs from the samples of the run.
+    """Difference between a reported value and the samples of the run; "" if there is none.
 
     Raises:
-        NoValue: so does what the run itself says from another one by coarser steps: motions part.
+        NoValue: the run's own value differs as much from that of a run with coarser steps: its motion is too sensitive.
     """
     wrong = answered_otherwise(run, output, reported)
     own = run.ask(output).value if wrong else None
@@ -260,7 +263,7 @@ def _other_number(reported: float | None, due: float | None) -> str:
 
 
 def _rows_proven(found: Sweep) -> Iterator[Check]:
-    """What is set in every run, and what is told of all of them."""
+    """Checks of the parameters set in every run, and of the statistics over all of them."""
     plan, rows, names = found.plan, list(found.ledger.rows()), found.columns
     if len(rows) > MOST_PROVEN:
         return

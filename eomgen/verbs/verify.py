@@ -58,7 +58,7 @@ def verify_document(
         equations: as they were typed; "-" reads them from stdin, one a line.
         answers: files of equations, one a line, or folders of such files.
         at, from_rest, kind: as of `verify`.
-        hint: how much is told of what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
+        hint: how much is said about what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
     Raises:
         UsageError: there is no equation; the only one cannot be read.
     """
