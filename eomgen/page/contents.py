@@ -1,4 +1,4 @@
-"""What a report is made of: sections of the documents of verbs, drawings, and files that it carries."""
+"""Parts of a report: sections of the documents of verbs, drawings, and files that it carries."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ INKS = ("#1f5fa8", "#b8431f", "#1f7a4a", "#7a3f9d", "#8a6a00", "#0f7c86", "#a12d
 
 
 ENDINGS = (".svg", ".pdf")
-"""Of the files in which figures stand beside a report."""
+"""Endings of the files that hold the figures of a report."""
 
 
 @dataclass(frozen=True)
 class LegendEntry:
-    """What a line of a drawing means.
+    """Meaning of one line of a drawing.
 
     Args:
         style: its class: its colour, and how it is dashed.
@@ -71,7 +71,7 @@ class _Files:
 
 
 def _drawn(save: Callable[[Path], object], ending: str) -> bytes:
-    """What a picture's file holds."""
+    """Content of a picture's file."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"figure{ending}"
         save(path)
@@ -79,7 +79,7 @@ def _drawn(save: Callable[[Path], object], ending: str) -> bytes:
 
 
 def framed(page: str) -> str:
-    """A page inside another, as notebooks show it: it asks nobody for anything."""
+    """A page inside another, as notebooks show it: it loads nothing from elsewhere."""
     style = "width:100%;height:560px;border:0"
     return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{html.escape(page)}"></iframe>'
 
@@ -107,7 +107,7 @@ class ReportFigure:
     fixed: bool = False
 
     def __getstate__(self) -> dict[str, Any]:
-        """With its files as they are: what draws them does not go into a pickle."""
+        """State to be pickled: the drawn files take the place of the function that draws them."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         return own if self.save is None else own | {"save": _Files({e: _drawn(self.save, e) for e in ENDINGS})}
 
@@ -117,7 +117,7 @@ class Attachment:
     """A file inside a report.
 
     Args:
-        content: its bytes; or, of a table, its columns, of which the page makes the lines when it is asked for them.
+        content: its bytes; or, of a table, its columns, of which the page makes the lines when they are requested.
     """
 
     name: str
@@ -149,7 +149,7 @@ class ReportSection:
     remark: str = ""
 
     def __getstate__(self) -> dict[str, Any]:
-        """With what moves as it is."""
+        """State to be pickled: the finished player takes the place of the function that makes it."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         return own if self.live is None else own | {"live": Pickled(self.live())}
 

@@ -1,4 +1,4 @@
-"""Pictures of a report: a model at rest, curves over time, files beside it.
+"""Pictures of a report: a model at rest, curves over time, files next to it.
 
 Pictures of matplotlib as figures of a report: a model at rest with its dimensions, and those of results.
 """
@@ -77,7 +77,7 @@ def figure_of(picture: Picture, key: str, caption: str) -> ReportFigure:
 
 
 def _lean(marks: str, key: str) -> str:
-    """Without what says nothing to a browser: metadata, comments, unseen digits, what is said again and again.
+    """SVG without what a browser does not need: metadata, comments, invisible digits, repeated styles.
 
     Args:
         key: what the names in it begin with: no two figures of a page have the same.
@@ -95,12 +95,12 @@ def _lean(marks: str, key: str) -> str:
 
 
 # -------- pictures --------------------------------------------------------------------------------------------
-# Pictures of a report as files beside it.
+# Pictures of a report as files next to it.
 
 
 @dataclass(frozen=True)
 class Pictures:
-    """Files beside the one of this name.
+    """Picture files next to the report's file.
 
     Args:
         beside: the name of the report's file.
@@ -152,12 +152,12 @@ class Axis:
     power: int
 
     def text(self, value: float) -> str:
-        """A number as it is written, as many digits as tell it from the next: plainly where few do."""
+        """A number as it is written, with as many digits as distinguish it from the next: plainly where few do."""
         largest = max(map(abs, self.ticks))
         if self.power < -PLAIN or largest >= 10**PLAIN:
             if not value:
                 return "0"
-            count = max(2, math.floor(math.log10(largest)) - self.power)  # ticks beside one another are told apart
+            count = max(2, math.floor(math.log10(largest)) - self.power)  # neighbouring ticks differ
             digits, _, power = f"{value:.{count}e}".partition("e")
             return f"{digits.rstrip('0').rstrip('.')}e{int(power)}".replace("-", "\N{MINUS SIGN}")
         return f"{value:.{max(0, -self.power)}f}".replace("-", "\N{MINUS SIGN}")

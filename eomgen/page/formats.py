@@ -20,7 +20,7 @@ from eomgen.page.paper import pdf_of
 from eomgen.page.tex import tex_files
 
 # -------- marked ----------------------------------------------------------------------------------------------
-# Report -> Markdown with formulas between dollars, its pictures beside it.
+# Report -> Markdown with formulas between dollars, its pictures next to it.
 
 
 def markdown_files(report: Report, name: str) -> Mapping[str, str | bytes]:
@@ -78,7 +78,7 @@ def written_as(report: Report, form: str, name: str) -> FilesByName:
 
     Args:
         form: the ending, one of FORMATS.
-        name: of the file; others stand beside it.
+        name: of the file; others stand next to it.
     """
     found = FORMATS[form](report, name)
     return {path: visible(text) if isinstance(text, str) and path == name else text for path, text in found.items()}

@@ -1,4 +1,4 @@
-"""Report -> one HTML file that asks nothing of anybody: light and dark, on a screen of any width, on paper."""
+"""Report -> one HTML file that loads nothing from elsewhere: light and dark, on a screen of any width, on paper."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
 
 
 def _live(live: Callable[[], Html]) -> Html:
-    """What moves; or what it takes, where that is not installed."""
+    """Player of a motion; or a remark that says what to install for it."""
     try:
         return live()
     except ToolMissing as error:
@@ -163,7 +163,7 @@ def _formulas(setter: Setter, formulas: Sequence[Formula]) -> Html:
 
 
 def _scrolled(inside: Html, what: str) -> Html:
-    """What may be wider than the screen: it scrolls by itself, by keys too."""
+    """Box for content that may be wider than the screen: it scrolls by itself, by keys too."""
     return element("div", inside, class_="scroll", tabindex="0", role="group", aria_label=what)
 
 
@@ -247,7 +247,7 @@ def svg(drawing: ReportFigure, **attributes: str | None) -> Html:
 
 
 def _attachments(files: Sequence[Attachment], computed: frozenset[str]) -> Html:
-    """Links to files that the page carries, packed; a program of the page unpacks what is asked for.
+    """Links to files that the page carries, packed; a program of the page unpacks the one that is clicked.
 
     Args:
         computed: columns that the player of the page gives: a table is carried without them.

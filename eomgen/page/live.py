@@ -1,4 +1,4 @@
-"""Phase, Scene -> Live: a model that a page can move by itself: its programs, and where their numbers lie.
+"""Phase, Scene -> Live: a model that a page can move by itself: its programs, and the places of their numbers.
 
 begin(p)        parameters that follow from others, start and first guess of each coordinate, start of each speed
 start, constraints     phi, J u + sigma and their slopes, of the system as it is declared and as it is integrated
@@ -72,7 +72,7 @@ class ConstraintRows:
         return tuple(map(tuple, jacobian(self.gaps, self.system.symbols.q)))
 
     def reported(self) -> dict[str, Any]:
-        """Where the numbers lie."""
+        """Places of the numbers in the results of the program, for the page."""
         symbols, model = self.system.symbols, self.system.scope.model
         return {
             "coordinates": len(symbols.q),
@@ -87,8 +87,8 @@ class ConstraintRows:
 
 
 def constraint_rows(system: System) -> ConstraintRows:
-    """Of a system: the gaps of all constraints, also of those that eliminated coordinates satisfy, and the rows that
-    close."""
+    """Constraint rows of a system: the gaps of all constraints, also of those satisfied by elimination, and the rows
+    that close."""
     free = system if system.elimination is None else system.free or system
     closing = system.constraints.closing
     J = tuple(map(tuple, system.constraints.J)) if closing and system.symbols.u else ()
@@ -102,7 +102,7 @@ def _places(rows: Sequence[Sequence[Scalar]]) -> Slopes:
 
 @dataclass(frozen=True)
 class Live:
-    """What moves in a page.
+    """A model that a page can move by itself.
 
     Args:
         phase: the one phase of a model whose contacts do not change.
@@ -128,7 +128,7 @@ class Live:
 
     @cached_property
     def programs(self) -> dict[str, Program]:
-        """By name; one that is the same as another, or of nothing, is left out."""
+        """Programs by name; one that is the same as another, or has no results, is left out."""
         declared, system = self.phase.declared, self.phase.system
         with growing():
             equations = with_accelerations(self.phase.equations)
@@ -178,12 +178,12 @@ class Live:
 
     @cached_property
     def reactions(self) -> dict[str, Scalar]:
-        """Those that have a single value, by name."""
+        """The reactions that have a single value, by name."""
         return single_reactions(self.phase)
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:
-        """Where each number of the motion lies: ("x", place) in the state, ("frame", place) in the frame."""
+        """{name: place of the number}: ("x", place) in the state, ("frame", place) in the frame."""
         phase, first = self.phase, len(self.scene.values)
         found = {"T": ("frame", first), "V": ("frame", first + 1)}
         found |= {f"{q}'": ("frame", first + 2 + k) for k, q in enumerate(phase.coordinates)}
@@ -192,7 +192,7 @@ class Live:
         return found | {name: ("frame", place + k) for k, name in enumerate(self.reactions)}
 
     def reported(self) -> dict[str, Any]:
-        """What the page has to know of the programs."""
+        """Description of the programs for the page."""
         declared, model = self.phase.declared, self.model
         q, u, parts = declared.symbols.q, declared.symbols.u, model.coordinates
         standing = set(symbols_of(gaps_of(declared.constraints)))
@@ -222,7 +222,7 @@ class Live:
 
 
 def single_reactions(phase: PhaseModel) -> dict[str, Scalar]:
-    """The reactions that have a single value, by name; {} where a body is held by nothing."""
+    """The reactions that have a single value, by name; {} where a body is unsupported."""
     try:
         values = determinate(phase.reactions)
     except DerivationError:

@@ -99,7 +99,7 @@ def curve_path(x: np.ndarray, y: np.ndarray) -> str:
 
 
 def _bends(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Which points a line needs so that it passes none by more than what is seen (Douglas and Peucker)."""
+    """Indices of the points that a line needs so that no other is off it by more than SEEN (Douglas and Peucker)."""
     kept, open_ = {0, len(x) - 1}, [(0, len(x) - 1)]
     while open_:
         a, b = open_.pop()

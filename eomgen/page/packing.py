@@ -36,7 +36,7 @@ class PackedColumns:
     content: bytes
 
     def head(self, **more: Any) -> dict[str, Any]:
-        """What a page is told of them beside the content."""
+        """Description of the columns that a page gets with their content."""
         return {"rows": self.rows, "columns": self.columns, **more}
 
 
@@ -72,7 +72,7 @@ def table_bytes(columns: Mapping[str, np.ndarray], digits: int) -> bytes:
 
 
 def _holes(column: np.ndarray) -> Iterable[Hole]:
-    """Where there are no numbers, and what is there instead."""
+    """Intervals of a column without numbers, and the word that stands there: (first row, length, "nan" or "inf")."""
     words = np.where(np.isnan(column), "nan", np.where(column > 0, "inf", "-inf"))
     open_ = np.where(np.isfinite(column), "", words)
     ends = np.flatnonzero(np.append(open_[1:] != open_[:-1], True)) if len(column) else ()
@@ -100,7 +100,7 @@ def _seven_bits(values: np.ndarray) -> bytes:
 
 
 BLOCK = 12  # bytes that are looked up
-LEAST = 24  # bytes that are worth a copy
+LEAST = 24  # bytes from which a copy is shorter
 NEAR = 30_000  # bytes back: gzip finds it there
 
 
@@ -140,7 +140,7 @@ def _copies(content: bytes) -> Iterator[tuple[int, int, int]]:
 
 
 def _alike(content: bytes, a: int, b: int) -> int:
-    """How many bytes from a on are those from b on."""
+    """Number of bytes from a on that are equal to those from b on."""
     length, step = BLOCK, 4096
     while step:
         end = length + step

@@ -88,7 +88,7 @@ def _group(setter: Setter, group: Group) -> list[str]:
 
 
 def _kept_with_next(sentence: str) -> str:
-    """What introduces a formula stands on its page."""
+    """Block for the sentence that introduces a formula: it stays on the formula's page."""
     return f"#block(sticky: true)[{sentence}]"
 
 
@@ -273,7 +273,7 @@ class _Reader:
         return "" if token is None else self._one(token)
 
     def _words(self) -> str:
-        """What stands between the next braces, as words."""
+        """Content of the next braces, as words."""
         start = self._tex.index("{", self._place) + 1
         depth, place = 1, start
         while depth:

@@ -36,7 +36,7 @@ class Played:
     """A model's page.
 
     Args:
-        played: the run that it begins with, and what is asked.
+        played: the run that it begins with, and the player's options.
         shorter: why it is shorter than others, or "".
     """
 
@@ -88,7 +88,7 @@ class Played:
 
 
 def _wrong(v: TestVector, found: np.ndarray) -> str:
-    """Where a result differs from the vector's, or ""."""
+    """Largest deviation of a result from the vector's, in words; "" if it is within the tolerance."""
     right: np.ndarray = np.array(v.result)
     missing = np.isnan(right)
     largest = float(np.max(np.abs(right[~missing]), initial=1.0))
@@ -148,7 +148,7 @@ def played(model: Model, time: float | None, options: PlayerOptions) -> Played:
 def slider_ranges(
     model: Model, sliders: Sequence[str], *, declared: bool = True
 ) -> tuple[dict[str, SliderRange | None], tuple[Taken, ...]]:
-    """(of each slider that is asked for its range in SI, what was made of what was typed).
+    """({slider: its range in SI}, the values that were read from what was typed).
 
     Args:
         declared: plain numbers are in the unit that the file declares; else in SI.

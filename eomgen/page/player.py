@@ -46,7 +46,7 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SEVEN_DIGITS
 from eomgen.version import __version__
 
 # -------- player data -----------------------------------------------------------------------------------------
-# Trajectory -> what its player is told: scene, recorded run, units, sliders; how the page moves it where it can.
+# Trajectory -> data of its player: scene, recorded run, units, sliders; programs by which the page moves it.
 
 
 VECTORS = 3  # of each program in the page
@@ -60,13 +60,13 @@ SliderRange = tuple[float, float]
 
 @dataclass(frozen=True)
 class PlayerOptions:
-    """What is asked of a player.
+    """Options of a player.
 
     Args:
         sliders: parameters and starts that have one, with its range in SI, or None: the default; () for all.
-        moves: whether the model lives in the page, where it can; else the recorded run is played.
+        moves: the model lives in the page, where it can; else the recorded run is played.
         trail: a point that leaves a trail from the start, "" for none.
-        forces: whether arrows are shown from the start.
+        forces: arrows are shown from the start.
         speed: of the time.
     """
 
@@ -96,7 +96,7 @@ class PlayedRun:
 
     @property
     def changes(self) -> bool:
-        """Whether contacts change in it, or could."""
+        """True if contacts change in it, or could."""
         return self.phase.configuration != Configuration()
 
     @cached_property
@@ -123,7 +123,7 @@ class PlayedRun:
 
     @cached_property
     def scene(self) -> Scene:
-        """Of a model whose contacts do not change."""
+        """Scene with reactions of a model whose contacts do not change."""
         scene = scene_of_system(self.phase.system, self.phase.equations)
         values = single_reactions(self.phase)
         found = resultants(self.phase.system, values)
@@ -137,11 +137,11 @@ class PlayedRun:
 
     @property
     def moves(self) -> bool:
-        """Whether the model lives in the page."""
+        """True if the model lives in the page."""
         return self.options.moves and not self.rests
 
     def reported(self) -> dict[str, Any]:
-        """What the player is told."""
+        """Data of the player in the page, as JSON."""
         run, names = self.run, (*self.run.coordinates, *self.run.speeds)
         moves = self.moves
         columns = self.live.columns if self.live else {name: ("x", k) for k, name in enumerate(names)}
@@ -219,7 +219,7 @@ class PlayedRun:
     # -- sliders -----------------------------------------------------------------------------------
 
     def _sliders(self) -> list[dict[str, Any]]:
-        """Of parameters that are numbers, and of what may start otherwise; those asked for alone, where any are."""
+        """Sliders of numeric parameters and free initial values; only the requested ones, if any are requested."""
         parts = self.model.parameters
         derived = self.live.derived if self.live else ()
         values = {
@@ -263,7 +263,7 @@ class PlayedRun:
 
 
 def _default_range(value: float, kind: str, *, angular: bool) -> SliderRange:
-    """A parameter keeps its sign, from a fifth to three times of it; an angle goes once around."""
+    """Default range of a slider: a fifth to three times of a parameter, a full turn of an angle."""
     if kind == "parameter" and value:
         return (0.2 * value, 3 * value) if value > 0 else (3 * value, 0.2 * value)
     if kind == "coordinate" and angular:
@@ -293,7 +293,7 @@ def rows_reported(rows: np.ndarray, digits: int = STATES) -> dict[str, Any]:
 
 
 # -------- player page -----------------------------------------------------------------------------------------
-# PlayedRun -> its player as parts of a page, and as a page of its own, which asks nothing of anybody.
+# PlayedRun -> its player as parts of a page, and as a page of its own, which loads nothing from elsewhere.
 
 
 SCRIPTS = ("columns.mjs", "integrator.mjs", "ties.mjs", "motion.mjs", "plane.mjs", "space.mjs", "player.mjs")
@@ -342,7 +342,7 @@ _UNPACKED = """\
 
 @dataclass(frozen=True)
 class PlayerParts:
-    """What a page holds of a player.
+    """Parts of a page that make up a player.
 
     Args:
         style: style sheet; colours are the page's own variables (`colours.css`).
@@ -356,11 +356,11 @@ class PlayerParts:
 
 
 class Playable(Protocol):
-    """What a player shows.
+    """A motion that a player can show.
 
     Attributes:
         live: the model as the page evaluates it, or None: what was computed is played.
-        moves: whether it lives in the page.
+        moves: the model lives in the page.
     """
 
     @property
@@ -436,13 +436,13 @@ def _harmless(text: str) -> str:
 # PlayedRun, its page -> checks: read again the page holds the run, its parameters and sliders, and draws the model.
 
 
-NAME, HOW = "what the page is told, read back, is the run and what the model declares", "its columns and numbers"
+NAME, HOW = "the data of the page, read back, are the run and what the model declares", "its columns and numbers"
 _PACKED = re.compile(r'atob\("([A-Za-z0-9+/=]+)"\)')
 _BEGUN = "begun(document.getElementById("
 
 
 def player_reported(page: str) -> Mapping[str, Any]:
-    """What the player in a page is told.
+    """Data of the player in a page.
 
     Raises:
         ValueError: there is none.
@@ -455,7 +455,7 @@ def player_reported(page: str) -> Mapping[str, Any]:
 
 
 def player_read_back(played: PlayedRun, page: str) -> Iterator[Check]:
-    """Whether a page holds the run that it plays, and draws its model."""
+    """Checks that a page holds the run that it plays, and draws its model."""
     reported, tally = player_reported(page), Tally(NAME, HOW)
     for what, wrong in _compared(played, reported):
         tally.add(what, wrong)
@@ -468,7 +468,7 @@ def player_read_back(played: PlayedRun, page: str) -> Iterator[Check]:
 
 
 def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
-    """Which number of the motion is another than the run's of that name, in its middle; "".
+    """First number of the page's motion that is not the run's of that name, half-way through the run; "" if none.
 
     Args:
         columns: ("x", place) in the state, ("frame", place) in what the page's program of the frame gives.
@@ -496,7 +496,7 @@ def _slots(played: PlayedRun, state: NumericState) -> list[float]:
     """The numbers of a frame."""
     try:
         unknowns = state.unknowns
-    except NoValue:  # then what hangs on accelerations is not compared
+    except NoValue:  # then what depends on accelerations is not compared
         unknowns = {}
     known = {**dict.fromkeys((*state.equations.symbols.a, *state.equations.symbols.lam), np.nan), **unknowns}
     return [float(x) for x in evaluate(played.scene.values, state.values | known, fifty_digits(partial=True))]
@@ -527,7 +527,7 @@ def _compared(played: PlayedRun, reported: Mapping[str, Any]) -> Iterator[tuple[
 
 
 def _otherwise_moved(played: PlayedRun, reported: Mapping[str, Any]) -> str:
-    """Whether a page says that contacts change where none is declared, or moves by itself where they do."""
+    """Message if a page says that contacts change where none is declared, or moves by itself where they do; else ""."""
     model, requested = played.model, played.options.moves
     could = bool(contacts_of(model)) or any(len(pieces_of(body)) > 1 for body in model.bodies.values())
     if requested and "contacts" in reported["rests"] and not could:
@@ -537,7 +537,7 @@ def _otherwise_moved(played: PlayedRun, reported: Mapping[str, Any]) -> str:
 
 
 def _states(played: PlayedRun) -> np.ndarray:
-    """As they are integrated; of contacts that change as they are named."""
+    """States of the run as they are integrated; as they are named where contacts change."""
     if played.changes or played.run.phases[0].track is None:
         return played.run.x
     t, x = played.run.phases[0].track
@@ -573,7 +573,7 @@ def _other_unit(each: Mapping[str, Any], declared: str) -> str:
 
 
 # -------- released --------------------------------------------------------------------------------------------
-# VirtualDisplacements -> what a player is told: one released reaction after the other, each to and fro.
+# VirtualDisplacements -> data of a player: one released reaction after the other, each to and fro.
 
 
 PERIOD = 2.0  # of one displacement [s]
@@ -597,7 +597,7 @@ class PlayedDisplacements:
         return self.found[0].structure.system.scope.model
 
     def reported(self) -> dict[str, Any]:
-        """What the player is told."""
+        """Data of the player in the page, as JSON."""
         share = np.arange(STEPS + 1) / STEPS
         size = len(share)
         pieces = [

@@ -50,7 +50,7 @@ READERS: Mapping[str, Callable[[str], ReadReport]] = {
 
 
 def report_read_back(report: Report, files: FilesByName, form: str, run: Trajectory | None) -> Iterator[Check]:
-    """Whether the files of a report say what it holds.
+    """Checks that the files of a report say what it holds.
 
     Args:
         form: the ending; what is no text is not read.
@@ -75,7 +75,7 @@ def report_read_back(report: Report, files: FilesByName, form: str, run: Traject
 
 
 def _wanted(report: Report, form: str) -> Iterator[Wanted]:
-    """What is to stand in it, in order."""
+    """Elements that the file of a report has to hold, in order."""
     head = report.head
     yield Wanted("heading", (head.title,))
     about = [Wanted("words", (head.about,))] if head.about else []
@@ -117,7 +117,7 @@ def _of_proof(report: Report, form: str) -> Iterator[Wanted]:
 
 
 def _copied(report: Report, read: ReadReport) -> Iterator[Check]:
-    """What a button copies says the formulas beside it."""
+    """Check that the text which a button copies says the formulas next to it."""
     formulas = [
         statement
         for section in report.sections
@@ -165,7 +165,7 @@ def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajecto
 
 
 def _left_out(run: Trajectory, legends: Mapping[str, Sequence[tuple[str, PageLine]]], letters: SetLetters) -> str:
-    """Which coordinate or reaction has no curve."""
+    """First coordinate or reaction without a curve; "" if all have one."""
     drawn = {spoken(_named(line, letters)) for named in legends.values() for _, line in named}
     known = [*run.coordinates, *(name for name, column in run.reactions.items() if np.nan_to_num(column).any())]
     return next((f"no curve of {name}" for name in known if spoken(name) not in drawn), "")
@@ -187,7 +187,7 @@ def _named(line: PageLine, letters: SetLetters) -> str:
 
 
 def _unlike_curves(run: Trajectory, caption: str, read: ReadCurves, named: Mapping[str, str]) -> str:
-    """Which curve passes other values than the column of its name, in the unit that the caption says."""
+    """First curve that deviates from the column of its name, in the unit that the caption says; "" if none does."""
     if not np.isfinite(read.near).all():
         raise NoValue("numbers at an axis are alike")
     unit = _UNIT.search(caption)
@@ -209,7 +209,7 @@ def _unlike_curves(run: Trajectory, caption: str, read: ReadCurves, named: Mappi
 
 
 def _off(t: np.ndarray, y: np.ndarray, pieces: Sequence[np.ndarray], near: tuple[float, float]) -> str:
-    """Where a curve is away from the values, or these from it."""
+    """First place where a curve deviates from the values, or these from it; "" if none."""
     finite = np.isfinite(y)
     if not finite.any():
         return "there are no values"
@@ -242,7 +242,7 @@ def _around(t: np.ndarray, y: np.ndarray, at: np.ndarray, dt: float) -> tuple[np
 
 
 def _unlike_table(run: Trajectory, content: bytes, columns: Sequence[str]) -> str:
-    """Which column of a table is not that of its name."""
+    """Name of the first column of a table that is not the run's column of that name; "" if none."""
     right = run.columns()
     if list(columns) != list(right):
         return f"columns {', '.join(columns)}"

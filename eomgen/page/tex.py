@@ -1,4 +1,4 @@
-"""Report -> LaTeX that compiles as it is, its pictures beside it."""
+"""Report -> LaTeX that compiles as it is, its pictures next to it."""
 
 from __future__ import annotations
 

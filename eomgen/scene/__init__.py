@@ -1,1 +1,1 @@
-"""What can be drawn of a model at a state, as data over the scalars of the graph."""
+"""Drawable elements of a model at a state, as data over the scalars of the graph."""

@@ -25,7 +25,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
-    """What is drawn of a body in its own frame; of a node of a truss nothing."""
+    """Marks of a body in its own frame; none of a node of a truss."""
     part = system.scope.model.bodies.get(link.name)
     if part is None or is_node(link.name):
         return []
@@ -41,7 +41,7 @@ def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
 
 
 def is_block(system: System, link: BodyLink) -> bool:
-    """Whether a body slides on the ground and nothing says how it looks: it is drawn as a block."""
+    """True if a body slides on the ground and has no shape: it is drawn as a block."""
     part = system.scope.model.bodies[link.name]
     if system.scope.model.space == "space":
         return False
@@ -146,7 +146,7 @@ def shaft_of(system: System, link: BodyLink) -> Vector | None:
 
 
 def _turns(link: BodyLink) -> bool:
-    """Whether it is held by a hinge."""
+    """True if the body is held by a hinge."""
     alone = len(link.S) == 1 and not all(map(is_zero, link.S[0][0])) and all(map(is_zero, link.S[0][1]))
     return link.joint is not None and link.joint.carries_reaction and alone
 
@@ -188,7 +188,7 @@ def parameters_as_drawn(system: System) -> dict[Node, float]:
 
 
 def places_of_body(system: System, link: BodyLink) -> list[Vector]:
-    """Where its joint sits, its own points in their order, where other bodies hang on it: each once, body axes."""
+    """Places of a body, each once, in body axes: of its joint, its own points in order, the joints of other bodies."""
     motion, part = system.motion, system.scope.model.bodies[link.name]
     seated = link.joint is not None and link.joint.carries_reaction
     own = [motion.points[link.name][name] for name in part.points]
@@ -216,7 +216,7 @@ def inertia_mark(mass: MassProperties, frame: int, body: str) -> list[Mark]:
 def without_veils(marks: Sequence[Mark], *, alone: bool) -> list[Mark]:
     """An ellipsoid of inertia stands for a body that nothing else shows, or about the rods of the only body.
 
-    Moments that a model declares say little of its size: ellipsoids would hide what hangs together.
+    Moments that a model declares say little of its size: ellipsoids would hide how the bodies are connected.
     """
     shown = {mark.of for mark in marks if mark.role == "body" and not (alone and isinstance(mark.form, RodForm))}
     return [mark for mark in marks if mark.role != "inertia" or mark.of not in shown]

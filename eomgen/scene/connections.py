@@ -84,7 +84,7 @@ def _plane_joint(
 
 
 def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector) -> list[Mark]:
-    """A block on its guide: on the ground's hatched, above it; a spring stands for the guide of what hangs on it."""
+    """A block on its guide: on the ground's hatched, above it; a body that hangs on a spring has no other guide."""
     part, grounded = system.scope.model.bodies[link.name], link.parent == GROUND
     above = 0 if grounded else link.parent + 1
     if guides := link.joint.guides(system.scope.value, link.before):
@@ -105,7 +105,7 @@ def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector
 
 
 def _hangs(system: System, link: BodyLink, along: Vector) -> bool:
-    """Whether a body stands or hangs on springs between points, its way along its weight: no guide is drawn then."""
+    """True if a body stands or hangs on springs and moves along its weight: no guide is drawn then."""
     weight = system.loads.fields
     if all(map(is_zero, weight)) or not all(map(is_zero, cross(along, weight))):
         return False
@@ -129,7 +129,7 @@ def _space_joint(
 
 
 def _reach(system: System, link: BodyLink, slides: bool) -> list[Mark]:
-    """What a body in space has slid along, from where its joint sits; of the only joint on the ground how it stands."""
+    """Marks of the line along which a body in space has slid, and of the seat of the only joint on the ground."""
     grounded, motion = link.parent == GROUND, system.motion
     above = Pose() if grounded else motion.links[link.parent].pose
     seat = above.point(link.before.p)
@@ -188,7 +188,7 @@ def force_elements(system: System) -> list[Mark]:
 
 
 def _sides(system: System) -> dict[str, int]:
-    """How far to the left of its line each spring or damper stands where several join the same places."""
+    """Offset of each spring or damper to the left of its line, where several join the same places [symbol units]."""
     together: dict[frozenset[Any], list[tuple[str, Any]]] = {}
     for name, force in system.scope.model.forces.items():
         element = force.element
@@ -260,12 +260,12 @@ def _direction(stop: Stop, d: Vector) -> Any:
 
 
 def _is_negative(stop: Stop) -> bool:
-    """Whether it is travelled round counter-clockwise: the offset is minus the radius."""
+    """True if the round stop is run counter-clockwise: the offset is minus the radius."""
     return (stop.scene.worth(stop.offset) or 0.0) < 0
 
 
 def _met(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
-    """What something touches, and the support of a point."""
+    """Marks of a touched surface, and of the support of a point on it."""
     found = [*_surface(system, meeting, of), *_round(system, meeting)]
     if isinstance(meeting.what, TouchingPoint) and not isinstance(meeting.surface, RoundSurface):
         found += _point_support(system, meeting, rows, of)
@@ -444,7 +444,7 @@ def applied_marks(system: System) -> Iterator[Mark]:
 
 
 def _known(system: System, v: Vector) -> Vector:
-    """A load in which a number that is asked for is drawn as 1."""
+    """A load in which an unknown number, to be found, is drawn as 1."""
     return vector_of(substituted(v, dict.fromkeys(system.symbols.unknowns.values(), 1)))
 
 
@@ -539,7 +539,7 @@ def reaction_marks(forces: Iterable[tuple[Resultant, Vector]]) -> Iterator[Mark]
 
 
 def _seat(system: System, owner: str) -> tuple[str | None, Vector] | None:
-    """Where a joint or constraint acts."""
+    """(body, place) at which a joint or constraint acts; None if at no single place."""
     motion = system.motion
     if owner in motion.index:
         return owner, motion.link(owner).point

@@ -1,6 +1,6 @@
 """Every kind of thing that a picture is made of: `ALL` is the table that drawers follow.
 
-The forms of shapes stand beside the shapes; here are those of joints, forces, labels and dimensions.
+The forms of shapes are in the modules of the shapes; here are those of joints, forces, labels and dimensions.
 """
 
 from __future__ import annotations
@@ -99,7 +99,7 @@ class PointForm(Form):
 
 @dataclass(frozen=True)
 class LabelForm(Form):
-    """A name beside a place."""
+    """A name next to a place."""
 
     kind: ClassVar[str] = "label"
     spots: ClassVar[tuple[str, ...]] = ("at",)
@@ -150,7 +150,11 @@ class LoadForm(Form):
 
 @dataclass(frozen=True)
 class DimensionForm(Form):
-    """A dimension line beside the line from a to b, with the name of the length; `tier`: so far away [symbol units]."""
+    """A dimension line parallel to the line from a to b, with the name of the length.
+
+    Args:
+        tier: distance from the line [symbol units].
+    """
 
     kind: ClassVar[str] = "dimension"
     spots: ClassVar[tuple[str, ...]] = ("a", "b")

@@ -34,7 +34,7 @@ from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, plus, times
 
 
 def scene_of_system(system: System, equations: EquationsOfMotion | None = None) -> Scene:
-    """What can be drawn of a system at a state.
+    """Scene of a system: its drawable elements at a state.
 
     Args:
         equations: of motion: applied forces and reactions are drawn too.
@@ -63,7 +63,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
 
 
 def scene_of(model: ModelOrPath) -> Scene:
-    """What can be drawn of a model at a state, forces left out."""
+    """Scene of a model: its drawable elements at a state, forces left out."""
     model = with_nodes_balanced(model_at(model))
     return scene_of_system(system_of(model, contacts_at_start(model).modes))
 
@@ -96,7 +96,7 @@ def name_marks(system: System) -> Iterator[Mark]:
 
 
 def _middle(system: System, link: BodyLink) -> Vector:
-    """Where a body's name stands: at its mass centre, else half-way along its middle piece."""
+    """Place of a body's name: its mass centre, else half-way along its middle piece."""
     if (center := system.motion.points[link.name].get("center")) is not None:
         return center
     places = places_of_body(system, link) or [ZERO]
@@ -130,7 +130,7 @@ def size_marks(system: System, marks: Iterable[Mark]) -> list[Mark]:
 
 
 def _body_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:
-    """Between two places of a body that are a parameter apart along one of its axes."""
+    """Dimensions between two places of a body that are a parameter apart along one of its axes."""
     for k, link in enumerate(system.motion.links, start=1):
         part = system.scope.model.bodies.get(link.name)
         if part is None:
@@ -142,7 +142,7 @@ def _body_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:
 
 
 def _ground_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:
-    """Between two places of the ground, the same."""
+    """Dimensions between two places of the ground that are a parameter apart along one of its axes."""
     motion = system.motion
     seats = [link.before.p for link in motion.links if link.parent == GROUND and link.joint is not None]
     points = [motion.scope.vector(place) for place in system.scope.model.points.values()]

@@ -1,4 +1,4 @@
-"""Trajectory -> one picture over all its phases, and what it shows at a frame.
+"""Trajectory -> one picture over all its phases, and its content at a frame.
 
 Trajectory -> one picture over all its phases: each phase is drawn by its own system, whose coordinates mean its own.
 
@@ -42,11 +42,11 @@ WORDS = ("text", "symbol", "unit", "close", "faces", "side", "tier", "hole", "fi
 def phase_frames(
     run: Trajectory, times: np.ndarray, *, forces: bool = True, scene_of: SceneMaker = scene_of_system
 ) -> SceneNumbers:
-    """What is drawn of a run, and its numbers at some instants of it; states between rows are interpolated.
+    """Scene of a run and its numbers at given instants; states between rows are interpolated.
 
     Args:
         forces: applied forces and reactions are arrows.
-        scene_of: what is drawn of a system.
+        scene_of: makes the scene of a system.
     """
     starts = [phase.start for phase in run.phases]
     owner = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
@@ -261,7 +261,7 @@ def _filled(value: Any, numbers: Iterator[Scalar]) -> Any:
     return value if value is None or isinstance(value, (str, bool)) else next(numbers)
 
 
-# -------- told ------------------------------------------------------------------------------------------------
+# -------- read back -------------------------------------------------------------------------------------------
 # Drawing -> what it shows at one of its frames, as it is proven: places of bodies, ends of springs, arrows.
 
 
@@ -270,7 +270,7 @@ LENGTHS = frozenset(("line", "polygon", "arc", "rod", "point", "box", "ellipsoid
 
 
 def picture_reported(drawing: Drawing, scene: Scene, frame: int) -> ReportedPicture:
-    """What the strokes of a drawing show at a frame."""
+    """Places of bodies, ends of springs and arrows that the strokes of a drawing show at a frame."""
     d = 2 if scene.plane else 3
     symbols = {mark.of for mark in scene.marks if mark.role == "body" and mark.form.kind not in LENGTHS}
     whole = ("spring", "damper") if scene.plane else ("spring",)  # in space a damper has several parts
@@ -318,7 +318,7 @@ def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, 
 
 
 def _arrows(drawing: Drawing, scene: Scene, frame: int) -> list[ReportedArrow]:
-    """Of single forces and resultants: a shaft, then its head."""
+    """Arrows of single forces and resultants; the strokes of each are a shaft, then its head."""
     single = {mark.of for mark in scene.marks if mark.form.kind == "arrow"}
     single -= {mark.of for mark in scene.marks if mark.form.kind in ("couple", "load")}
     found, strokes = [], [s for s in drawing.strokes if s.role in ("force", "reaction") and s.of in single]

@@ -1,4 +1,4 @@
-"""Forms in the plane -> strokes: what each kind of mark looks like on paper."""
+"""Forms in the plane -> strokes: the look of each kind of mark on paper."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ def _between(
 
 
 def _track(form: forms.TrackForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """As long as the picture; with a normal hatched on the other side."""
+    """A track as long as the picture; with a normal it is hatched on the other side."""
     if form.along is None:
         return [], []
     at, along = numbers.spot(form.at, mark), _unit(numbers.way(form.along, mark))
@@ -224,7 +224,7 @@ def _label(form: forms.LabelForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
 
 
 def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """A line with two heads beside the length that it measures, thin lines from its ends."""
+    """A line with two heads parallel to the length that it measures, thin lines from its ends."""
     if not sizes.dimensions:
         return [], []
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
@@ -261,7 +261,7 @@ def _angle(form: forms.AngleForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
 
 
 def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """Beside the upper right corner."""
+    """Arrow of a uniform field, next to the upper right corner."""
     if not sizes.dimensions:
         return [], []
     v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))

@@ -1,4 +1,4 @@
-"""System -> Scene: what can be drawn of a model at a state, as data; and the frame at one state.
+"""System -> Scene: the drawable elements of a model at a state, as data; and the frame at one state.
 
 System -> Scene: what can be drawn of a model at a state, as data over the scalars of the graph.
 
@@ -89,7 +89,7 @@ ROLES = (
 
 @dataclass(frozen=True, repr=False)
 class Scene:
-    """What can be drawn of a model at a state.
+    """Drawable elements of a model at a state.
 
     Args:
         system: whose scalars its numbers are.
@@ -213,7 +213,7 @@ class Scene:
 
 
 def is_moving(x: Any) -> bool:
-    """Whether a scalar holds a symbol."""
+    """True if a scalar holds a symbol."""
     return type(x) is Node and bool(symbols_of((x,)))
 
 
@@ -260,8 +260,8 @@ class DrawnState:
 
 
 def drawn_start(system: System) -> DrawnState:
-    """Where the model starts; a parameter without a value is 1, and where the constraints do not close so they stay
-    open."""
+    """State at which the model starts; a parameter without a value is taken as 1, and constraints that then do not
+    close stay open."""
     model, symbols = system.scope.model, system.symbols
     known = exact_parameters(model)
     assumed = {name: 1 for name in model.parameters if name not in known}

@@ -75,7 +75,7 @@ def _box(form: BoxForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) 
 
 
 def _pieces(radius: np.ndarray, sizes: PictureSizes, coarser: float = 1.0) -> int:
-    """Of a turn, so many that its chords stay where the arc is seen: r (1 - cos(pi/n)) = SEEN extent."""
+    """Number of chords of a turn that cannot be distinguished from the arc: r (1 - cos(pi/n)) = SEEN extent."""
     largest = float(np.max(np.abs(radius), where=np.isfinite(radius), initial=0.0))
     return (
         int(np.clip(math.pi / math.sqrt(2 * SEEN * coarser * sizes.extent / largest), FEWEST, ROUND))
@@ -106,7 +106,7 @@ def _revolution(form: RevolutionForm, mark: Mark, numbers: SceneNumbers, sizes: 
 
 
 def _convex(r: np.ndarray, z: np.ndarray) -> bool:
-    """Whether a profile n x k begins and ends on the axis and turns to one side: it sweeps a convex solid."""
+    """True if every profile, n x k, begins and ends on the axis and turns to one side: it sweeps a convex solid."""
     across, up = np.diff(r, axis=1), np.diff(z, axis=1)
     turns = across[:, :-1] * up[:, 1:] - across[:, 1:] * up[:, :-1]
     return not r[:, [0, -1]].any() and bool((turns >= 0).all() or (turns <= 0).all())
@@ -191,7 +191,7 @@ def _damper(form: forms.DamperForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
 def _along(
     form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, share: np.ndarray, across: np.ndarray
 ) -> np.ndarray:
-    """Points at shares of the way from a to b, and beside it in two directions across [m]."""
+    """Points at shares of the way from a to b, offset in two directions across it [m]."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     first, second = _crossing(_unit(b - a))
     path: np.ndarray = a[:, None, :] + share[:, None] * (b - a)[:, None, :]
@@ -323,7 +323,7 @@ def _nothing(form: Any, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) 
 
 
 def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """At the corner of the picture."""
+    """Arrow of a uniform field, at the corner of the picture."""
     if not sizes.dimensions:
         return [], []
     v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))

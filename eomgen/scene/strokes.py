@@ -62,7 +62,7 @@ class Stroke:
 
 @dataclass(frozen=True)
 class Letter:
-    """A name and the place beside which it stands, n x d."""
+    """A name and the place next to which it stands, n x d."""
 
     text: str
     at: np.ndarray
@@ -150,7 +150,7 @@ class SceneNumbers:
 
 @dataclass(frozen=True)
 class PictureSizes:
-    """What strokes need to know of the picture.
+    """Sizes of the picture that strokes depend on.
 
     Args:
         unit: of symbols [m].
@@ -282,7 +282,7 @@ def corners_of(clouds: Iterable[np.ndarray], d: int) -> tuple[np.ndarray, np.nda
 
 
 def _scales(numbers: SceneNumbers, extent: float) -> dict[tuple[str, str], float]:
-    """Of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW."""
+    """Scales of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW."""
     sizes: dict[tuple[str, str], list[np.ndarray]] = {}
     for mark in numbers.scene.marks_of_kind("arrow"):
         form: Any = mark.form

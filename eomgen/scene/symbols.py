@@ -65,7 +65,7 @@ def _bow(radius: float) -> Form:
 
 
 def _head(radius: float, angle: float) -> Form:
-    """Of an arrow that runs counter-clockwise round the place, its tip at an angle."""
+    """Head of an arrow that runs counter-clockwise round the place, its tip at an angle."""
     back = angle - 0.6 / radius
     ends = [(r * math.cos(back), r * math.sin(back)) for r in (radius + 0.35, radius - 0.35)]
     tip = (radius * math.cos(angle + 0.25), radius * math.sin(angle + 0.25))

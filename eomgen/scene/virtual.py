@@ -1,4 +1,4 @@
-"""WorkEquation -> what is seen of a virtual displacement: a structure with one reaction released, moved and back.
+"""WorkEquation -> picture of a virtual displacement: a structure with one reaction released, moved and back.
 
 Every body is displaced by its part of the velocity plan, to the first order as the principle of virtual work has it:
 
@@ -46,7 +46,7 @@ SHARE = "(share of the virtual displacement)"
 
 
 def swing_of(numbers: SceneNumbers, step: float) -> float:
-    """How many steps the second frame of two is to be from the first: what moves most moves by a part of the extent."""
+    """Size of the displacement at which the body that moves most moves by SWING of the picture's extent."""
     drawing = (plane_drawing if numbers.scene.plane else space_drawing)(numbers)
     solid = [s.path.reshape(numbers.size, -1) for s in drawing.strokes if s.role in SOLID]
     moved = max((float(np.nanmax(np.abs(path - path[0]))) for path in solid if path.size), default=0.0)
@@ -72,11 +72,11 @@ class VirtualDisplacement:
 
     @property
     def moves(self) -> bool:
-        """Whether the release lets anything move."""
+        """True if the release lets anything move."""
         return bool(self.equation.plan.moving)
 
     def along(self, phases: np.ndarray) -> SceneNumbers:
-        """What is seen at phases of the swing, 0 where the structure stands [rad]."""
+        """Frames at phases of the swing; phase 0 is the structure at rest [rad]."""
         step = np.array([0.0, WIDE_STEP])
         size = swing_of(SceneNumbers(self.scene, self._frames(step)), WIDE_STEP)
         return SceneNumbers(self.scene, self._frames(size * np.sin(phases)))
@@ -129,7 +129,7 @@ class VirtualDisplacement:
     # -- forces ----------------------------------------------------------------------------------------
 
     def _weights(self, system: System) -> Iterator[Mark]:
-        """Of every body with mass."""
+        """Arrows of the weights of all bodies with mass."""
         for force in system.loads.applied:
             for load in force.loads:
                 if isinstance(load, UniformField):
@@ -154,7 +154,7 @@ class VirtualDisplacement:
 
     @property
     def effects(self) -> list[Effect]:
-        """What a unit of the reaction does, once to each body at each place."""
+        """Effects of a unit of the reaction, summed once for each body at each place."""
         named, found = self.reaction.named, dict[tuple[int, Vector | None], Effect]()
         for j, k in named.combination.items() if named is not None else ():
             for effect in self.structure.components[j].effects:

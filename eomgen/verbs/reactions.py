@@ -309,7 +309,7 @@ def _checked(model: Model, where: str, **changes: Any) -> Model:
         raise UsageError(f"{where}: {error.what.partition(' in the ')[0]}", fix=error.fix) from error
 
 
-# -- texts -----------------------------------------------------------------------------------
+# -- texts --------------------------------------------------------------------------------------
 
 
 def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
