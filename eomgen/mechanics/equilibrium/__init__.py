@@ -1,1 +1,1 @@
-"""Equilibria of systems with degrees of freedom: where they are, whether they are stable, what holds them."""
+"""Equilibria of systems with degrees of freedom: their places, their stability, the reactions there."""

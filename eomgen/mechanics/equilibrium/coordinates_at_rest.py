@@ -1,8 +1,8 @@
 """Static equations -> the coordinates that may be chosen where velocity constraints let a system rest in many places.
 
-A knife edge or a wheel holds velocities and no positions: where Q + J^T lam = 0, phi = 0 hold at one place they hold
-beside it too. With A the derivatives of these equations by (lam, q), the coordinates whose columns of A follow from the
-columns before them may be anything near: they stay where they start, and the others follow.
+A knife edge or a wheel restricts velocities and no positions: where Q + J^T lam = 0, phi = 0 hold at one place they
+hold near it too. With A the derivatives of these equations by (lam, q), the coordinates whose columns of A depend
+linearly on the columns before them may have any value near: they stay where they start, and the others follow.
 """
 
 from __future__ import annotations
@@ -24,17 +24,17 @@ from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.tolerances import RANK, SAME_PLACE, SUMMED
 from eomgen.symbolic.solve.solving import vanishes
 
-ASIDE = 0.01  # by which an equilibrium beside the first is sought
+ASIDE = 0.01  # distance from the first equilibrium at which another one is sought
 
 
 @dataclass(frozen=True)
 class Chosen:
-    """What may be chosen.
+    """Coordinates whose values at rest may be chosen.
 
     Args:
-        coordinates: those that may be anything near where they start.
-        smooth: whether equilibria beside one another have the same freedom: they make up one family.
-        indifferent: coordinates that no equation holds.
+        coordinates: those that may have any value near their start.
+        smooth: True if two neighbouring equilibria have as many of them: they belong to one family.
+        indifferent: coordinates on which no equation depends.
     """
 
     coordinates: tuple[Node, ...] = ()
@@ -43,7 +43,7 @@ class Chosen:
 
 
 def holds_velocities(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> bool:
-    """Whether a constraint holds velocities without a relation between positions: d phi/dq has less rank than J."""
+    """True if a constraint restricts velocities but no positions: d phi/dq has less rank than J."""
     aside = guess + ASIDE * np.random.default_rng(3).uniform(1, 2, len(guess))
     floats = {node: float(x) for node, x in values.items()}
     relations = jacobian(statics.phi, statics.q) if statics.phi else ()
@@ -52,7 +52,7 @@ def holds_velocities(statics: StaticEquations, values: Mapping[Node, Any], guess
 
 
 def unheld(statics: StaticEquations) -> tuple[Node, ...]:
-    """The coordinates that stand in the equations, of which none depends on them all the same: sin^2 + cos^2."""
+    """Coordinates that occur in the equations although none depends on them: sin^2 + cos^2."""
     slopes = zip(*jacobian(statics.equations, statics.q), strict=True) if statics.equations else iter(())
     return tuple(q for q, column in zip(statics.q, slopes, strict=False) if all(map(vanishes, column)))
 
@@ -102,6 +102,6 @@ class _Near:
         return [q for k, q in enumerate(self.statics.q) if k not in kept]
 
     def _place_in_order(self, k: int) -> tuple[bool, bool, int]:
-        """First what does not rest where it starts, then what nobody gave."""
+        """Key of a coordinate in the choice: first those that move away from the guess, then those only guessed."""
         still = abs(self.here[k] - self.guess[k]) <= SAME_PLACE * (1 + abs(self.guess[k]))
         return bool(still), not is_guess(self.statics.system.scope.model, self.statics.q[k].name), -k

@@ -1,4 +1,4 @@
-"""System -> Static equations: what vanishes where the system is at rest, and stays so."""
+"""System -> Static equations: the expressions that vanish at an equilibrium."""
 
 from __future__ import annotations
 
@@ -44,12 +44,12 @@ from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
 
 # -------- static equations ------------------------------------------------------------------------------------
-# System -> Static equations: what vanishes where the system is at rest, and stays so.
+# System -> Static equations: the expressions that vanish at an equilibrium.
 #
 #     Q + J^T lam = 0,   phi = 0,   sigma = 0        at u = 0, t = 0, driven coordinates held where they start
 #
 # over all coordinates that are not driven, dependent ones among them. sigma is what a velocity row J u + sigma = 0
-# asks for at rest: of z' = r - x that x = r. Relations between positions that a velocity row gives by itself (a wheel
+# demands at rest: of z' = r - x that x = r. Relations between positions that a velocity row gives by itself (a wheel
 # that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more constraint.
 
 
@@ -68,10 +68,9 @@ class StaticEquations:
         Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
         J: of each closing row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
-        sigma: what velocity rows leave where no speed is: a constraint that runs on at any place has none at which it
-            rests.
+        sigma: what remains of the velocity rows at zero speed; it vanishes at rest.
         norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
-        beside: what balances along coordinates that need not be sought, as no equation depends on them.
+        beside: the forces along coordinates that need not be sought, as no equation depends on them; they vanish too.
         nowhere: (coordinate, force along it) of the forces that the values of the parameters make vanish everywhere.
     """
 
@@ -146,7 +145,7 @@ class StaticEquations:
             if q in dropped and not is_zero(force) and not vanishes(force):
                 if not depends_on(force, self.unknowns):
                     raise DerivationError(
-                        f"nothing balances the force along '{q.name}': it is at rest nowhere",
+                        f"nothing balances the force along '{q.name}': there is no equilibrium",
                         f"coordinates.{q.name}",
                         "hold it by a spring or a constraint, or take away what pushes it",
                     )
@@ -205,9 +204,8 @@ def static_equations(system: System) -> StaticEquations:
     """The equations of the system at rest, its drives held.
 
     Raises:
-        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a
-            constraint that
-            runs on wherever the system is.
+        DerivationError: dry friction, with which rest is possible in many places; a drive that turns steadily; a
+            velocity constraint that no place satisfies at rest.
     """
     _refuse_dry_friction(system)
     system, held = with_drives_held(system)
@@ -217,7 +215,7 @@ def static_equations(system: System) -> StaticEquations:
     q = tuple(x for x in scope.symbols.q if x not in driven)
     given = _given(free, driven)
     rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.constraints.J]
-    standing = standing_system(free)  # a damper at a seat that moves by an explicit time does not pull at rest
+    standing = standing_system(free)  # a damper at a seat that moves with t has no force at rest
     loads = (standing.free or standing).loads
     forces = generalized_forces(loads)
     _refuse_signs_of_rates(forces, free)
@@ -261,12 +259,12 @@ def with_norms(statics: StaticEquations) -> StaticEquations:
 
 
 def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
-    """At rest, at t = 0."""
+    """Values of speeds, time, inputs and driven coordinates at rest, at t = 0."""
     return free.standing(start_values(free.scope, driven))
 
 
 def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
-    """What the constraints say of positions; constants that only the start fixes are taken from it."""
+    """Relations between positions from the constraints; constants that only the start fixes are taken from it."""
     from eomgen.mechanics.integrals.laws import position_equations
 
     found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
@@ -274,7 +272,7 @@ def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) 
 
 
 def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
-    """sigma of the rows of velocities at rest; a row of positions keeps time as it is at the start.
+    """sigma of the velocity rows at rest.
 
     Raises:
         DerivationError: a row that no place satisfies at rest.
@@ -283,7 +281,7 @@ def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node])
     left = substituted(tuple(row.velocity for row in rows), given)
     for row, x in zip(rows, left, strict=True):
         if not depends_on(x, q) and not is_zero(x) and not vanishes(x):
-            what = f"'{row.constraint}' runs on wherever the system is, and nothing is at rest beside it"
+            what = f"'{row.constraint}' demands a velocity at every place: there is no equilibrium"
             raise DerivationError(
                 what, f"constraints.{row.constraint}", "seek a steady motion: linearize --about steady"
             )
@@ -294,7 +292,7 @@ def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node])
 
 
 def has_degrees_of_freedom(system: System) -> bool:
-    """Whether anything is free to find its rest: a coordinate that no constraint, drive or unknown load holds."""
+    """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
     unknowns = system.symbols.unknowns.values()
     forces = generalized_forces(system.loads)
     return degrees_of_freedom(system.constraints) > 0 and not depends_on_any(forces, unknowns)
@@ -312,7 +310,7 @@ def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
     free = any(not part.driven for part in table.values())
     for name in moved:
         if free and not depends_on(bias[name], (scope.symbols.t,)):
-            what = f"'{name}' moves on at a constant rate, and nothing is at rest beside it"
+            what = f"'{name}' moves at a constant rate: there is no equilibrium"
             raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
         place = as_expression(to_text(starts[name]))
         table[name] = altered(table[name], motion=place, rate=None, acceleration=None, start=None, speed=None)
@@ -370,8 +368,8 @@ def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
 # -------- standing --------------------------------------------------------------------------------------------
 # System -> the same as it stands at rest: over its rates alone, and its explicit times held at 0.
 #
-# At rest all rates are 0. A declared speed w = Y q' + y(q, t) is then y, and need not stay: where y is not 0, rest is
-# said of the rates. A surface or a seat that moves by an explicit time stands where it is at t = 0, as the forces do.
+# At rest all rates are 0. A declared speed w = Y q' + y(q, t) is then y, and need not be constant: where y is not 0,
+# rest means zero rates. A surface or a seat that moves with t stands where it is at t = 0, as the forces do.
 
 
 def over_rates(system: System) -> System:
@@ -385,7 +383,7 @@ def over_rates(system: System) -> System:
 
 
 def standing_system(system: System) -> System:
-    """`over_rates`, what moves by an explicit time held where it is at t = 0."""
+    """The system of `over_rates`, with everything that moves with t held where it is at t = 0."""
     system = over_rates(system)
     free = system.free or system
     scope, t = free.scope, (free.scope.symbols.t,)

@@ -1,4 +1,4 @@
-"""Static equations -> equilibria in numbers, whether those are all, and in closed form."""
+"""Static equations -> equilibria in numbers, proof that those are all where possible, and closed forms."""
 
 from __future__ import annotations
 
@@ -63,11 +63,11 @@ CLUSTER = 3.0  # times as far from a root as those that belong to it so far, a b
 
 @dataclass(frozen=True)
 class Places:
-    """Places of rest in numbers.
+    """Equilibria in numbers.
 
     Args:
         found: coordinates and multipliers of each, the nearest to the guess first.
-        complete: whether there are no others in the range.
+        complete: True if there are no others in the range.
         where: the range, in words.
         turning: the coordinates for which a whole turn changes nothing.
     """
@@ -135,7 +135,7 @@ class _Search:
 
     @cached_property
     def _unit(self) -> dict[Node, Fraction]:
-        """In which coordinates that are no angles are measured while many guesses are tried."""
+        """Unit of length of each coordinate that is no angle, used while many guesses are tried."""
         statics, scope = self.statics, self.statics.system.scope
         state = self.floats | dict(zip(statics.q, map(float, self.guess), strict=True))
         unit = unit_of_length(statics.system.motion, state)
@@ -173,9 +173,11 @@ class _Search:
 
     @cached_property
     def _reduced(self) -> tuple[Scalar, ...] | None:
-        """As many equations as coordinates, free of multipliers: the forces; with one freedom left by constraints,
-        that the
-        force has no part along it, det [Q; J] = 0; None where there are none."""
+        """As many equations as coordinates, without multipliers; None where there are none.
+
+        Without constraints the forces; with one degree of freedom left, det [Q; J] = 0 (no force along it) and the
+        relations.
+        """
         statics = self.statics
         n, relations = len(statics.q), (*statics.phi, *statics.sigma)
         if statics.beside:
@@ -306,7 +308,7 @@ class _Search:
         return Places(tuple(places), complete, where, self._turning if self.statics.q else frozenset())
 
     def _distance(self, q: np.ndarray) -> float:
-        """From the guess, angles the short way round."""
+        """Square of the scaled distance from the guess, angles the short way round."""
         away = np.abs(q - self.guess)
         turning = [x in self._turning for x in self.statics.q]
         away = np.where(turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
@@ -314,7 +316,7 @@ class _Search:
 
 
 def _about(z: np.ndarray, boxes: np.ndarray, halves: np.ndarray) -> np.ndarray:
-    """Which of the undecided boxes belong to the root at z: those that lie about it without a wide gap."""
+    """Mask of the undecided boxes that belong to the root at z: those that lie about it without a wide gap."""
     away = np.max(np.abs(boxes - z) - halves, axis=1, initial=0.0)
     ends = np.max(np.abs(boxes - z) + halves, axis=1, initial=0.0)
     kept, radius = np.zeros(len(boxes), dtype=bool), NEAR_ROOT * COMPUTED
@@ -396,7 +398,7 @@ class ClosedForms:
 
     @cached_property
     def _vain(self) -> dict[tuple[Any, ...], int]:
-        """How many places equations had no closed form for."""
+        """Number of failed tries for a closed form, by the equations and unknowns tried."""
         return {}
 
     def _closed_ways(
@@ -462,9 +464,9 @@ class ClosedForms:
 
 
 def _satisfied(lines: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], solution: Solution) -> bool:
-    """Whether the rows hold as functions of the parameters, free unknowns 0.
+    """True if the solution satisfies the rows as functions of the parameters, free unknowns 0.
 
-    An entry that vanishes at the model's own parameters alone counts as 0 in the solution: sin(pi*q) at q = 3.
+    An entry that vanishes only at the model's own parameters counts as 0 in the solution: sin(pi*q) at q = 3.
     """
     known = solution.constants
     left = (sum((x * known.get(j, 0) for j, x in line.items()), start=-b) for line, b in zip(lines, right, strict=True))
@@ -501,19 +503,19 @@ def _short_turn(x: Scalar, number: float, turning: bool) -> Scalar:
 
 
 # -------- guesses ---------------------------------------------------------------------------------------------
-# System, values by name -> where equilibria are sought first: as asked, else `near`, else the start.
+# System, values by name -> where equilibria are sought first: as requested, else `near`, else the start.
 #
-# And in what unit lengths are measured while they are sought: one of the model's own size.
+# The unit of length used in the search is one of the model's own size.
 
 
 @dataclass(frozen=True)
 class Guess:
-    """Where to begin.
+    """First values of the coordinates in the search for equilibria.
 
     Args:
-        system: whose coordinates they are.
+        system: the system of these coordinates.
         values: of the parameters, with 50 digits.
-        asked: coordinates by name, in place of `near` and `start`.
+        requested: coordinates by name, in place of `near` and `start`.
     """
 
     system: System
@@ -524,7 +526,7 @@ class Guess:
         """Numbers of coordinates.
 
         Raises:
-            UsageError: a name is asked that is no coordinate.
+            UsageError: a requested name is no coordinate.
         """
         return np.array([float(self._numbers[q.name]) for q in coordinates])
 

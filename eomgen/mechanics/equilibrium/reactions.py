@@ -41,13 +41,13 @@ class RestingReaction:
 
 
 def system_at_rest(place: Equilibrium) -> System:
-    """The system as it stands there: at rest declared speeds do not matter, nor whether they determine the rates."""
+    """The system at the equilibrium, over its rates where declared speeds are not 0 at rest."""
     system = place.statics.system
     return standing_system(system if system.free is None or system.elimination is not None else system.free)
 
 
 def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
-    """Everything that moves, at rest there: exact, or the exact numbers that its floats are."""
+    """All coordinates, speeds, inputs and time at rest there: exact, or the exact rational values of the floats."""
     system = system_at_rest(place)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
@@ -89,14 +89,14 @@ def reactions_or_why(place: Equilibrium) -> ReactionsOrWhy:
 
 
 # -------- loads at rest ---------------------------------------------------------------------------------------
-# System at the start, with unknowns in its loads -> the unknowns that hold it there, by virtual work.
+# System at the start, with unknowns in its loads -> the unknowns for which it is in equilibrium there, by virtual work.
 #
 # Q_k + (J^T lam)_k = 0        linear in the unknowns and the multipliers
 
 
 @dataclass(frozen=True)
 class Holding:
-    """What holds a system where it starts.
+    """Unknown loads and multipliers for which a system is in equilibrium where it starts.
 
     Args:
         statics: the equations of rest.
@@ -166,7 +166,7 @@ def _refuse_undetermined(statics: StaticEquations, solution: Solution) -> None:
     open_ = [p.name for j, p in enumerate(statics.loaded) if not solution.determined(j)]
     if open_:
         raise DerivationError(
-            f"rest does not determine '{open_[0]}': there are more unknowns than degrees of freedom",
+            f"equilibrium does not determine '{open_[0]}': there are more unknowns than degrees of freedom",
             f"unknowns.{open_[0]}",
             "give a value to some of them",
         )
@@ -174,6 +174,6 @@ def _refuse_undetermined(statics: StaticEquations, solution: Solution) -> None:
         names = ", ".join(f"'{p.name}'" for p in statics.loaded)
         degrees_of_freedom = ", ".join(u.name.removesuffix("'") for u in statics.system.symbols.u)
         raise DerivationError(
-            f"{names} alone cannot hold the system where it starts: something moves on",
+            f"{names} alone cannot hold the system in equilibrium where it starts",
             fix=f"the degrees of freedom are {degrees_of_freedom}; let an unknown act on each",
         )

@@ -44,7 +44,7 @@ from eomgen.symbolic.numeric.tolerances import (
 )
 
 # -------- search ----------------------------------------------------------------------------------------------
-# System -> where it is at rest: every place at which all forces balance, exact where it can be, and how it keeps it.
+# System -> its equilibria: every place at which all forces balance, exact where possible, and their stability.
 #
 # In numbers first: equations without jumps in at most three coordinates have all their roots isolated, linear ones
 # have a single solution; of others those are found that many guesses lead to, and it is said that there may be more.
@@ -60,7 +60,7 @@ class Equilibrium:
         exact: coordinates, and multipliers of closing constraints, as scalars of the parameters; those that are known
             so.
         numbers: all of them as numbers; {} without values of all parameters.
-        stability: whether it stays there when it is disturbed.
+        stability: the verdict on its stability.
         curve: of equilibria, of which it is one; None where it is alone.
     """
 
@@ -72,7 +72,7 @@ class Equilibrium:
 
     @property
     def is_exact(self) -> bool:
-        """Whether every coordinate is known in closed form."""
+        """True if every coordinate is known in closed form."""
         return all(q in self.exact for q in self.statics.system.symbols.q)
 
     @cached_property
@@ -134,12 +134,12 @@ MOST_NAMED = 4  # coordinates
 
 
 def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
-    """That there is no equilibrium, that none was found, or that constraints do not close anywhere near."""
+    """Error: there is no equilibrium, none was found, or the constraints cannot be satisfied near the start."""
     try:
         generic_state(constraints)
     except DerivationError as error:
         return error
-    except MissingValues:  # whether they close cannot be told without values
+    except MissingValues:  # without values nobody can say if they can be satisfied
         pass
     free = [
         q.name
@@ -149,7 +149,7 @@ def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
     along = "".join(f" along '{name}'" for name in free) if len(free) == 1 else ""
     along = f" (of {', '.join(map(repr, free[:MOST_NAMED]))})" if free[1:] else along
     what = f"{NO_PLACE}{along}{': there is none' if complete else ''}"
-    fix = "hold by a spring or a constraint what nothing balances, or say by `near` where it rests"
+    fix = "hold what nothing balances by a spring or a constraint, or give a first guess by `near`"
     return DerivationError(what, "coordinates", fix)
 
 
@@ -194,7 +194,7 @@ def _search(statics: StaticEquations, guess: Mapping[str, float] | None) -> _Sea
 
 @dataclass(frozen=True)
 class _Search:
-    """Places of rest that are sought.
+    """Search for the equilibria of a system.
 
     Args:
         whole: the equations.
@@ -210,13 +210,13 @@ class _Search:
 
     @cached_property
     def statics(self) -> StaticEquations:
-        """Without the coordinates that no equation holds, and those that may be chosen."""
+        """Static equations without the coordinates on which none depends, and without those that may be chosen."""
         found, open_ = self._held_by_forces, self._chosen.coordinates
         return found.holding({q: self._fixed[q] for q in open_}) if open_ else found
 
     @cached_property
     def _held_by_forces(self) -> StaticEquations:
-        """Without the coordinates that no equation holds."""
+        """Static equations without the coordinates on which none depends."""
         found, scope = self.whole.without(self.whole.indifferent), self.system.scope
         idle = unheld(found) if self._slides else ()
         return found.holding(start_values(scope, idle)) if idle else found
@@ -236,19 +236,19 @@ class _Search:
 
     @cached_property
     def _slides(self) -> bool:
-        """Whether velocity constraints leave it free to go where none of its coordinates says."""
+        """True if constraints restrict velocities without a relation between positions, as those of a knife edge."""
         return bool(self.whole.J) and holds_velocities(self.whole, self.values, self._guess.of(self.whole.q))
 
     @cached_property
     def valued(self) -> bool:
-        """Whether all parameters that matter have values."""
+        """True if all parameters on which the equilibria depend have values."""
         known = exact_parameters(self.system.scope.model)
         needed = [x for name, x in self.system.symbols.parameters.items() if name not in known]
         return not depends_on_any((*self.whole.equations, *self._fixed.values()), needed)
 
     @cached_property
     def values(self) -> dict[Node, Any]:
-        """Of the parameters, 50 digits; of those without one, a value to try."""
+        """Values of the parameters with 50 digits; a trial value for those that have none."""
         return values_of_parameters(self.system.scope, Random(3))
 
     @cached_property
@@ -268,7 +268,7 @@ class _Search:
 
     @cached_property
     def _places(self) -> Places:
-        """Where the forces balance, the nearest to the guess first."""
+        """Equilibria in numbers, the nearest to the guess first; places where angles lock and a moment is left go."""
         first = self._guess.of(self.statics.q)
         places = places_of_rest(self.statics, self.values, first)
         found = [z for z in places.found if is_balanced_in_locked(self.whole, self._at(z))]
@@ -346,8 +346,7 @@ class _Search:
 # A place where three angles lock -> whether the body is in balance there, about the axis that they have lost too.
 #
 # Where two of the axes are one, the forces along the three angles vanish although a moment about a third direction
-# may be left: their balance says nothing of it. Beside that place the angles turn the body about that direction n as
-# well,
+# may be left: their balance says nothing of it. Near that place the angles turn the body about that direction n too,
 #
 #     tau . n = f . dq,   dq = D^-1 W^-1 n     at q + d,   d -> 0
 #
@@ -358,7 +357,7 @@ LEFT = 1e-3  # of the largest force nearby: a moment that is left
 
 
 def is_balanced_in_locked(statics: StaticEquations, place: State) -> bool:
-    """Whether no moment is left where angles lock; True where none do.
+    """True if no moment is left where angles lock, or if none lock.
 
     Args:
         statics: of all coordinates.
@@ -375,7 +374,7 @@ def is_balanced_in_locked(statics: StaticEquations, place: State) -> bool:
 
 
 def _is_free(statics: StaticEquations, motion: Motion, lock: Lock, state: dict[Node, float]) -> bool:
-    """Whether no moment is left about the axis that a body's angles have lost."""
+    """True if no moment is left about the axis that a body's angles have lost, or it cannot turn about that axis."""
     link = motion.link(lock.body)
     axes = [x for w, _ in link.S[-3:] for x in w]
     slopes = [x for row in jacobian(link.s[-3:], statics.q) for x in row]
@@ -438,29 +437,29 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
 
 
 # -------- families --------------------------------------------------------------------------------------------
-# Places of rest -> each once: e and -e are one orientation, and of a body that may turn freely one place is enough.
+# Equilibria -> each once: e and -e are one orientation, and of a body that may turn freely one place is enough.
 #
 # Where the second variation K vanishes in some direction, equilibria can make up a whole family: a body on a ball
 # joint hangs at any angle about the vertical, a sleigh stands at any angle. Two places of one family have the same V
-# and the same spectrum of K. Of a family that is a curve the way along it is gone, in both directions:
+# and the same spectrum of K. A family that is a curve is followed in both directions:
 #
 #     F(z) = 0,   F'(z) t = 0:   z + h t, back onto F = 0 by the shortest way
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Places of rest that make up a curve.
+    """Curve of equilibria.
 
     Args:
         points: coordinates and multipliers along it, a row a place, the one that was found first among them.
-        closed: whether it comes back to where it began, or goes on by whole turns.
+        closed: True if it comes back to where it began, or goes on by whole turns.
     """
 
     points: np.ndarray
     closed: bool
 
     def holds(self, q: np.ndarray, turning: Sequence[bool]) -> bool:
-        """Whether a place lies on it, as near as its own points lie together."""
+        """True if a place lies on the curve, within the distance between its points."""
         away = np.abs(self.points[:, : len(q)] - q)
         away = np.where(turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
         return bool(np.min(np.max(away, axis=1)) <= STRIDE)
@@ -522,7 +521,7 @@ CORRECTIONS = 6  # back onto it
 
 @dataclass(frozen=True)
 class _Way:
-    """Along curves of equilibria."""
+    """Continuation along a curve of equilibria: F(z) = 0, in the direction t with F'(z) t = 0."""
 
     statics: StaticEquations
     floats: Mapping[Node, float]
@@ -634,7 +633,7 @@ def _given(statics: StaticEquations, values: Mapping[Node, float]) -> dict[Node,
 
 
 def _is_one(statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:
-    """Whether two places are the same, or of one family."""
+    """True if two places are the same, or belong to one family."""
     (z, marks), (y, others) = one, other
     if np.all(abs(z - y)[: len(statics.q)] <= SAME_PLACE):
         return True

@@ -1,4 +1,4 @@
-"""An equilibrium -> whether it is stable."""
+"""An equilibrium -> the verdict on its stability."""
 
 from __future__ import annotations
 
@@ -42,8 +42,8 @@ from eomgen.symbolic.solve.solving import vanishes
 #     K = Z^T H Z,   H = -d(Q + J^T lam)/dq,   J Z = 0
 #
 # H is d2V/dq2 - sum lam d2phi/dq2 where all forces have a potential. K > 0: V has a minimum there, and the place is
-# stable (Lagrange and Dirichlet); a negative direction: it is unstable. With one freedom, whose K vanishes, the next
-# derivatives decide. With several, and forces without a potential, K has another sense and decides nothing.
+# stable (Lagrange and Dirichlet); a negative direction: it is unstable. With one degree of freedom and K = 0, the next
+# derivatives decide. With several, and forces without a potential, K has another meaning and decides nothing.
 
 
 MOST_EXACT = 6  # degrees of freedom of a K that is written exactly
@@ -54,13 +54,13 @@ StiffnessRows = tuple[tuple[Any, ...], ...]
 
 @dataclass(frozen=True)
 class Stability:
-    """Whether an equilibrium is stable.
+    """Verdict on the stability of an equilibrium, with its reason.
 
     Args:
         kind: "stable", "unstable", "indifferent", "depends on the parameters", "undecided" or "no potential energy".
-        why: in words.
+        why: the reason in words.
         along: the coordinates whose variations are free; the others follow by the constraints.
-        K: exact where the place is, else numbers; () where there is none.
+        K: second variation, exact where the place is exact, else numbers; () where there is none.
         minors: det of the leading parts of K, exact, where they decide; else ().
     """
 
@@ -84,8 +84,8 @@ def stability_of(
         exact: coordinates and multipliers in closed form, as far as they are known.
         numbers: all of them, and the parameters.
         values: of the parameters with 50 digits; None: some have none, and K is judged by the signs of its terms.
-        chosen: where constraints hold velocities and no positions, what they leave open: K d = 0 for d to rest beside
-            it.
+        chosen: where constraints restrict velocities and no positions, the coordinates that they leave open: the
+            neighbouring equilibria are at d with K d = 0.
     """
     if not statics.q:
         return Stability(INDIFFERENT, "nothing can move" if not statics.system.symbols.u else "no force holds it")
@@ -105,7 +105,7 @@ class _Place:
 
     @cached_property
     def known(self) -> bool:
-        """Whether all of the place is exact."""
+        """True if all coordinates and multipliers of the place are exact."""
         return all(x in self.exact for x in self.statics.unknowns)
 
     @cached_property
@@ -124,10 +124,10 @@ class _Place:
         if along is None:
             return Stability("undecided", "the constraints are singular there")
         if not along:
-            return Stability(INDIFFERENT, "the constraints leave no freedom")
+            return Stability(INDIFFERENT, "the constraints leave no degree of freedom")
         if statics.sigma:
             return Stability(
-                "undecided", "constraints of velocities move on beside it; linearize tells what comes back"
+                "undecided", "velocity constraints demand a velocity near it; `linearize` decides on the stability"
             )
         nodes = tuple(statics.q[k] for k in along)
         K = self._exact_K(along) if self.known and len(along) <= MOST_EXACT else None
@@ -165,10 +165,10 @@ class _Place:
         return [k for k in range(n) if k not in following]
 
     def _late(self, k: int) -> tuple[bool, float, int]:
-        """Of what follows first: what is marked dependent, then of a quaternion the largest of its four.
+        """Sort key of a coordinate: those with the smallest become dependent first.
 
-        Where velocity constraints leave places open, what no force holds comes before the rest, and what is declared
-        last.
+        Those marked dependent come first, then of a quaternion the largest of its four components. Where velocity
+        constraints leave places open, coordinates that no force holds come before the others, the last declared first.
         """
         q, scope = self.statics.q[k], self.statics.system.scope
         own = not scope.model.coordinates[q.name].dependent
@@ -179,7 +179,7 @@ class _Place:
 
     @cached_property
     def _generic_rank(self) -> int:
-        """Of J where the constraints are not in a special position."""
+        """Rank of J where the constraints are not in a special position."""
         if self.statics.beside:  # J is without some of its columns
             rng = Random(6)
             away = np.array([self.numbers[q] + rng.uniform(0.1, 0.3) for q in self.statics.q])
@@ -245,7 +245,7 @@ class _Place:
         return Z
 
     def _has_potential(self, along: Sequence[int]) -> bool:
-        """Whether the forces come from a potential energy: dQ_i/dq_j = dQ_j/dq_i."""
+        """True if the forces have a potential energy along the free variations: dQ_i/dq_j = dQ_j/dq_i."""
         if self._is_conservative and self.chosen is None:
             return True
         K = self._numeric_K(self._numbers(self.statics.J), along)
@@ -253,7 +253,7 @@ class _Place:
 
     @cached_property
     def _is_conservative(self) -> bool:
-        """Whether the forces that are no gradients by themselves have a potential."""
+        """True if the forces that are no gradients by themselves have a potential together."""
         Q = self.statics.unbalanced
         slopes = jacobian(Q, self.statics.q)
         pairs = [(slopes[i][j], slopes[j][i]) for i in range(len(Q)) for j in range(i)]
@@ -262,7 +262,7 @@ class _Place:
     # -- signs ---------------------------------------------------------------------------------------
 
     def _by_terms(self, K: StiffnessRows | None, minors: Sequence[Scalar]) -> tuple[str, str]:
-        """By the signs of the terms, where the parameters have no values."""
+        """Kind and reason from the signs of the terms of K, where the parameters have no values."""
         depends = "depends on the parameters", "stable where V has a minimum there"
         if K is None:
             return depends
@@ -296,7 +296,7 @@ class _Place:
 
     @cached_property
     def _size_of_terms(self) -> float:
-        """The largest second derivative there and beside it: what K is measured against."""
+        """The largest second derivative there and near it, against which K is compared."""
         found = [0.0]
         for state in (self.state, *states_beside(self.state, self.statics.q)):
             try:
@@ -308,9 +308,9 @@ class _Place:
 
 
 def _drifting(neutral: int, degrees_of_freedom: int) -> tuple[str, str]:
-    """Of a place in a family of equilibria, where V falls nowhere."""
+    """Kind and reason for a place in a family of equilibria, where V falls in no direction."""
     if neutral == degrees_of_freedom:
-        return INDIFFERENT, "it rests wherever the constraints let it go"
+        return INDIFFERENT, "every place that the constraints allow is an equilibrium"
     return STABLE, "V rises in every motion that leaves the equilibria"
 
 
@@ -325,7 +325,7 @@ def _minors(K: StiffnessRows) -> tuple[Scalar, ...]:
 
 
 # -------- higher derivatives ----------------------------------------------------------------------------------
-# An equilibrium of one freedom at which V'' = 0 -> whether it is stable, by the next derivatives of V.
+# An equilibrium of one degree of freedom at which V'' = 0 -> its stability, by the next derivatives of V.
 #
 # The force along the way that the constraints leave is P = Q . w with J w = 0; V' = -P, and d/ds is w . d/dq.
 
@@ -387,7 +387,7 @@ class _Way:
         )
 
     def _value(self, P: Scalar, order: int) -> float:
-        """P there; 0 where it vanishes against what it is beside the place, and against its terms further away."""
+        """P there; 0 where it vanishes against its size near the place, and against its terms further away."""
         value = self._at(P, self.state)
         near = max(self._at(P, state, 0.0) for state in states_beside(self.state, self.statics.q))
         away = ({**self.state, **{q: self.state[q] + shift for q in self.statics.q}} for shift in AWAY)
