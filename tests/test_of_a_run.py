@@ -145,9 +145,12 @@ def test_a_kink_and_a_jump_are_enclosed():
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("max(q) + q", "'q' is of a state, and stands beside what is of a run; ask it of the run too: last(q)"),
+        (
+            "max(q) + q",
+            "'q' is a function of a state, next to functions of a whole run",
+        ),
         ("max(q) + speed(rod.end)", "last(speed(rod.end))"),
-        ("max(mean(q))", "what is of a run has no value along it"),
+        ("max(mean(q))", "a function of a whole run has no value along it"),
         ("max(q) at q = 0", "is of no instant"),
         ("q at equilibrium", "`eomgen solve` answers it"),
         ("period(q^0)", "passes its mean upward 0 times"),
@@ -186,7 +189,7 @@ def test_outputs_of_a_run_stand_in_text_and_json_and_solve_leaves_them(tmp_path)
     assert reported["peak"]["value"] == pytest.approx(math.degrees(2)) and reported["peak"]["unit"] == "deg"
     assert reported["w"]["t"] == pytest.approx([0.75 * reported["T"]["value"]], rel=1e-7)
     text = CliRunner().invoke(main, ["simulate", str(path), "--time", "6"]).output
-    assert "peak [deg]" in text and "what is of the whole run holds against its samples" in text
+    assert "peak [deg]" in text and "outputs of the whole run agree with its samples" in text
     solved = CliRunner().invoke(main, ["solve", str(path), "--json"])
     answers = json.loads(solved.output)["outputs"]
     assert solved.exit_code == 0 and answers["a"]["value"] is not None

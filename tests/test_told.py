@@ -123,7 +123,7 @@ def test_an_instant_that_is_elsewhere_is_seen(what: str, monkeypatch: pytest.Mon
     else:
         monkeypatch.setattr(WholeRun, "events", lambda *requested: [(k, t + 0.1) for k, t in events(*requested)])
     failing = [check.name for check in run().certify().checks if check.status == "fails"]
-    assert failing == ["what is of the whole run holds against its samples"]
+    assert failing == ["outputs of the whole run agree with its samples"]
 
 
 # -- small motions --------------------------------------------------------------------------------------------

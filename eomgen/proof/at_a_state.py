@@ -78,7 +78,7 @@ class NumericState:
         found = dict(zip(self.equations.symbols.a, a, strict=True))
         return found | least_multipliers(self.equations, self.values | found)
 
-    def worth(self, formula: Expression) -> float:
+    def value_of(self, formula: Expression) -> float:
         """The formula there.
 
         Raises:
@@ -108,12 +108,12 @@ class NumericState:
         least, added = self._balancing
         scalar, symbols = quantities.over_components(formula), quantities.reactions.by_components[1]
 
-        def worth(components: np.ndarray) -> float:
+        def value_with(components: np.ndarray) -> float:
             numbers = dict(zip(symbols, map(Fraction, components.tolist()), strict=True))
             return self.number(substituted((scalar,), numbers)[0])
 
-        found, size = worth(least), np.abs(least).max(initial=0.0) or 1.0
-        others = [worth(least + size * column) for column in added.T]
+        found, size = value_with(least), np.abs(least).max(initial=0.0) or 1.0
+        others = [value_with(least + size * column) for column in added.T]
         if any(abs(x - found) > COMPUTED * size for x in others):
             raise NoValue(f"the balance of the bodies leaves '{formula.text}' open")
         return found
@@ -197,7 +197,7 @@ class NumericState:
             apart.append([abs(x - y) for x, y in zip(first, last, strict=True)])
         return any(near > COMPUTED and 2 * near > far for far, near in zip(*apart, strict=True))
 
-    def beside(self) -> tuple[NumericState, NumericState]:
+    def nearby(self) -> tuple[NumericState, NumericState]:
         """Two states so near that doubles of several steps might mistake them for it."""
         turns = {node: (-1) ** k * COMPUTED * (1 + abs(x)) for k, (node, x) in enumerate(self.numbers.items())}
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))

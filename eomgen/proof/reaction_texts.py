@@ -31,7 +31,7 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
             size = max(map(abs, state.reactions.values()))
             found, right = state.number(scalar), state.reactions[name]
             if abs(found - right) > COMPUTED * (1 + size):
-                near = [beside.reactions.get(name, right) for beside in state.beside()]
+                near = [near.reactions.get(name, right) for near in state.nearby()]
                 wrong = off_by(found, right, near)
                 if wrong and not state.decides(scalar):
                     continue
@@ -61,7 +61,7 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
             return "a force jumps there, and it has no one value"
         if abs(found - right) <= COMPUTED * (1 + size):
             return ""
-        return off_by(found, right, [beside.number(scalar) for beside in start.beside()])
+        return off_by(found, right, [near.number(scalar) for near in start.nearby()])
 
     for name in values:
         if name in texts or name in solved:

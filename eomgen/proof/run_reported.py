@@ -321,7 +321,7 @@ def _wrong_reaction(run: Trajectory, phase: Phase, row: int, formulas: Mapping[s
     for name, found in known.items():
         right = state.number(formulas[name])
         if abs(found - right) > COMPUTED * (1 + size):
-            wrong = off_by(found, right, [near.number(formulas[name]) for near in state.beside()])
+            wrong = off_by(found, right, [near.number(formulas[name]) for near in state.nearby()])
             if wrong:
                 return f"{name}: {wrong}"
     return ""
@@ -364,7 +364,7 @@ def output_columns_hold(run: Trajectory, formulas: Mapping[str, Expression]) -> 
 
 
 def _wrong_output(state: NumericState, found: float, formula: Expression) -> str:
-    right = state.worth(formula)
+    right = state.value_of(formula)
     if not differing(found, right):
         return ""
-    return off_by(found, right, [near.worth(formula) for near in state.beside()])
+    return off_by(found, right, [near.value_of(formula) for near in state.nearby()])

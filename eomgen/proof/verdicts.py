@@ -394,7 +394,7 @@ class Sides:
             forces = [abs(x) for x in self.state.reactions.values()]
             value = self.state.reactions.get(str(call))
             if value is None:
-                value = self.state.worth(Expression(str(call), (("call", call),), (0,)))
+                value = self.state.value_of(Expression(str(call), (("call", call),), (0,)))
             return Rounded(value, self.error * max(forces, default=abs(value)))
         if function.second is not None:
             value = float(function.second(NearbyStates(self.state), call))

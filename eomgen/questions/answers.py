@@ -1,8 +1,8 @@
-"""Model -> {name: Answer}: what the file asks in [outputs], exact and as a number.
+"""Model -> {name: Answer}: the outputs that the model requests in [outputs], exact and as numbers.
 
-A function of coordinates and rates is exact, the accelerations in it replaced by the equations of motion; asked
-`from` the start it is one of the coordinates alone, rates eliminated by the energy theorem and the momenta. At an
-instant it is exact where the motion can be followed in closed form, else a number by integration.
+A function of coordinates and rates is exact, the accelerations in it replaced by the equations of motion. Requested
+`from` the start it is a function of the coordinates alone, rates eliminated by the energy theorem and the momenta. At
+an instant it is exact where the motion can be followed in closed form, else a number by integration.
 """
 
 from __future__ import annotations
@@ -71,8 +71,8 @@ class Answers(dict[str, Answer], Result):
     """{name: answer}, in the order of the model's outputs.
 
     Args:
-        solver: where they come from.
-        stopped: "interrupted" or "out of patience", where only those before it were sought; "" as it should be.
+        solver: the solver that found them.
+        stopped: "interrupted" or "out of patience", where only the outputs before it were sought; "" for a whole run.
     """
 
     def __init__(self, found: Mapping[str, Answer], solver: Solver, stopped: str = "") -> None:
@@ -83,29 +83,29 @@ class Answers(dict[str, Answer], Result):
         return f"<answers: {', '.join(self) or 'none requested'}>"
 
     def _repr_markdown_(self) -> str:
-        """Each by its name, exact and as a number, typeset."""
+        """Answers by name, exact and as numbers, typeset."""
         return listing_markdown([Found(name, answer) for name, answer in self.items()], self._solver.model)
 
     @property
     def derivation(self) -> Document:
-        """Each answer by its name: exact, as a number, by which way."""
+        """Answers by name: exact, as a number, and the method."""
         rows = tuple(Found(name, answer) for name, answer in self.items())
-        notes = () if self else ("the model asks nothing: it has no [outputs]",)
+        notes = () if self else ("the model requests nothing: it has no [outputs]",)
         return plain_document(self._solver.model, self.entries, Listing(rows), notes=notes)
 
     @property
     def failed(self) -> str:
-        """Which outputs have no answer, in words, those of a whole run left out; "" as it must be."""
+        """Message that names the outputs without an answer, those of a whole run left out; "" where there are none."""
         outputs = self._solver.model.outputs
         unanswered = [name for name, answer in self.items() if not answer.answered and not is_of_a_run(outputs[name])]
         return f"not answered: {', '.join(unanswered)}" if unanswered else ""
 
     def entries(self) -> dict[str, Any]:
-        """What `solve --json` carries."""
+        """Contents of `solve --json`."""
         return {"name": self._solver.model.name, "outputs": dict(self)}
 
     def certify(self) -> Certificate:
-        """Every number against the motion in numbers, every text against its number; the equations first."""
+        """Proof of the equations, then of every number by the motion in numbers and of every text by its number."""
         with doing("the proof of the answers"):
             return certificate_of(self._solver, self)
 
@@ -113,12 +113,12 @@ class Answers(dict[str, Answer], Result):
 def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values | None = None) -> Answers:
     """Every output of the model, in its order; one that cannot be answered has its message.
 
-    Whoever stops it keeps those that were answered before.
+    Answers found before an interruption are kept.
 
     Args:
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
-        ModelError: none can be answered as the model is wrong: accelerations of a coordinate that moves no mass.
+        ModelError: no output can be answered as the model is wrong: say, a coordinate that moves no mass.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
     solver, found, wrong, stopped = _Solver(model), dict[str, Answer](), [], ""
@@ -145,7 +145,7 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
 
 @dataclass(frozen=True)
 class _Solver:
-    """The equations of a model, made where an output asks for them."""
+    """Solver of outputs: the equations of a model, derived where an output needs them."""
 
     model: Model
 
@@ -160,14 +160,14 @@ class _Solver:
         return self.motions[False].phase
 
     def answer(self, output: Output) -> Answer:
-        """One output; what goes wrong with it is its message."""
+        """Answer to one output; an error becomes its message."""
         try:
             return replace(self._answer(output), unit=self._unit(output))
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
             return self.unanswered(output, error)
 
     def unanswered(self, output: Output, error: EomgenError) -> Answer:
-        """Why there is none."""
+        """Answer without a value, whose message is the error."""
         return Answer(unit=self._unit(output), message=f"{error.what}; {error.fix}" if error.fix else error.what)
 
     def _unit(self, output: Output) -> str:
@@ -179,7 +179,7 @@ class _Solver:
 
     def _answer(self, output: Output) -> Answer:
         if is_of_a_run(output):
-            raise DerivationError("it is of a whole run", fix="`eomgen simulate` gives it")
+            raise DerivationError("it is a function of a whole run", fix="`eomgen simulate` gives it")
         if requests_of(output.value, SMALL_MOTIONS):
             return self._of_small_motions(output)
         if output.at is not None:
@@ -190,10 +190,10 @@ class _Solver:
             return self._of_the_instant(output)
         return self._of_state(output)
 
-    # -- at the one instant that [given] speaks of -----------------------------------------------
+    # -- at the one instant of a model with [given] -----------------------------------------------
 
     def is_of_the_instant(self, output: Output) -> bool:
-        """Whether a formula asks velocities where no time runs: with [given], or of bodies and constraints alone."""
+        """True if the output needs the one instant of a model with [given], or of bodies and constraints alone."""
         given, formula = self.model.given, output.value
         if given is None:
             return not self.model.coordinates and requests_motion(formula)
@@ -232,8 +232,8 @@ class _Solver:
             nonlocal exact
             if FUNCTIONS[call.name].source != SMALL_MOTIONS:
                 raise DerivationError(
-                    f"'{call}' is a function of the state, and stands beside the linearized system",
-                    fix="ask it in an output of its own",
+                    f"'{call}' is a function of the state, next to functions of the linearized system",
+                    fix="request it in an output of its own",
                 )
             found, is_exact = self.linearization.value(call)
             exact = exact and is_exact
@@ -253,7 +253,7 @@ class _Solver:
         if self._not_at_rest:
             raise DerivationError(
                 f"the bodies are not at rest: {self._not_at_rest}",
-                fix="let the constraints hold them, or ask at an instant",
+                fix="let the constraints hold them, or request it at an instant: `at`",
             )
         answer = self._started(phase.simple(scalar), method, output)
         if jump := _jump(phase, output, self.motions[False].numbers):
@@ -266,19 +266,19 @@ class _Solver:
         if without and self._friction_at_rest:
             resting = self._friction_at_rest
             what = f"on the surface of {resting} nothing slides yet at the start, and friction has no direction there"
-            return replace(answer, message=f"{what}; ask it at an instant after: `at`")
+            return replace(answer, message=f"{what}; request it at a later instant: `at`")
         return answer
 
     @cached_property
     def _friction_at_rest(self) -> str:
-        """The contacts on surfaces that begin to slide from rest, by their names."""
+        """Names of the contacts on surfaces that are at rest at the start, with friction."""
         phase = self.phase
         values = {**known_parameters(phase.system.scope), **self.motions[False].numbers}
         rows = [row for row in phase.system.constraints.rows if row.shares and row.friction is not None]
         return ", ".join(f"'{row.constraint}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
 
     def _regular(self, answer: Answer, output: Output) -> Answer:
-        """The answer with the value that it has where its closed form divides by what vanishes at the start."""
+        """Answer whose value is found at the start itself, where its closed form may divide by zero there."""
         phase = self.phase
         if not phase.system.constraints.closing or not phase.needs_equations(output.value):
             return answer
@@ -291,8 +291,7 @@ class _Solver:
             return answer
 
     def _defined(self, answer: Answer, output: Output, phase: PhaseEquations, numbers: Mapping[Node, float]) -> Answer:
-        """The answer with the value of what was asked itself, instead of its closed form, at the start.
-
+        """Answer with the value of the formula itself at the start, instead of that of its closed form.
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
@@ -303,7 +302,7 @@ class _Solver:
 
     @cached_property
     def _not_at_rest(self) -> str:
-        """What contacts of bodies without coordinates cannot do; "" where they can."""
+        """Reason why bodies without coordinates are not in equilibrium on their contacts; "" where they are."""
         return why_not_at_rest(self.model, self.phase.system)
 
     def _of_configuration(self, output: Output) -> Answer:
@@ -317,12 +316,12 @@ class _Solver:
             jump = _jump(phase, output, motion.numbers)
             return replace(answer, value=None, message=jump) if jump else answer
         if not motion.start:
-            raise DerivationError("a coordinate at the start has no closed form", fix="ask it at an instant: `at`")
+            raise DerivationError("a coordinate at the start has no closed form", fix="request it at an instant: `at`")
         found = rates_and_extent(phase.equations, motion.start, accelerations=phase.accelerations)
         if found is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
-                fix="ask it at an instant: `at`",
+                fix="request it at an instant: `at`",
             )
         rates, held = found
         self._refuse_leaving(motion, held)
@@ -334,27 +333,27 @@ class _Solver:
 
     @staticmethod
     def _refuse_leaving(motion: MotionFromStart, held: Extent) -> None:
-        """Nothing, where the motion stays in the pieces in which its integrals hold.
+        """Refuses integrals of the motion that hold only in pieces which the motion leaves.
 
         Raises:
-            DerivationError: it does not, or nobody knows.
+            DerivationError: it leaves them, or that is not known.
         """
         if held.everywhere:
             return
         what = f"the integrals of the motion give the rates only while {held.text}"
         if not motion.numbers:
             raise DerivationError(
-                f"{what}, and without values of all parameters nobody knows whether the motion stays there",
+                f"{what}, and without values of all parameters it is not known whether the motion stays there",
                 fix="give the parameters values",
             )
         left = leaves_at(motion, held)
         if left is not None:
             raise DerivationError(
-                f"{what}, and the motion leaves that at t = {left:.4g} s", fix="ask it at an instant: `at`"
+                f"{what}, and the motion leaves that at t = {left:.4g} s", fix="request it at an instant: `at`"
             )
 
     def _started(self, scalar: Scalar, method: str, output: Output) -> Answer:
-        """The text, and the value at the start in the output's unit."""
+        """Answer with the text of a scalar, and its value at the start in the output's unit."""
         exact = self._written(scalar)
         message = None if exact is not None else f"the exact form is longer than {LONGEST_RESULT} characters"
         try:
@@ -363,14 +362,14 @@ class _Solver:
             return Answer(exact, None, "", method, error.what)
 
     def _written(self, scalar: Scalar) -> str | None:
-        """The text of an exact answer; None where nobody would read it."""
+        """Text of an exact answer; None where it is too long to read."""
         if text_size(scalar) > LONGEST_RESULT:
             return None
         form = book_form(scalar, Work.FORMULA, self.phase.system.scope.positive)
         return readable_text(without_cases((form,))[0])
 
     def _at_start(self, quantity: Scalar, output: Output) -> float:
-        """The value at the start in the output's unit; what it does not depend on may be missing.
+        """Value at the start in the output's unit; parameters on which it does not depend may have no value.
 
         Raises:
             MissingValues: a parameter that it needs has no value.
@@ -398,7 +397,7 @@ class _Solver:
 
     @cached_property
     def _begun(self) -> dict[str, Scalar | float]:
-        """Coordinates and speeds at the start, exact where they have a closed form: what is 0 there is 0."""
+        """Coordinates and speeds at the start, exact where they have a closed form, so that zeros are exact."""
         values: dict[str, Scalar | float] = {**start_state(self.phase.system)}
         exact = {**self.motions[False].begun.exact, **self.phase.system.loads.begun}
         closed = zip(exact, substituted(tuple(exact.values()), self._parameters), strict=True)
@@ -411,11 +410,11 @@ class _Solver:
     # -- at an instant -------------------------------------------------------------------------
 
     def _at(self, output: Output) -> Answer:
-        """At the instant when a condition holds: exact where the motion can be followed exactly, else a number."""
+        """Answer at the instant of a condition: exact where the motion can be followed exactly, else a number."""
         assert output.at is not None
         if isinstance(output.at, AtRest):
             if output.from_ or output.side:
-                raise DerivationError("an equilibrium has no way that leads there", fix="leave out `from` and `side`")
+                raise DerivationError("no motion leads to an equilibrium", fix="leave out `from` and `side`")
             moment = self.at_rest
         else:
             moment = self.motions[output.from_ == "rest"].until(output.at, output.side)
@@ -433,7 +432,7 @@ class _Solver:
             return Answer(text, None, "", method, error.what)
 
     def _exactly(self, moment: StateAtInstant, output: Output) -> Scalar | None:
-        """The value by what is known of the instant exactly; None where that is too little."""
+        """Exact value at the instant; None where too little of its state is known exactly."""
         if self._is_long_and_open(moment, output):
             return None
         try:
@@ -442,7 +441,7 @@ class _Solver:
             return None
 
     def _is_long_and_open(self, moment: StateAtInstant, output: Output) -> bool:
-        """Whether a formula too long to be shown holds what is known of the instant in numbers alone."""
+        """True if a formula too long to be shown depends on values that are known at the instant only as numbers."""
         phase, symbols = moment.phase, moment.phase.system.symbols
         missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in moment.exact]
         if isinstance(output.at, AtRest) or not missing or not moment.numbers:
@@ -451,7 +450,7 @@ class _Solver:
         return depends_on(closed, missing) and text_size(closed) > LONGEST_RESULT
 
     def _constant(self, moment: StateAtInstant, output: Output) -> Scalar | None:
-        """What stays constant along every motion, as it is at the start; None: it changes, or a contact has."""
+        """Value at the start of a formula that is constant along every motion; None: it changes, or a contact has."""
         motion = self.motions[output.from_ == "rest"]
         phase = motion.phase
         if moment.phase is not phase or not motion.start:
@@ -463,14 +462,14 @@ class _Solver:
 
     @cached_property
     def at_rest(self) -> StateAtInstant:
-        """Where all forces balance, or the start held by unknowns."""
+        """Equilibrium, or the start held by the unknowns of the loads."""
         return resting(self.phase.system)
 
     def _number_at(self, moment: StateAtInstant, output: Output) -> float:
         """The value in floating point.
 
         Raises:
-            RunFailed: a parameter is missing, and nothing is known of the instant.
+            RunFailed: a parameter has no value, and the state at the instant is not known.
         """
         if not moment.numbers:
             raise RunFailed(
@@ -483,7 +482,7 @@ class _Solver:
 
 
 def _jump(phase: PhaseEquations, output: Output, numbers: Mapping[Node, float]) -> str:
-    """Why accelerations and reactions have no number at the start: a force jumps with the sign of a rate; ""."""
+    """Message if accelerations and reactions have no number at the start: a force jumps with the sign of a rate."""
     if not signs_of_rates(phase.system) or not phase.needs_equations(output.value):
         return ""
     try:
@@ -494,7 +493,7 @@ def _jump(phase: PhaseEquations, output: Output, numbers: Mapping[Node, float]) 
 
 
 def _in_unit(quantity: Scalar, output: Output) -> Scalar:
-    """How often the output's unit goes into a quantity; exact as this is."""
+    """Quantity in the unit of the output, exactly."""
     if output.unit is None:
         return quantity
     graph = quantity.graph if isinstance(quantity, Node) else Graph()

@@ -21,13 +21,13 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, transplanted
 
 @dataclass(frozen=True)
 class StateAtInstant:
-    """One instant of a motion.
+    """State of a motion at one instant.
 
     Args:
         phase: the equations of the phase.
-        exact: t, q and u as scalars of the parameters, those that are known so.
-        numbers: t, q and u as numbers; {} where parameters are missing.
-        method: how it was found.
+        exact: t, q and u as scalars of the parameters, as far as they have a closed form.
+        numbers: t, q and u as numbers; {} where parameters have no values.
+        method: name of the method by which the instant was found.
     """
 
     phase: PhaseEquations
@@ -37,7 +37,10 @@ class StateAtInstant:
 
 
 def carried(moment: StateAtInstant, phase: PhaseEquations) -> dict[Node, Scalar]:
-    """The exact end of a phase as the start of the next; a displacement that did not exist is 0. {}: not exact."""
+    """Exact end of a phase as the start of the next; {} where it is not exact.
+
+    A displacement that the phase before did not have is 0.
+    """
     symbols = phase.system.symbols
     known = {node.name: x for node, x in moment.exact.items()}
     old = {x.name for x in (*moment.phase.system.symbols.q, *moment.phase.system.symbols.u)}
@@ -59,10 +62,10 @@ def _with_rates(moment: StateAtInstant, known: dict[str, Scalar]) -> dict[str, S
 
 
 def placed(phase: PhaseEquations, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
-    """What is known of a state, and the coordinates that the constraints then fix, where they have a closed form.
+    """Known values of a state, with the coordinates that the constraints then fix, where they have a closed form.
 
     Args:
-        numbers: the same state in numbers, by which one of several places is chosen; {}: nothing is added.
+        numbers: the same state in numbers, by which one of several positions is chosen; {}: nothing is added.
     """
     system = phase.system
     unknown = [q for q in system.symbols.q if q not in known]
@@ -75,13 +78,13 @@ def placed(phase: PhaseEquations, known: Mapping[Node, Scalar], numbers: Mapping
 
 
 def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAtInstant:
-    """The place at which all forces balance, the nearest to the start; with unknowns in the loads, the start itself.
+    """Equilibrium that is nearest to the start; with unknowns in the loads, the start itself.
 
     Args:
         system: as it is at the start.
         guess: values of coordinates in place of `near` and `start`.
     Raises:
-        DerivationError: there is none; a contact would have to pull there.
+        DerivationError: there is no equilibrium, or a contact would have to pull there.
     """
     from eomgen.mechanics.equilibrium.equations import standing_system, static_equations
     from eomgen.mechanics.equilibrium.search import all_equilibria
@@ -123,8 +126,7 @@ def parameters_of(phase: PhaseEquations) -> dict[Node, float]:
 # -------- first instant ---------------------------------------------------------------------------------------
 # Phase, condition, start -> the state at the first time after the start at which the condition holds.
 #
-# It is located in numbers first, then sought in closed form; what is found so is taken where it agrees with the
-# numbers.
+# It is located in numbers first, then sought in closed form; a closed form is used where it agrees with the numbers.
 
 
 TRIALS = (1.3, 3, 8, 20)  # how far from 1 values are tried for parameters that have none
@@ -133,11 +135,11 @@ TRIALS = (1.3, 3, 8, 20)  # how far from 1 values are tried for parameters that 
 def reached(
     phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
 ) -> StateAtInstant:
-    """The first instant after the start at which the condition is 0; one at the start itself is none.
+    """State at the first instant after the start at which the condition is 0; the start itself does not count.
 
     Args:
-        condition: of q, u, t and parameters.
-        start: q and u at the start as scalars of the parameters, t where it is not 0; {} where a form is missing.
+        condition: function of q, u, t and parameters.
+        start: q and u at the start as scalars of the parameters, t where it is not 0; {} without a closed form.
         numbers: the same as numbers; {} where parameters have no values.
     Raises:
         RunFailed: the condition is not met.
@@ -149,8 +151,9 @@ def reached(
 def closed_form(
     phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
 ) -> tuple[State, str]:
-    """(t, q and u, those that are known in closed form, by which way) where the condition holds.
+    """State in closed form where the condition holds, and the name of the method.
 
+    t, q and u are given as far as they have a closed form.
     Args:
         start: q and u at the start of the phase.
         numbers: t, q and u at the instant.
@@ -170,7 +173,7 @@ def _values(phase: PhaseEquations) -> State:
 
 @dataclass(frozen=True)
 class _Search:
-    """An instant that is sought; the arguments are those of `reached`, inputs by their own functions of time."""
+    """Search for an instant; arguments as of `reached`, inputs replaced by their own functions of time."""
 
     phase: PhaseEquations
     accelerations: tuple[Scalar, ...]
@@ -185,10 +188,10 @@ class _Search:
         return StateAtInstant(self.phase, exact, numbers, way or method)
 
     def with_trial_values(self, known: State) -> StateAtInstant:
-        """The instant in closed form alone: branches are chosen at values that the parameters might have.
+        """State at the instant in closed form alone; its branch is chosen at trial values of the parameters.
 
         Raises:
-            RunFailed: at no trial is the condition met.
+            RunFailed: the condition is met at none of the trials.
         """
         symbols, rng = self.phase.system.symbols, Random(1)
         if not {*symbols.q, *symbols.u} <= self.start.keys():
@@ -207,7 +210,7 @@ class _Search:
         raise RunFailed(f"{reason.what} ({tried})", fix="give the parameters values")
 
     def closed(self, numbers: State, values: State) -> tuple[State, str]:
-        """(t, q and u in closed form, by which way); the way is "" where the numbers' own is the better word."""
+        """State in closed form, and the name of the method; "" where the method of the numbers describes it better."""
         symbols = self.phase.system.symbols
         moving = {*symbols.q, *symbols.u}
         if not moving <= self.start.keys():
@@ -225,6 +228,6 @@ class _Search:
 
     @property
     def _own(self) -> set[Node]:
-        """The coordinates and speeds that no given motion says."""
+        """Speeds, and the coordinates that are not given as functions of time."""
         symbols, table = self.phase.system.symbols, self.phase.model.coordinates
         return {*symbols.u, *(q for q in symbols.q if not table[q.name].driven)}

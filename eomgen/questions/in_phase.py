@@ -1,8 +1,9 @@
-"""Model -> PhaseEquations: the equations of one phase, and what a formula of the model is worth in it, exactly.
+"""Model -> PhaseEquations: the equations of one phase, and the exact value of a formula of the model in it.
 
-A formula may hold coordinates, rates, accelerations, and functions of the motion and of the reactions. As a function of
-the state, accelerations and multipliers are replaced by the equations of motion. At one instant the instant's values
-are put into the equations first, and these are solved there: so nothing is divided by what vanishes only in between.
+A formula may contain coordinates, rates, accelerations, and functions of the motion and of the reactions. As a function
+of the state, its accelerations and multipliers are replaced by the equations of motion. At one instant the state is
+substituted into the equations first, and these are solved there: so nothing is divided by a pivot of the general
+solution that vanishes at this state.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import LinearSystem, general_solution
 
 LONG = 400  # characters from which a formula is no easier to read than it came
-NO_FORMULA = 10 * LONG  # characters that nobody takes for a formula: rows are shortened before they are eliminated
+NO_FORMULA = 10 * LONG  # characters of an unreadable formula: rows are shortened before they are eliminated
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class PhaseEquations:
 
         Raises:
             ModelError: a free coordinate moves no mass.
-            DerivationError: a force is unknown.
+            DerivationError: a load contains an unknown.
         """
         refuse_motion(self.model)
         equations = equations_of_motion(self.system)
@@ -88,7 +89,7 @@ class PhaseEquations:
 
     @cached_property
     def moves_by_time(self) -> bool:
-        """Whether time stands in the equations of motion."""
+        """True if time stands in the equations of motion."""
         e, t = self.equations, (self.system.symbols.t,)
         entries = (x for row in (*e.M, *e.J) for x in row)
         inputs = (self.system.inputs[name] for name in self.system.symbols.inputs)
@@ -101,11 +102,11 @@ class PhaseEquations:
     # -- as functions of the state ---------------------------------------------------------------
 
     def raw(self, formula: Expression) -> Scalar:
-        """The formula as it stands: accelerations and multipliers are symbols."""
+        """Scalar of the formula, in which accelerations and multipliers are still symbols."""
         return self._quantities.of(formula)
 
     def of_state(self, formula: Expression) -> Scalar:
-        """The formula as a function of q, u and t; each function of the motion in it is readable by itself."""
+        """The formula as a function of q, u and t; each function of the motion in it is simplified by itself."""
 
         def value(call: Call) -> Scalar:
             return self.simple(self.eliminated(self._quantities.value(call)))
@@ -113,7 +114,7 @@ class PhaseEquations:
         return self.eliminated(self._quantities.of(formula, value))
 
     def eliminated(self, scalar: Scalar) -> Scalar:
-        """A scalar with accelerations and multipliers replaced by the equations of motion, unknowns by the balance."""
+        """Scalar with accelerations and multipliers replaced by the equations of motion, unknown loads by statics."""
         scalar = self._known(scalar, self._quantities)
         if self._stands_still:
             (scalar,) = substituted((scalar,), still(self.system))
@@ -123,8 +124,7 @@ class PhaseEquations:
 
     @cached_property
     def _stands_still(self) -> bool:
-        """Whether the constraints hold every coordinate where it is: J u = 0 with as many independent rows as
-        speeds."""
+        """True if the constraints fix every coordinate: J u = 0 with as many independent rows as speeds."""
         constraints = self.system.constraints
         if not constraints.closing or not all(holds_identically(x) for x in constraints.sigma):
             return False
@@ -134,13 +134,13 @@ class PhaseEquations:
             return False
 
     def _known(self, scalar: Scalar, quantities: Quantities) -> Scalar:
-        """A scalar with the unknowns of loads replaced by what they are at rest."""
+        """Scalar with the unknowns of loads replaced by their values at rest."""
         symbols = self.system.symbols.unknowns
         held = [p for p in symbols.values() if depends_on(scalar, (p,))]
         return substituted((scalar,), {p: quantities.reactions.unknown(p.name) for p in held})[0] if held else scalar
 
     def simple(self, scalar: Scalar) -> Scalar:
-        """A scalar in its most readable form; as it came where multiplying out made it longer still."""
+        """Scalar in its most readable form; unchanged where simplifying does not make it shorter."""
         known = self._legible
         if scalar not in known:
             found = legible(scalar, Work.ANSWER, self.system.scope.positive, LONG)
@@ -149,13 +149,13 @@ class PhaseEquations:
 
     @cached_property
     def _legible(self) -> dict[Scalar, Scalar]:
-        """What was made readable once: also that it is, or could not be."""
+        """Cache of `simple`: scalar -> its most readable form."""
         return {}
 
     # -- at an instant ---------------------------------------------------------------------------
 
     def number(self, formula: Expression, numbers: Mapping[Node, Scalar | float]) -> float:
-        """The number of the formula at a state, accelerations and reactions found there.
+        """Number of the formula at a state, accelerations and reactions solved there.
 
         Args:
             numbers: of t, q, u and the parameters.
@@ -163,7 +163,7 @@ class PhaseEquations:
         return self.numbers((formula,), numbers)[0]
 
     def numbers(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> list[float]:
-        """The numbers of several formulas at a state: what they share is found once."""
+        """Numbers of several formulas at a state; common subexpressions are evaluated once."""
         if signs_of_rates(self.system) and any(map(self.needs_equations, formulas)):
             refuse_jump(self.system, exact_numbers(numbers))
         inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
@@ -178,7 +178,7 @@ class PhaseEquations:
     def _are_stable(
         self, found: Sequence[float], closed: Sequence[Scalar], numbers: Mapping[Node, Scalar | float]
     ) -> list[bool]:
-        """Whether forms that divide by what may vanish there have the same values in floats: no pivot vanishes."""
+        """True for each closed form whose value in floats is the same: no pivot by which it divides vanishes there."""
         if not self.system.constraints.closing:
             return [True] * len(found)
         exact = exact_numbers(numbers)
@@ -191,9 +191,9 @@ class PhaseEquations:
         """The formula at a state that is given exactly, in the parameters alone.
 
         Args:
-            state: exact scalars of t, q and u; of those that are missing the formula may hold none.
+            state: exact scalars of t, q and u; the formula must not depend on those that are missing.
         Raises:
-            MissingValues: it holds one; the names tell which.
+            MissingValues: it depends on one; the error names them.
         """
         return self.simple(self._solved_at(formula, state))
 
@@ -201,11 +201,11 @@ class PhaseEquations:
         """The formula at a state, the equations of motion solved anew there.
 
         Args:
-            readable: whether it is to be read; a number is found sooner from what is not.
+            readable: True if the result is printed; an unsimplified one is faster where only its number is needed.
         """
-        kept = self._kept(state)
+        cached = self._cached(state)
         state = self.complete(state, formula, readable=readable)
-        quantities = kept.setdefault((Quantities, readable, len(state)), Quantities(self.system, state))
+        quantities = cached.setdefault((Quantities, readable, len(state)), Quantities(self.system, state))
         scalar = quantities.of(formula)
         (scalar,) = substituted((scalar,), state)
         (scalar,) = substituted((self._known(scalar, quantities),), state)
@@ -225,14 +225,14 @@ class PhaseEquations:
             return {**state, **still(self.system)}
         if formula is not None and not self.needs_equations(formula):
             return state
-        kept = self._kept(given)
-        if readable not in kept:
+        cached = self._cached(given)
+        if readable not in cached:
             refuse_jump(self.system, state)
-            kept[readable] = self._unknowns_at(state, readable)
-        return {**state, **kept[readable]}
+            cached[readable] = self._unknowns_at(state, readable)
+        return {**state, **cached[readable]}
 
-    def _kept(self, state: Mapping[Node, Any]) -> dict[Any, Any]:
-        """What is found at a state that is given, for several formulas there: that of one state alone is kept."""
+    def _cached(self, state: Mapping[Node, Any]) -> dict[Any, Any]:
+        """Cache of solutions at a state, for several formulas there; only the last state is cached."""
         key = tuple(state.items())
         if self._at_one_state.get("state") != key:
             self._at_one_state.clear()
@@ -241,11 +241,14 @@ class PhaseEquations:
 
     @cached_property
     def _at_one_state(self) -> dict[Any, Any]:
-        """What was found at the state asked last."""
+        """Solutions at the last requested state."""
         return {}
 
     def method_for(self, formula: Expression) -> str:
-        """What eliminates reactions and accelerations from the formula, or what it asks; "" for positions and rates."""
+        """Name of the method that the formula needs; "" for positions and rates.
+
+        It is the method by which reactions and accelerations are eliminated, or that of the functions of masses.
+        """
         unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
         if unknown or requests_of(formula, BALANCE):
             return BALANCE
@@ -254,13 +257,13 @@ class PhaseEquations:
         return MASSES if requests_of(formula, MASSES) else ""
 
     def needs_equations(self, formula: Expression) -> bool:
-        """Whether accelerations, multipliers or reactions stand in the formula."""
+        """True if accelerations, multipliers or reactions stand in the formula."""
         if requests_of(formula, BALANCE):
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 
     def _unknowns_at(self, state: Mapping[Node, Any], readable: bool) -> dict[Node, Scalar]:
-        """Accelerations and multipliers at a state: the equations solved there."""
+        """Accelerations and multipliers at a state, by solving the equations there."""
         symbols, equations = self.system.symbols, self.equations
         if equations.friction:
             values = substituted(tuple(self.unknowns.values()), state)
@@ -275,7 +278,7 @@ class PhaseEquations:
         rows = [{j: next(flat) for j in row} for row in rows]
         solution = general_solution(LinearSystem(rows, needed, len(right), values_at_a_state(self.system, entries)))
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
-        missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # what holds one is no answer
+        missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # results with one are not used
         found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}
         return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
 
@@ -286,6 +289,6 @@ def phase_equations_of(model: Model, modes: ContactModes | None = None) -> Phase
 
 
 def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:
-    """Doubles as the exact numbers that they are; nan is left out."""
+    """Exact rational values of doubles; nan is left out."""
     found = {node: Fraction(x) if isinstance(x, float) and math.isfinite(x) else x for node, x in values.items()}
     return {node: x for node, x in found.items() if not isinstance(x, float)}

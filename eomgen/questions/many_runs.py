@@ -1,9 +1,8 @@
 """Simulator, values of many runs -> Runs: in lanes of vectors or in marches where the model allows it, else one by one.
 
-Lanes take what has no constraints, no contacts that change and no quaternion's constraint: a motion x' = f(t, x, p)
-whose start
-follows from numbers. Marches take what has constraints that hold throughout. A run that is stiff, comes near a singular
-position, or has equations or a start of its own is run alone.
+Lanes are for models x' = f(t, x, p) without constraints, contacts that change and dependent quaternions, whose start
+follows from numbers. Marches are for models with constraints that hold throughout. A run that is stiff, comes near a
+singular position, or has equations or a start of its own is run alone.
 """
 
 from __future__ import annotations
@@ -49,7 +48,7 @@ OfRuns = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class _Plan:
-    """What differs from run to run.
+    """Values that differ from run to run, and what all runs share.
 
     Args:
         simulator: of the model with all that the runs share.
@@ -85,10 +84,10 @@ def many_runs(
     samples: int | Sequence[float] = SAMPLES,
     threads: int = 1,
 ) -> Runs:
-    """The runs, each as `simulator(time, parameters, start)` gives it; one that fails does not stop the rest.
+    """The runs, each as `simulator(time, parameters, start)` gives it; a run that fails does not stop the rest.
 
     Raises:
-        UsageError: a name that there is not, arrays of several lengths, values that are no finite numbers.
+        UsageError: an unknown name, arrays of several lengths, values that are not finite numbers.
     """
     how = simulator.how
     time = seconds(time)
@@ -113,7 +112,7 @@ def many_runs(
 def _planned(
     simulator: Simulator, time: float, parameters: OfRuns, start: OfRuns, inputs: OfRuns, samples: int | Sequence[float]
 ) -> _Plan:
-    """The model with what all runs share, and the arrays."""
+    """Plan of the runs: the model with the values that all share, and the arrays of the others."""
     arrays = {kind: {name: _array(simulator.model, name, v) for name, v in given.items() if are_several(v)}
         for kind, given in (("parameters", parameters), ("start", start), ("inputs", inputs))}  # fmt: skip
     sizes = {name: len(values) for each in arrays.values() for name, values in each.items()}
@@ -135,7 +134,7 @@ def _planned(
 
 
 def _array(model: Model, name: str, value: Any) -> np.ndarray:
-    """One value a run, in SI."""
+    """Values of one name, one a run, in SI units."""
     typed = TypedNumbers(model, name, declared=False)
     try:
         plain = isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
@@ -149,7 +148,7 @@ def _array(model: Model, name: str, value: Any) -> np.ndarray:
 
 
 def _inputs_as_parameters(model: Model, inputs: Mapping[str, np.ndarray]) -> tuple[Model, dict[str, np.ndarray]]:
-    """An input that differs from run to run is a parameter of its own."""
+    """Model in which each input that differs from run to run is a parameter, and the values of these parameters."""
     found, added = {}, {}
     for name, values in inputs.items():
         if name not in model.inputs:
@@ -172,7 +171,7 @@ Reported = tuple[tuple[str, ...], np.ndarray, np.ndarray, np.ndarray, np.ndarray
 
 
 def _known(simulator: Simulator) -> tuple[Any, PhaseModel]:
-    """(the equations, the one phase that has the coordinates and speeds of the start)."""
+    """Equations, and the phase that has the coordinates and speeds of the start."""
     equations = simulator.equations
     p = np.zeros(len(equations.graph.symbols.parameters))
     return equations, one_phase(equations.graph.system, equations.graph, p, simulator.target)
@@ -212,7 +211,7 @@ def _in_lanes(plan: _Plan, threads: int) -> Reported | None:
 
 
 def _in_marches(plan: _Plan, threads: int) -> Reported | None:
-    """All runs in marches, those that need a look one by one; None where the model or the method does not allow it."""
+    """All runs in marches, those that are not finished so one by one; None where model or method does not allow it."""
     simulator, how = plan.simulator, plan.simulator.how
     allowed = how.method in (AUTO, "DOP853") and how.stabilization in ("projection", "none") and how.every is None
     if not allowed or has_phases(plan.model) or simulator.target == "numpy" or not (base := _base(plan)):
@@ -262,7 +261,7 @@ def _messages(found: FoundRuns) -> np.ndarray:
 
 
 def _parameters(plan: _Plan) -> np.ndarray:
-    """The parameters of every run; those that are formulas of others follow."""
+    """Parameters of every run, runs x parameters; those that are formulas of others are evaluated for each run."""
     model = plan.model
     names = list(model.parameters)
     follow = any(_names(part.value) & plan.parameters.keys() for part in model.parameters.values())
@@ -276,7 +275,7 @@ def _parameters(plan: _Plan) -> np.ndarray:
 
 
 def _starts(plan: _Plan, phase: PhaseModel, equations: Any) -> np.ndarray:
-    """The state at the start of every run."""
+    """States at the start, runs x states."""
     model, system = plan.model, phase.declared
     parts = [*model.coordinates.values()]
     written = [each for part in parts for each in (part.start, part.speed, part.rate, part.motion, part.near)]
@@ -297,7 +296,7 @@ def _starts(plan: _Plan, phase: PhaseModel, equations: Any) -> np.ndarray:
 
 
 def _following(model: Model, varied: Mapping[str, Any]) -> set[str]:
-    """The parameters whose formulas hold others that differ."""
+    """Parameters whose formulas contain parameters that differ from run to run."""
     return {name for name, part in model.parameters.items() if _names(part.value) & varied.keys()}
 
 
@@ -306,10 +305,10 @@ def _names(expression: Expression | None) -> frozenset[str]:
 
 
 def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.ndarray) -> np.ndarray:
-    """What of its energy (where that is constant), constraints and norms contradicts each run, in words; "": nothing.
+    """Contradiction of each run in words; "" without one.
 
-    The limits are those of one run: 10 (rtol size + atol) a step; on constraints, onto which each step is put back, of
-    one.
+    Energy where it is constant, constraints and norms of quaternions are compared with the limits of one run:
+    10 (rtol size + atol) for each step taken; for constraints, onto which each step is projected, for one step.
     """
     how, (runs, instants) = plan.simulator.how, x.shape[:2]
     t, p = np.tile(plan.instants, runs), np.repeat(_parameters(plan), instants, axis=0)
@@ -338,7 +337,7 @@ def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.nda
 
 
 def _drifts(plan: _Plan, phase: PhaseModel) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """Of each run how far its energy went, at the instants."""
+    """Function (t, x) -> drift of the energy of each run, at the instants."""
 
     def found(t: np.ndarray, x: np.ndarray) -> np.ndarray:
         p, energies = _parameters(plan), phase.functions.energies
@@ -351,7 +350,7 @@ def _drifts(plan: _Plan, phase: PhaseModel) -> Callable[[np.ndarray, np.ndarray]
 
 
 def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Reported:
-    """Some of the runs, each by the simulator of one."""
+    """The runs of these numbers, each by the simulator of one run."""
     context = contextvars.copy_context()
 
     def run(i: int) -> tuple[tuple[str, ...], str, str, np.ndarray | None, int]:

@@ -1,9 +1,7 @@
-"""Model, condition -> the state at which a motion first meets it.
-
-Model, condition -> StateAtInstant: the state at which a motion first meets a condition, exactly where it can be.
+"""Model, condition -> StateAtInstant: the state at which a motion first meets a condition, exact where possible.
 
 A motion may pass through several phases: contacts end, slide, stick, a path goes over from one piece to the next. Each
-phase is followed in numbers; the instants between are then sought in closed form, and taken where both agree.
+phase is followed in numbers; the instants between are then sought in closed form, which is used where both agree.
 """
 
 from __future__ import annotations
@@ -83,7 +81,7 @@ class MotionFromStart:
 
     @cached_property
     def _first(self) -> PhaseStart:
-        """Where the phases begin."""
+        """Start of the first phase."""
         from eomgen.simulation.phase_change import at_start
 
         assert self.models is not None
@@ -108,7 +106,7 @@ class MotionFromStart:
 
     @property
     def failure(self) -> str:
-        """Why no phase begins at the start; "" where one does."""
+        """Reason why no phase begins at the start; "" where one does."""
         return "" if self.models is None or not self.model.coordinates else self._first.failure
 
     @cached_property
@@ -149,7 +147,7 @@ class MotionFromStart:
 
     @cached_property
     def _moments(self) -> dict[tuple[str, str], StateAtInstant | EomgenError]:
-        """Those that were sought already, and why some are never reached."""
+        """Cache of instants sought, and of the errors of those that are never reached."""
         return {}
 
     def _until(self, condition: WrittenEquation, side: str | None) -> StateAtInstant:
@@ -161,14 +159,14 @@ class MotionFromStart:
 
     @cached_property
     def goes_through_phases(self) -> bool:
-        """Whether it is followed in numbers from phase to phase."""
+        """True if the motion is followed in numbers from phase to phase."""
         return self.models is not None and not self._starts_in_balance(self.phase)
 
     def _is_start(self, condition: WrittenEquation) -> bool:
-        """Whether an instant is asked for by the time t = 0.
+        """True if the condition holds at t = 0 by time alone: it contains no coordinate and no speed.
 
         Raises:
-            RunFailed: nothing that moves stands in the condition.
+            RunFailed: the condition contains nothing that moves.
         """
         symbols = self.phase.system.symbols
         scalar = difference_of(self.phase, condition)
@@ -188,7 +186,7 @@ class MotionFromStart:
         start: Mapping[Node, Scalar],
         numbers: Mapping[Node, float],
     ) -> StateAtInstant:
-        """In one phase."""
+        """State at the first time in one phase at which the condition holds."""
         from eomgen.questions.at_instant import reached
 
         moment = reached(phase, difference_of(phase, condition), start, numbers)
@@ -198,7 +196,7 @@ class MotionFromStart:
         return moment
 
     def _starts_in_balance(self, phase: PhaseEquations) -> bool:
-        """Whether time does not lead away from the start."""
+        """True if the motion stays at the start: it is at rest there, and in equilibrium."""
         symbols = phase.system.symbols
         first = self._numeric_first
         if any(self.numbers[u] != 0 for u in symbols.u) or _is_moved_by_time(first, phase):
@@ -214,10 +212,10 @@ class MotionFromStart:
         return self.models.of(self._first.configuration)
 
     def _refuse_ended(self, moment: StateAtInstant) -> None:
-        """Refuse an instant that a motion from an unstable rest would reach with contacts that have ended before.
+        """Refuses an instant before which, on the way from an unstable equilibrium, a contact has ended.
 
         Raises:
-            RunFailed: a contact is named.
+            RunFailed: a contact has ended; the error names it.
         """
         values = {**parameters_of(moment.phase), **moment.numbers}
         for bound in self._numeric_first.bounds:
@@ -228,7 +226,7 @@ class MotionFromStart:
             size = abs(evaluate((scalar,), {**values, **self.numbers}, FLOAT)[0])
             if math.isfinite(there) and there < -CARRIED * max(1.0, size):
                 raise RunFailed(
-                    f"'{bound.owner}' ends before the instant, on the way from an unstable rest",
+                    f"'{bound.owner}' ends before the instant, on the way from an unstable equilibrium",
                     fix="start from an equilibrium that is stable, or ask earlier",
                 )
 
@@ -270,7 +268,7 @@ class MotionFromStart:
         )
 
     def _through(self, runs: Sequence[PhaseRun], condition: WrittenEquation, side: str | None) -> StateAtInstant:
-        """The end of the last phase, every end before it sought in closed form."""
+        """State at the end of the last phase; the end of every phase is sought in closed form."""
         moment = StateAtInstant(self.phase, self.start, {}, "")
         for k, run in enumerate(runs):
             phase = PhaseEquations(run.phase.system)
@@ -287,7 +285,7 @@ class MotionFromStart:
 
 
 def fine_stepping() -> Stepping:
-    """How a motion is run whose instants are then sought in closed form."""
+    """Fine tolerances for a motion whose instants are then sought in closed form."""
     from eomgen.simulation.integrator import Stepping
 
     return Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=MOST_STEPS)
@@ -296,10 +294,10 @@ def fine_stepping() -> Stepping:
 def _end_of(
     phase: PhaseEquations, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]
 ) -> StateAtInstant:
-    """The end of a phase: in numbers as it was run, exact where that agrees.
+    """State at the end of a phase: in numbers as it was run, exact where the closed form agrees with them.
 
     Args:
-        ended_by: what became zero; None: a slack without a formula.
+        ended_by: formula that became zero; None: the phase was ended by a condition without a formula.
     """
     numbers = _numbers(phase, run.run.end, run.end)
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
@@ -317,19 +315,19 @@ def _end_of(
 
 
 def _numbers(phase: PhaseEquations, t: float, values: Mapping[str, float]) -> dict[Node, float]:
-    """A state by the symbols of a phase; a displacement that does not exist yet is 0."""
+    """State by the symbols of a phase; a displacement that does not exist yet is 0."""
     symbols = phase.system.symbols
     return {symbols.t: t} | {node: values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)}
 
 
 def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
-    """Whether a velocity jumps between two phases: an impact."""
+    """True if a velocity jumps between two phases: an impact."""
     common = [name for name in end if name in start]
     return any(abs(end[name] - start[name]) > CARRIED * (1 + abs(end[name])) for name in common)
 
 
 def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
-    """Whether given motions, or forces that change with time, can end a rest."""
+    """True if a given motion, or a force that changes with time, can end a state of rest."""
     symbols, coordinates = phase.system.symbols, phase.model.coordinates
     moving = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
     bounds = (phase.eliminated(bound.value) for bound in first.bounds if bound.value is not None)
@@ -342,12 +340,12 @@ def difference_of(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
 
 
 # -------- one phase run ---------------------------------------------------------------------------------------
-# Motion from the start -> a run of it in one phase; whether it stays in the pieces in which its integrals hold.
+# Motion from the start -> a run of it in one phase; when it leaves the pieces in which its integrals hold.
 
 
 STEPS = 2000  # of a run in time that one instant is compared with
-WATCHED, INSTANTS = 100.0, 8001  # s of a motion that is watched for whether it stays in its piece, and how closely
-WATCHED_BRIEFLY = 10.0  # s, where a hundred take too many steps
+WATCHED, INSTANTS = 100.0, 8001  # s of a motion, and instants of it, at which it is checked that it stays in its piece
+WATCHED_BRIEFLY = 10.0  # s, where 100 s take too many steps
 WATCHED_STEPS = 20_000
 
 
@@ -355,7 +353,7 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
     """The motion from the start, in one phase, by emitted code.
 
     Raises:
-        RunFailed: it does not get there.
+        RunFailed: the run ends before that time.
     """
     phase, p = motion.phase, parameters_in_numbers(motion)
     system, equations, symbols = phase.system, phase.equations, phase.system.symbols
@@ -374,22 +372,22 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         most_steps=steps,
     )
     if not run.ok:
-        raise RunFailed(f"the run does not get there: {run.message}", fix="ask for an earlier instant")
+        raise RunFailed(f"the run does not get there: {run.message}", fix="choose an earlier instant")
     return run
 
 
 def parameters_in_numbers(motion: MotionFromStart) -> np.ndarray:
-    """The parameters of the phase; nan of those without a value."""
+    """Parameters of the phase; nan for those without a value."""
     known = known_exactly(motion.phase.system.scope)
     symbols = motion.phase.system.symbols
     return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
 
 
 def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
-    """When the motion first leaves the pieces in which something holds; None: it stays, as far as it was watched.
+    """Time at which the motion first leaves the pieces of an extent [s]; None: not within the time followed.
 
     Raises:
-        RunFailed: it cannot be followed.
+        RunFailed: the motion cannot be followed.
     """
     try:
         run = run_from_start(motion, WATCHED, INSTANTS, WATCHED_STEPS)
@@ -409,19 +407,18 @@ def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
 
 
 # -------- proof of phases -------------------------------------------------------------------------------------
-# An instant behind several phases -> whether the motion leads to it: the run that was followed, looked at as a run.
+# An instant after several phases -> what contradicts it: the proof of the run that was followed up to it.
 #
-# In each phase steps are taken again by another method, energy, constraints and contacts are what the phase takes them
-# for,
-# and between phases only impulses that push give momentum. The state is that at the end, and the condition holds not
-# before.
+# In each phase steps are taken again by another method, energy, constraints and contacts must be those of the phase,
+# and between phases only impulses that push change the momentum. The state must be that at the end, and the condition
+# must not hold before.
 
 
 def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -> str:
-    """What contradicts an instant of a motion with phases, in words; "".
+    """Contradiction to an instant of a motion with phases, in words; "" without one.
 
     Raises:
-        DerivationError: nothing of the motion can be looked at.
+        DerivationError: nothing of the motion can be checked.
     """
     assert output.at is not None and not isinstance(output.at, AtRest) and motion.models is not None
     t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
@@ -439,7 +436,7 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
 
 
 def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant) -> str:
-    """That the state is not that at the end of the runs, or after what ended them."""
+    """Message if the state is not that at the end of the runs, or, with side "after", that after its event; ""."""
     last = runs[-1]
     end = last.after.values if output.side == "after" and last.after is not None else last.end
     symbols, numbers = moment.phase.system.symbols, moment.numbers
@@ -453,7 +450,7 @@ def _apart(x: float, y: float) -> bool:
 
 
 def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
-    """That left - right changes its sign within a phase, at the integrator's steps."""
+    """Message if left - right changes its sign within a phase, at the integrator's steps; ""."""
     condition = output.at
     assert condition is not None and not isinstance(condition, AtRest)
     for run in runs:

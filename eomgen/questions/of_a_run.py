@@ -1,6 +1,6 @@
-"""Phases as they were run -> what outputs ask of a whole run: extremes and when, means, periods, values at its events.
+"""Phases of a run -> outputs of the whole run: extremes and their times, means, periods, values at events.
 
-A formula is resolved into polynomials between the integrator's steps (`chebyshev`), so that an extreme, a zero and an
+A formula is approximated by Chebyshev polynomials between the integrator's steps, so that an extreme, a zero and an
 integral are those of the motion and not of its samples.
 """
 
@@ -36,12 +36,12 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, S
 
 @dataclass(frozen=True)
 class RunValue:
-    """What one output is worth of a run.
+    """Value of one output of a run.
 
     Args:
-        value: SI; None where there is none; of every event a value each.
-        t: the instants at which it is [s]; () where it is of none.
-        message: why there is none, or "".
+        value: in SI; None without a value; with `event = "every"` one value an event.
+        t: instants of the value or values [s]; () for a value of no instant, such as a mean.
+        message: reason why there is no value, or "".
     """
 
     value: float | tuple[float, ...] | None
@@ -51,12 +51,12 @@ class RunValue:
 
 @dataclass(frozen=True)
 class WholeRun:
-    """A motion, asked as a whole.
+    """Outputs of a whole motion.
 
     Args:
-        model: whose outputs are asked.
-        runs: its phases.
-        plan: by which they were run.
+        model: the model with the outputs.
+        runs: the phases of the motion.
+        plan: the plan by which they were run.
         parameters: values that replace the model's.
         ends: the instant up to which each phase was planned; None: the plan's for all.
     """
@@ -68,15 +68,15 @@ class WholeRun:
     ends: Sequence[float] | None = None
 
     def value(self, requested: str | Output) -> RunValue:
-        """What an output, or a text, asks: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
+        """Value of an output, or of a text: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
 
         Raises:
-            UsageError: it cannot be read, or names what the model does not have.
+            UsageError: the text cannot be read, or a name in it is unknown.
         """
         return self.of(requested_of(self.model, requested) if isinstance(requested, str) else requested)
 
     def of(self, output: Output) -> RunValue:
-        """One output; what goes wrong is its message."""
+        """Value of one output; an error becomes its message."""
         try:
             if output.at is not None:
                 return self._at_events(output)
@@ -88,13 +88,13 @@ class WholeRun:
             return RunValue(None, (), f"{error.what}; {error.fix}" if error.fix else error.what)
 
     def outputs(self) -> dict[str, RunValue]:
-        """Of the model's outputs those that are of a run, or of its events."""
+        """Values of the model's outputs that are functions of a whole run, or belong to its events."""
         requested = {name: output for name, output in self.model.outputs.items() if is_of_a_run(output)}
         return {name: self.of(output) for name, output in requested.items()}
 
     def checks(self) -> Iterator[Check]:
-        """Extremes, means and mean squares of the model's outputs against the samples of the run alone."""
-        tally = Tally("what is of the whole run holds against its samples", "samples as they were integrated")
+        """Checks of extremes, means, mean squares and values at events against the samples of the run alone."""
+        tally = Tally("outputs of the whole run agree with its samples", "samples as they were integrated")
         for name, output in self.model.outputs.items():
             if isinstance(output.at, WrittenEquation) and output.event is not None:
                 tally.add(name, partial(self._events_against_samples, output))
@@ -104,10 +104,14 @@ class WholeRun:
         return tally.checks()
 
     def answered_otherwise(self, output: Output, reported: float | None) -> str:
-        """How what is told of an output differs from what the samples of the run alone say of it; "".
+        """Difference in words between a reported value of an output and the samples of the run; "" without one.
 
-        At its event both sides are equal among the samples, there are as many before it as changes of their sign or
-        more, and what is told is the value there; nothing is told where it is not met, or has no value.
+        For an output at an event, both sides of its condition must be equal there among the samples, the event must
+        not be one that the samples show to come later in the order of events, and the value must be that of the
+        samples there. No value must be reported only where the event does not occur, or the formula has no value.
+
+        Args:
+            reported: the value in SI; None: no value is reported.
         """
         if output.event == EVERY or output.from_ is not None or requests_of(output.value, SMALL_MOTIONS):
             return ""
@@ -129,7 +133,7 @@ class WholeRun:
         return self._events_against_samples(output, reported)
 
     def _by_samples(self, output: Output, reported: float | None) -> str:
-        """Of the whole run each function; of a formula its value at the start."""
+        """Difference from the samples, of each function of the run, or of a formula at the start; ""."""
         if requests_of(output.value, OF_A_RUN):
             calls = [call for call in output.value.calls if call.name in _FUNCTIONS]
             wrong = (self._against_samples(call) for call in calls)
@@ -140,7 +144,7 @@ class WholeRun:
         return differing(reported, start, CARRIED)
 
     def _otherwise_reported(self, output: Output, calls: Sequence[Call], reported: float | None) -> str:
-        """How what is told differs from what the functions of the run, which its samples bear out, come to; ""."""
+        """Difference between a reported value and the formula of the functions of the run; ""."""
         found = self.of(output).value
         if not isinstance(found, float) or reported is None:
             return "" if found is reported or isinstance(found, tuple) else f"{reported} for {found}"
@@ -149,7 +153,7 @@ class WholeRun:
         return "" if abs(reported - found) <= CARRIED * size else f"{reported:.10g} for {found:.10g}"
 
     def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
-        """The instants of the samples before and behind each change of the order of the sides."""
+        """Intervals between samples [s] in which the difference of the sides of a condition changes its sign."""
         curves = self._sampled(condition.left - condition.right)
         sure = CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
         found: list[tuple[float, float]] = []
@@ -160,14 +164,16 @@ class WholeRun:
         return found
 
     def _value_near(self, formula: Expression, when: float) -> float:
-        """The formula at the sample that is nearest to an instant."""
+        """Value of a formula at the sample nearest to an instant."""
         t, y = (np.concatenate(each) for each in zip(*self._sampled(formula), strict=True))
         return float(y[np.argmin(np.abs(t - when))])
 
     def _against_samples(self, call: Call) -> str:
-        """No sample is beyond an extreme, and the motion is there at its instant; means are near the trapezium rule's.
+        """Difference between the value of a function of the run and the samples, in words; "" without one.
 
-        The last value is that of the last sample, and a period the time between upward passages of the samples.
+        No sample is beyond an extreme, and the curve has that value at its instant. A mean is near that of the
+        trapezium rule, the last value is that of the last sample, and a period is the mean time between upward
+        passages of the samples through the mean.
         """
         formula = formula_at(call, 0)
         reported, when = self._called(call)
@@ -191,7 +197,7 @@ class WholeRun:
         return _not_at(curves, when[0], reported, size)
 
     def _sampled(self, formula: Expression) -> list[_Curve]:
-        """(t, the formula) at the states of each phase: those asked for, between them much happens, and the steps."""
+        """(t, values of the formula) of each phase, at its requested states and at the integrator's steps."""
         states = [(run, *run.measured) for run in self.runs]
         return [(t, self._columns(formula, run).along(t, x)["asked"]) for run, t, x in states]
 
@@ -207,7 +213,7 @@ class WholeRun:
         )
 
     def _period_against_samples(self, reported: float, curves: Sequence[_Curve]) -> str:
-        """Between passages of the mean there are as many periods; an instant is known to a step."""
+        """Difference between a period and the samples' passages through the mean; instants are known to a step."""
         level = sum(float(np.trapezoid(y, t)) for t, y in curves) / self._duration
         steps = [(t[k], t[k + 1]) for t, y in curves for k in np.flatnonzero((y[:-1] < level) & (y[1:] >= level))]
         if len(steps) < 2:
@@ -217,7 +223,13 @@ class WholeRun:
         return "" if low - 1 < len(steps) < high + 2 else f"{reported:.10g} for {len(steps)} passages of the samples"
 
     def _events_against_samples(self, output: Output, reported: float | None = None) -> str:
-        """At its events both sides are equal among the samples, and the value, or what is told, is theirs."""
+        """Difference in words between an output at events and the samples there; "" without one.
+
+        Both sides of the condition must be equal there among the samples, and the value must be that of the samples.
+
+        Args:
+            reported: value that is checked; None: that of the output itself.
+        """
         assert isinstance(output.at, WrittenEquation)
         found = self.of(output)
         sides = self._sampled(output.at.left - output.at.right)
@@ -232,10 +244,10 @@ class WholeRun:
                 return wrong
         return ""
 
-    # -- of the whole ------------------------------------------------------------------------------
+    # -- functions of the whole run -----------------------------------------------------------------
 
     def _of_whole(self, formula: Expression) -> RunValue:
-        """A formula of what is of the run, and of parameters."""
+        """Value of a formula of functions of the run, and of parameters."""
         when: list[float] = []
 
         def value(call: Call) -> float:
@@ -246,8 +258,8 @@ class WholeRun:
         names = {**numeric_parameters(self.model, self.parameters), "pi": math.pi}
         strangers = sorted(name for name in formula.names - names.keys() if not self._stands_inside(formula, name))
         if strangers:
-            what = f"'{strangers[0]}' is of a state, and stands beside what is of a run"
-            raise DerivationError(what, fix=f"ask it of the run too: last({strangers[0]})")
+            what = f"'{strangers[0]}' is a function of a state, next to functions of a whole run"
+            raise DerivationError(what, fix=f"make it a function of the run too: last({strangers[0]})")
         found = formula.evaluate({name: float(x) for name, x in names.items()}, value)
         return _valued(float(found), tuple(when) if len(when) == 1 else ())
 
@@ -255,29 +267,30 @@ class WholeRun:
         return all(what != name for kind, what in formula.code if kind == "name")
 
     def _called(self, call: Call) -> tuple[float, tuple[float, ...]]:
-        """(a function of the run, the instant that it is at)."""
+        """Value of a function of the run, and the instant of this value."""
         if not requests_of(Expression(str(call), (("call", call),), (0,)), OF_A_RUN):
-            raise DerivationError(f"'{call}' is of a state, and stands beside what is of a run", fix=f"last({call})")
+            what = f"'{call}' is a function of a state, next to functions of a whole run"
+            raise DerivationError(what, fix=f"last({call})")
         formula = formula_at(call, 0)
         if requests_of(formula, OF_A_RUN):
             raise DerivationError(
-                f"'{call}': what is of a run has no value along it", fix="ask for one after the other"
+                f"'{call}': a function of a whole run has no value along it", fix="request one after the other"
             )
         return _FUNCTIONS[call.name](self, formula)
 
     def last(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
-        """At the end of the run."""
+        """Value at the end of the run, and that instant."""
         run = self.runs[-1]
         return self._number(formula, run, run.run.end), (float(run.run.end),)
 
     def extreme(self, formula: Expression, sign: int) -> tuple[float, tuple[float, ...]]:
-        """(the largest value of sign * formula times sign, when)."""
+        """Largest (sign = 1) or smallest (sign = -1) value of the formula, and its instant."""
         found = [pieces.extreme(sign) for pieces in self._pieces(formula)]
         value, t = max(found, key=lambda pair: sign * pair[0])
         return value, (t,)
 
     def when(self, formula: Expression, sign: int) -> tuple[float, tuple[float, ...]]:
-        """When it is largest."""
+        """Instant of the largest (sign = 1) or smallest (sign = -1) value."""
         _, t = self.extreme(formula, sign)
         return t[0], t
 
@@ -294,7 +307,7 @@ class WholeRun:
         """The mean time between upward passages through the mean.
 
         Raises:
-            DerivationError: there are fewer than two, or the times between them differ: it repeats nothing.
+            DerivationError: there are fewer than two passages, or the times between them differ.
         """
         level = self.mean(formula)[0]
         lifted = [resolved_curve(_less(pieces, level), _edges(pieces)) for pieces in self._pieces(formula)]
@@ -307,7 +320,7 @@ class WholeRun:
         if np.max(apart) - np.min(apart) > SAME_PERIOD * np.mean(apart):
             low, high = np.min(apart), np.max(apart)
             what = f"'{formula.text}' has no period: from {low:.6g} to {high:.6g} s between upward passages of its mean"
-            raise DerivationError(what, fix="ask for what repeats, or a run after it has settled")
+            raise DerivationError(what, fix="choose a quantity that repeats, or a run after it has settled")
         return float(np.mean(apart)), ()
 
     # -- at events -----------------------------------------------------------------------------------
@@ -315,9 +328,9 @@ class WholeRun:
     def _at_events(self, output: Output) -> RunValue:
         """The value at the n-th event, or at every one."""
         if not isinstance(output.at, WrittenEquation) or output.from_ is not None:
-            raise DerivationError("it is of no run from the start", fix="`eomgen solve` answers it")
+            raise DerivationError("it is no value of a run from the start", fix="`eomgen solve` answers it")
         if requests_of(output.value, OF_A_RUN) or requests_of(output.value, SMALL_MOTIONS):
-            raise DerivationError(f"'{output.value.text}' is of no instant", fix="leave out `at`")
+            raise DerivationError(f"'{output.value.text}' belongs to no instant", fix="leave out `at`")
         events = self.events(output.at)
         if output.event == EVERY:
             found = [self._at(output, *event) for event in events]
@@ -358,14 +371,14 @@ class WholeRun:
     # -- formulas along the run ------------------------------------------------------------------------
 
     def _pieces(self, formula: Expression) -> list[ChebyshevPieces]:
-        """The formula in every phase that is longer than an instant."""
+        """Pieces of the formula in every phase that is longer than an instant."""
         return [pieces for _, pieces in self._phases(formula)]
 
     def _phases(self, formula: Expression) -> list[tuple[int, ChebyshevPieces]]:
-        """(the phase, the formula in it, resolved).
+        """Pieces of the formula, by the number of the phase, for every phase that is longer than an instant.
 
         Raises:
-            DerivationError: it has no value somewhere.
+            DerivationError: the formula has no value at some instant.
         """
         found = [(k, resolved_curve(self._function(formula, k), dense.edges)) for k, dense in self._dense.items()]
         if not found:
@@ -373,12 +386,12 @@ class WholeRun:
         if not all(np.isfinite(pieces.c).all() for _, pieces in found):
             raise DerivationError(
                 f"'{formula.text}' has no value at some instants of the run",
-                fix="ask for what has a value all along it",
+                fix="choose a formula that has a value at every instant of it",
             )
         return found
 
     def _function(self, formula: Expression, k: int) -> Callable[[np.ndarray], np.ndarray]:
-        """t -> the formula in a phase."""
+        """Function t -> value of the formula in a phase."""
         run, columns = self.runs[k], self._columns(formula, self.runs[k])
         return lambda t: columns.along(t, self._states(run, t))["asked"]
 
@@ -391,16 +404,18 @@ class WholeRun:
         return float(self._columns(formula, run).along(np.array([t]), x[None, :])["asked"][0])
 
     def _columns(self, formula: Expression, run: PhaseRun) -> OutputColumns:
-        """One formula along a phase.
+        """Column of one formula along a phase.
 
         Raises:
-            DerivationError: it has no meaning there.
+            DerivationError: the formula has no value there.
         """
         key = (formula, id(run.phase))
         if key not in self._made:
             columns = OutputColumns(run.phase, {"asked": formula})
             if columns.refused:
-                raise DerivationError(columns.refused["asked"], fix="ask for what has a value all along the run")
+                raise DerivationError(
+                    columns.refused["asked"], fix="choose a formula that has a value at every instant of the run"
+                )
             self._made[key] = columns
         return self._made[key]
 
@@ -435,14 +450,14 @@ _FUNCTIONS: dict[str, Callable[[WholeRun, Expression], tuple[float, tuple[float,
 
 
 _Curve = tuple[np.ndarray, np.ndarray]
-BESIDE = 2  # samples on either side of an instant that bound what a curve is between them
+NEAREST = 2  # samples on either side of an instant, which bound the value of a curve between them
 
 
 def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) -> str:
-    """That a curve has another value at an instant, as far as its samples tell; ""."""
+    """Message if a curve cannot have this value at an instant, judged by its samples; ""."""
     for t, y in curves:
         k = int(np.searchsorted(t, when))
-        near = y[max(0, k - BESIDE) : k + BESIDE]
+        near = y[max(0, k - NEAREST) : k + NEAREST]
         if len(near) and t[0] <= when <= t[-1]:
             slack = float(np.max(near) - np.min(near)) + CARRIED * size
             if not (np.isfinite(slack) and not np.min(near) - slack <= value <= np.max(near) + slack):
@@ -451,7 +466,7 @@ def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) ->
 
 
 def is_of_a_run(output: Output) -> bool:
-    """Whether an output asks what no state tells: extremes, means, or the n-th event."""
+    """True if an output is a function of a whole run: extremes, means, or values at the n-th event."""
     return output.event is not None or requests_of(output.value, OF_A_RUN)
 
 
@@ -471,11 +486,11 @@ def _less(pieces: ChebyshevPieces, level: float) -> Callable[[np.ndarray], np.nd
     return lambda t: pieces.g(t) - level
 
 
-# -- as it is typed ------------------------------------------------------------------------------------------
+# -- requests as they are typed --------------------------------------------------------------------------------
 
 
 def requested_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
-    """(what is asked, with units beside plain numbers of its instant: the file's; what was taken).
+    """Request whose plain numbers of the instant have the units of the model file, and these readings.
 
     Raises:
         UsageError: the instant cannot be read, or a unit does not fit.
@@ -495,12 +510,12 @@ def requested_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
 
 
 def requested_of(model: Model, text: str) -> Output:
-    """The output that a text asks: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
+    """Output requested by a text: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
 
     In a formula the name of an output without an instant stands for its formula.
 
     Raises:
-        UsageError: it cannot be read, or names what the model does not have.
+        UsageError: the text cannot be read, or a name in it is unknown.
     """
     if text in model.outputs:
         return model.outputs[text]
@@ -524,7 +539,7 @@ def requested_of(model: Model, text: str) -> Output:
 
 
 def _in_full(model: Model, formula: str) -> str:
-    """The formula, names of outputs that are formulas of the state replaced by these."""
+    """Formula in which names of outputs without an instant are replaced by their formulas."""
     tables = [*model.trusses.values(), model]
     others = {
         name

@@ -1,9 +1,7 @@
-"""Answers -> Certificate.
+"""Answers -> Certificate: each number is checked by the motion in numbers, each text by its number.
 
-Answers -> Certificate: each number against the motion in numbers, each text against its number.
-
-The exact way (closed laws, energy theorem, balance made readable) and the way in numbers share the poses, the
-equations of motion, which are proven first, and the definitions of the functions that outputs ask.
+The exact method (closed laws, energy theorem, simplified reactions) and the numerical one share the poses, the
+equations of motion, which are proven first, and the definitions of the functions that outputs request.
 """
 
 from __future__ import annotations
@@ -56,16 +54,16 @@ from eomgen.symbolic.numeric.pieces import PIECEWISE
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RUNS_AGREE, SAME_PLACE
 
-WAY = 1.0  # s, of the motion along which functions of the configuration are tried
-ROWS = 21  # of it
+WAY = 1.0  # s, of the motion along which functions of the configuration are checked
+ROWS = 21  # samples of it
 LONG_WAY = 10.0  # s, of a motion through pieces of min, max, abs, sign, cases and samples
-TRIED = 8  # rows of it that are looked at, about, and
-LAST = 3  # before it turns
-ASIDE = 1e-3  # of a parameter, beside whose own value a closed form is tried
+TRIED = 8  # about so many rows of it are checked, and
+LAST = 3  # so many before a speed changes its sign
+ASIDE = 1e-3  # relative change of a parameter, at which a closed form is checked too
 
 
 class Solver(Protocol):
-    """Where answers came from."""
+    """Solver from which answers came."""
 
     @property
     def model(self) -> Model: ...
@@ -83,7 +81,7 @@ class Solver(Protocol):
 
 
 def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certificate:
-    """The proof of the equations where a motion is asked, then of every answer."""
+    """Proof of the equations, where an answer needs them, then of every answer."""
     proof = _Proof(solver, answers)
     of_a_motion = (*proof.begins(), *proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
     return Certificate((*proof.equations, *proof.texts(), *of_a_motion, *proof.apart()))
@@ -96,22 +94,22 @@ class _Proof:
 
     @cached_property
     def requested(self) -> dict[str, Requested]:
-        """The outputs that were answered."""
+        """Outputs that were answered, with their answers."""
         outputs = self.solver.model.outputs
         return {name: (outputs[name], found) for name, found in self.answers.items() if found.answered}
 
     @cached_property
     def equations(self) -> tuple[Check, ...]:
-        """Of the first phase, motions that are given whole among them; of what stands still of what acts on it."""
+        """Checks of the equations of the first phase; where nothing moves, of the loads on the bodies."""
         phase = self.solver.motions[False].phase
         if self.requested:
             proven = certify if phase.system.symbols.q else certify_standing
-            with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
+            with suppress(ModelError, DerivationError):  # without mass, or with unknown loads: answers at rest alone
                 return proven(phase.equations).checks
         return tuple(other_data(phase.system.motion))
 
     def begins(self) -> Iterator[Check]:
-        """Where the motion is over all rates, it begins where the model does over those that are its own."""
+        """Check of the start of a motion that is described by all rates: that of the model by its own speeds."""
         own = self.solver.motions[False].phase.system
         if not self.requested or own.free is not None or not dependent_coordinates(own.scope):
             return
@@ -124,7 +122,7 @@ class _Proof:
     # -- what is printed ---------------------------------------------------------------------------
 
     def texts(self) -> Iterator[Check]:
-        """The exact text, read back by our grammar, has the number beside it."""
+        """Checks that the exact text, read back by our grammar, has the number that is printed with it."""
         tally = Tally("exact texts, read back, give the numbers", "our grammar, the text alone, sure digits")
         for name, (output, found) in self.requested.items():
             if found.exact is not None and found.value is not None:
@@ -135,12 +133,12 @@ class _Proof:
         phase = self.solver.motions[False].phase
         number = number_of(read_back(phase.system, found.exact or ""), self._start_values)
         if math.isnan(number):
-            raise NoValue("the text holds what has no value at the start")
+            raise NoValue("the text contains a symbol without a value at the start")
         return differing(found.value or 0.0, in_unit(number, output))
 
     @cached_property
     def _start_values(self) -> dict[Node, Scalar | float]:
-        """What the symbols of a text are worth: parameters, the start, inputs there."""
+        """Values of the symbols of a text: parameters, the state at the start, inputs there."""
         motion = self.solver.motions[False]
         system = motion.phase.system
         known: dict[Node, Scalar | float] = {**known_exactly(system.scope), system.symbols.t: 0.0, **_start(motion)}
@@ -149,10 +147,10 @@ class _Proof:
                 known[node] = number_of(system.inputs[name], known)
         return known
 
-    # -- what it is worth --------------------------------------------------------------------------
+    # -- values ------------------------------------------------------------------------------------
 
     def numbers(self) -> Iterator[Check]:
-        """The number of an answer is what its formula is worth at the state in numbers."""
+        """Checks that the number of an answer is the value of its formula at the state in numbers."""
         tally = Tally("numbers are those of the formulas at the state", "50 digits, reactions in doubles")
         for name, (output, found) in self.requested.items():
             at_start = found.value is not None and output.from_ is None
@@ -161,7 +159,7 @@ class _Proof:
         return iter((*tally.checks(), *self._differences()))
 
     def _differences(self) -> Iterator[Check]:
-        """What a function of the motion is worth is what its second definition says."""
+        """Checks that the value of each function of the motion follows from its second definition too."""
         tally = Tally("functions of the motion hold by their second definitions", "differences of poses, particles")
         for name, (output, found) in self.requested.items():
             if self._is_apart(name):
@@ -169,14 +167,14 @@ class _Proof:
             calls = [call for call in output.value.calls if FUNCTIONS[call.name].second is not None]
             if found.value is None or (output.from_ is not None and output.at is None) or not calls:
                 continue
-            with suppress(RunFailed, ModelError, DerivationError):  # of no state: said in the check of the numbers
+            with suppress(RunFailed, ModelError, DerivationError):  # no state: reported by the check of the numbers
                 state = self._state_of(output)
                 for call in calls:
                     tally.add(str(call), partial(second_definition, state, call))
         return tally.checks()
 
     def formulas(self) -> Iterator[Check]:
-        """A formula of the state is what it says in other states too: what vanishes at the start is seen there."""
+        """Checks of each formula at other states too: terms that vanish at the start are checked there."""
         tally = Tally(
             "formulas, read back, hold at other states", "50 digits, second definitions, reactions in doubles"
         )
@@ -190,9 +188,9 @@ class _Proof:
         judged, scalar = False, read_back(self.solver.motions[False].phase.system, text)
         for state in self._others:
             try:
-                reported, right = (in_unit(x, output) for x in (state.number(scalar), state.worth(output.value)))
+                reported, right = (in_unit(x, output) for x in (state.number(scalar), state.value_of(output.value)))
                 if differing(reported, right) and abs(reported - right) > in_unit(state.rounding(output.value), output):
-                    near = [in_unit(beside.worth(output.value), output) for beside in state.beside()]
+                    near = [in_unit(near.value_of(output.value), output) for near in state.nearby()]
                     if wrong := off_by(reported, right, near):
                         return f"{wrong} at t = {state.t:.6g} s, {place_of(state)}"
                 for call in output.value.calls:
@@ -202,42 +200,42 @@ class _Proof:
             except (NoValue, ZeroDivisionError, DerivationError):
                 continue
         if not judged:
-            raise NoValue("at none of the states tried it has a value")
+            raise NoValue("it has a value at none of the states tried")
         return ""
 
     @cached_property
     def _others(self) -> list[NumericState]:
-        """The start's phase at states that are not the start; none where no motion follows."""
+        """States of the first phase other than the start; none where no motion follows."""
         phase = self.solver.motions[False].phase
         if not phase.system.symbols.u:
             return []
         try:
             return list(moving_states(phase.equations))[1:]
-        except (ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
+        except (ModelError, DerivationError):  # a coordinate moves no mass, or loads are unknown: at rest alone
             return []
 
     def _against_state(self, output: Output, found: Quantity) -> str:
         if found.value is None:
             raise DerivationError("it has no number", fix="give every parameter a value in [parameters]")
         state = self._state_of(output)
-        right = in_unit(state.worth(output.value), output)
+        right = in_unit(state.value_of(output.value), output)
         if self._requests_forces(output) and state.jumps:
             return "a force jumps there, and it has no one value"
         if not differing(found.value, right) or abs(found.value - right) <= in_unit(
             state.rounding(output.value), output
         ):
             return ""
-        return off_by(found.value, right, [in_unit(near.worth(output.value), output) for near in state.beside()])
+        return off_by(found.value, right, [in_unit(near.value_of(output.value), output) for near in state.nearby()])
 
     def _requests_forces(self, output: Output) -> bool:
-        """Whether an output holds accelerations or reactions."""
+        """True if an output contains accelerations or reactions."""
         return self.solver.motions[False].phase.needs_equations(output.value)
 
     def _state_of(self, output: Output) -> NumericState:
-        """The state at which an output is asked.
+        """State at which an output is requested.
 
         Raises:
-            DerivationError, RunFailed: it is of none, or of one that is not known in numbers.
+            DerivationError, RunFailed: there is no such state, or it is not known in numbers.
         """
         moment = self._moment(output)
         if moment is None:
@@ -252,7 +250,7 @@ class _Proof:
         return self._state(phase, numbers)
 
     def _moment(self, output: Output) -> StateAtInstant | None:
-        """The instant that is asked; None: the start."""
+        """Instant at which an output is requested; None: the start."""
         if output.at is None:
             return None
         if isinstance(output.at, AtRest):
@@ -270,11 +268,11 @@ class _Proof:
     def _states(self) -> dict[Any, NumericState]:
         return {}
 
-    # -- of no state of the motion -------------------------------------------------------------------
+    # -- answers that belong to no state of the motion -----------------------------------------------
 
     @cached_property
     def _apart(self) -> tuple[dict[str, Requested], dict[str, Requested]]:
-        """What asks mass, damping, stiffness or frequency; what is of one instant that no motion leads to."""
+        """Answers by matrices and frequencies of small motions; answers at one instant to which no motion leads."""
         linear = {name: pair for name, pair in self.requested.items() if requests_of(pair[0].value, SMALL_MOTIONS)}
         left = {name: pair for name, pair in self.requested.items() if name not in linear and pair[0].at is None}
         return linear, {name: pair for name, pair in left.items() if self.solver.is_of_the_instant(pair[0])}
@@ -283,7 +281,7 @@ class _Proof:
         return any(name in group for group in self._apart)
 
     def apart(self) -> Iterator[Check]:
-        """Of small motions, and of one instant."""
+        """Checks of the answers of small motions, and of those at one instant."""
         linear, instant = self._apart
         system = self.solver.motions[False].phase.system
         if linear:
@@ -294,8 +292,8 @@ class _Proof:
     # -- when ----------------------------------------------------------------------------------------
 
     def instants(self) -> Iterator[Check]:
-        """A run in time from the start leads to the state at the instant, and the condition does not hold before."""
-        tally = Tally("a run in time leads to the instants asked for", "integrated from the start, order 8")
+        """Checks that a run from the start leads to the state at the instant, and not to the condition before it."""
+        tally = Tally("a run in time leads to the requested instants", "integrated from the start, order 8")
         rest = Tally("at rest all forces balance", "equations of motion with u = 0, a = 0, 50 digits")
         requested = {
             (output.at.text, output.from_): output
@@ -333,7 +331,7 @@ class _Proof:
         return self._too_late(motion, output, run, t)
 
     def _too_late(self, motion: MotionFromStart, output: Output, run: Trajectory, t: float) -> str:
-        """Whether the condition changes its sign before the instant."""
+        """Message if the difference of the sides of the condition changes its sign before the instant; ""."""
         phase, condition = motion.phase, output.at
         assert condition is not None and not isinstance(condition, AtRest)
         left, right = phase.of_state(condition.left), phase.of_state(condition.right)
@@ -350,14 +348,16 @@ class _Proof:
     def _balanced(self) -> str:
         moment = self.solver.at_rest
         if not moment.numbers:
-            raise RunFailed("the place is not known in numbers", fix="give every parameter a value in [parameters]")
+            raise RunFailed(
+                "the equilibrium is not known in numbers", fix="give every parameter a value in [parameters]"
+            )
         state = self._state(moment.phase, moment.numbers)
         return _left_at_rest(state) or _by_coincidence(moment, None)
 
     # -- on the way --------------------------------------------------------------------------------
 
     def ways(self) -> Iterator[Check]:
-        """A function of the configuration has along the motion the number of the formula at the same instants."""
+        """Checks that a function of the configuration has, along the motion, the value of the formula there."""
         tally = Tally("functions of the configuration hold along the motion", "integrated from the start, order 8")
         for name, (output, found) in self.requested.items():
             if output.from_ is not None and output.at is None and found.exact is not None:
@@ -366,10 +366,10 @@ class _Proof:
 
     @staticmethod
     def _way(motion: MotionFromStart) -> Trajectory:
-        """A while of the motion; a long one, as far as its steps lead, where it may come into other pieces."""
+        """Run of the motion, longer where its equations consist of several pieces."""
         with suppress(RunFailed):
             if any(holds_op(x, *PIECEWISE) for x in (*motion.phase.equations.forcing, motion.phase.equations.V)):
-                return run_from_start(motion, LONG_WAY)  # at its own steps: a hard floor is touched for milliseconds
+                return run_from_start(motion, LONG_WAY)  # at its own steps: a stiff floor is touched for milliseconds
         return run_from_start(motion, WAY, ROWS)
 
     def _along(self, output: Output, found: Quantity) -> str:
@@ -383,11 +383,11 @@ class _Proof:
         rows = list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way]
         for t, x in (*rows[:: max(4, one_way // TRIED)], *rows[-LAST:]):
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
-            right = in_unit(state.worth(output.value), output)
+            right = in_unit(state.value_of(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
             reported = in_unit(number_of(scalar, here), output)
             wrong = differing(reported, right, CARRIED) and off_by(
-                reported, right, [in_unit(near.worth(output.value), output) for near in state.beside()]
+                reported, right, [in_unit(near.value_of(output.value), output) for near in state.nearby()]
             )
             if wrong:
                 return f"{wrong} at t = {t:.6g} s"
@@ -395,19 +395,20 @@ class _Proof:
 
 
 def _left_at_rest(state: NumericState) -> str:
-    """What does not balance where nothing moves."""
+    """Message if the forces are not in equilibrium while nothing moves; ""."""
     numbers = PhaseMotion(state.equations).numbers(TriedState(0.0, state.x, state.p))
     left, where = numbers.left(np.zeros(len(state.x)))
     return f"{where} is left with {left:.1e} of its terms" if left > COMPUTED else ""
 
 
 def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest | None) -> str:
-    """What does not hold of a state in closed form beside the parameters' own values; "" where it holds there too.
+    """Message if a state in closed form is right at the parameters' own values by coincidence only; "".
 
-    Constraints stay closed, what is at rest stays in balance, and the condition of an instant is met.
+    At slightly different parameters constraints must be satisfied, an equilibrium must stay one, and the condition of
+    an instant must hold.
 
     Args:
-        condition: by which the instant is asked; None: all rest.
+        condition: the condition of the instant; None: an equilibrium.
     """
     system = moment.phase.system
     symbols, model, rng = system.symbols, system.scope.model, Random(4)
@@ -424,18 +425,18 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
     t = moment.exact.get(symbols.t, 0)
     numbers = dict(zip((symbols.t, *nodes), numbers_of((t, *(moment.exact[node] for node in nodes)), p), strict=True))
     if any(math.isnan(x) for x in numbers.values()):
-        return ""  # beside the parameters' own values it has none
+        return ""  # near the parameters' own values it has no value
     state = NumericState(moment.phase.equations, p, numbers)
     gaps = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if any(abs(state.number(gap)) > COMPUTED * (1 + max(map(abs, numbers.values()))) for gap in gaps):
-        return "its closed form is one by coincidence: beside these parameters the constraints are open"
+        return "its closed form holds by coincidence: near these parameters the constraints are not satisfied"
     if condition is None:
         left = _left_at_rest(state)
-        return f"its closed form is one by coincidence: beside these parameters {left}" if left else ""
+        return f"its closed form holds by coincidence: near these parameters {left}" if left else ""
     assert not isinstance(condition, AtRest)
     sides = [state.number(moment.phase.of_state(x)) for x in (condition.left, condition.right)]
     wrong = differing(*sides)
-    return f"its closed form is one by coincidence: beside these parameters {wrong}" if wrong else ""
+    return f"its closed form holds by coincidence: near these parameters {wrong}" if wrong else ""
 
 
 def _start(motion: MotionFromStart) -> dict[Node, float]:
@@ -447,16 +448,16 @@ def _start(motion: MotionFromStart) -> dict[Node, float]:
 
 
 def _before_a_turn(run: Trajectory, coordinates: int) -> int:
-    """How many rows there are before a speed changes its sign."""
+    """Number of rows before a speed changes its sign."""
     signs = np.sign(run.x[1:, coordinates:])
     turned = np.any(signs * signs[:1] < 0, axis=1) if len(signs) else np.zeros(0, dtype=bool)
     return int(np.argmax(turned)) + 1 if turned.any() else len(run.t)
 
 
 # -------- proof apart -----------------------------------------------------------------------------------------
-# Answers that are of no state of a motion -> checks: of small motions, and of one instant to which no motion leads.
+# Answers that belong to no state of a motion -> checks: of small motions, and of one instant to which no motion leads.
 #
-# What they are made of is proven as `linearize` and `kinematics` prove it; then each answer is found again from that,
+# Matrices and state are proven as `linearize` and `kinematics` prove them; then each answer is found again from them,
 # by the matrices in floats and the eigenvalues of A, and by the formula at the proven instant with 50 digits.
 
 
@@ -464,20 +465,21 @@ Requested = tuple[Output, Quantity]
 
 
 def in_unit(value: float, output: Output) -> float:
-    """An SI value in the unit in which the output is given."""
+    """SI value in the unit of the output."""
     return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 
-# -- of the linearized system ----------------------------------------------------------------------------
+# -- answers of the linearized system -------------------------------------------------------------------
 
 
 def of_small_motions(
     found: Linearization, system: System, requested: Mapping[str, Requested], proven: Sequence[Check]
 ) -> Iterator[Check]:
-    """Matrices and modes as `linearize` proves them, and what is asked of them.
+    """Checks of matrices and modes, as `linearize` proves them, and of the answers that contain them.
 
     Args:
-        system: of the start, whose equations are `proven`: they are those of the small motions if the contacts are.
+        system: the system at the start; with the same contacts its equations are those of the small motions.
+        proven: checks of the equations of that system.
     """
     same = proven and found.small.first.system.modes == system.modes
     yield from small_motion_checks(found.modes) if same else found.certify().checks
@@ -489,7 +491,7 @@ def of_small_motions(
 
 
 def _by_matrices(found: Linearization, system: System, output: Output, value: float) -> str:
-    """By the entries in floats, and by the Im of A's eigenvalues in their order, motions of the whole first."""
+    """Difference of a value from the same formula of matrices in floats and imaginary parts of A's eigenvalues; ""."""
     small = found.small
 
     def second(call: Call) -> Scalar:
@@ -504,18 +506,18 @@ def _by_matrices(found: Linearization, system: System, output: Output, value: fl
 
 
 def _rates(found: Linearization) -> list[float]:
-    """The frequencies by A's eigenvalues, the slowest first; as many zeros as there are motions of the whole."""
+    """Frequencies by the eigenvalues of A, the lowest first; a zero for each rigid-body motion."""
     modes = found.modes.spectrum.oscillating
     still = sum(mode.frequency == 0 for mode in modes)
     turning = sorted(np.linalg.eigvals(found.small.state_matrix).imag, reverse=True)[: len(modes) - still]
     return [0.0] * still + [float(x) for x in reversed(turning)]
 
 
-# -- of one instant ----------------------------------------------------------------------------------------
+# -- answers at one instant ----------------------------------------------------------------------------------
 
 
 def of_one_instant(model: Model, requested: Mapping[str, Requested]) -> Iterator[Check]:
-    """The state as `kinematics` proves it, and what is asked of it, as numbers and, read back, as texts."""
+    """Checks of the state, as `kinematics` proves it, and of the answers at it: numbers, and texts read back."""
     state = state_of(model)
     yield from instant_checks(state)
     tally = Tally("answers of the instant are those of its proven state", "50 digits")

@@ -1,5 +1,7 @@
-"""Equations, Stepping -> Trajectory: the motion, kept on its constraints, ended where these do not say how it goes
-on."""
+"""Equations, Stepping -> Trajectory: the motion, which satisfies its constraints, up to its end.
+
+It ends early at a singular position, where the constraints do not determine how it goes on.
+"""
 
 from __future__ import annotations
 
@@ -45,13 +47,13 @@ STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
 @dataclass(frozen=True)
 class RunProof:
-    """What a run is proven by: a trajectory -> its certificate.
+    """Proof of a run: a trajectory -> its certificate.
 
     Args:
         equations: as they were derived; None: they are proven elsewhere.
         how: the tolerances of the run.
         models: its phases.
-        whole: the run, asked as a whole.
+        whole: the whole run, for outputs such as extremes and means.
     """
 
     equations: Equations | None
@@ -65,7 +67,7 @@ class RunProof:
         """The proof of the equations, then that of the run."""
         certificate = Certificate(()) if self.equations is None else certify(self.equations.graph)
         if any(phase.model.fed is not None for phase in found.phases):
-            what = "a Python function sets an input: nobody knows what it is between the states"
+            what = "a Python function sets an input: its values between the states are not known"
             unseen = unchecked("the run follows its equations", what, "the run's right-hand side")
             return Certificate((*certificate.checks, unseen))
         legs, promise = self._moving(found)
@@ -80,20 +82,20 @@ class RunProof:
         return certificate + columns + self._contacts(found)
 
     def watch(self, found: Trajectory) -> tuple[Check, ...]:
-        """Of a run its energy against the power, its constraints and norms: what it watches anyway."""
+        """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
         if any(phase.model.fed is not None for phase in found.phases):
             return ()
         return motion.watched_checks(*self._moving(found))
 
     def _moving(self, found: Trajectory) -> tuple[list[motion.Leg], motion.Promise]:
-        """(the legs of a run, what its tolerances promise)."""
+        """Legs of a run, and the accuracy that its tolerances promise."""
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
         projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
         levelled = projected and self.how.stabilization == "energy"
         return legs, motion.Promise(self.how.rtol, self.how.atol, found.steps, projected, levelled)
 
     def _contacts(self, found: Trajectory) -> Iterator[Check]:
-        """What contacts do in the phases of a run, and between them."""
+        """Checks of contacts in the phases of a run, and between them."""
         seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
         yield from contacts_do_as_told(seen)
         if len(seen) > 1:
@@ -101,7 +103,7 @@ class RunProof:
             yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)
 
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
-        """The states that a phase went through, none of them after the run was cut."""
+        """Leg of the states of a phase, without those after the instant at which the run was cut."""
         track, phased = _until(phase, found.t).track, phase.model
         if track is None or phased.fed is not None:
             return
@@ -112,13 +114,15 @@ class RunProof:
 
 
 def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:
-    """How what is told of an output of a run differs from its samples, as of `WholeRun`; "".
+    """Difference in words between a reported value of an output and the samples of the run; "" without one.
+
+    It is that of `WholeRun.answered_otherwise`.
 
     Raises:
-        NoValue: the run is of no model.
+        NoValue: the states of the run are not known.
     """
     if not isinstance(found.proof, RunProof) or found.proof.whole is None:
-        raise NoValue("nobody knows the states of the run")
+        raise NoValue("the states of the run are not known")
     return found.proof.whole.answered_otherwise(output, reported)
 
 
@@ -150,17 +154,17 @@ def run(
 
     Args:
         time: how long [s].
-        parameters, start: values in place of the model's own, where equations of other ones are used again.
+        parameters, start: values that replace the model's own, where equations derived at others are used again.
         target: of the emitted code.
         samples: as of `integrate`.
         how: the integrator's way; its tolerances are those of the run, and a step takes a tenth of them.
         until: an equation: the run ends where it first holds after the start.
         models: the phases of these equations at these parameters, where they are known; what they hold is used again.
-        reactions: whether they are among the columns.
-        outputs: formulas that are, by name; None: the model's, and what these ask of the whole run.
+        reactions: True if they are among the columns.
+        outputs: formulas of further columns, by name; None: the model's outputs, those of the whole run included.
     Raises:
         MissingValues: parameters without a value, all named.
-        UsageError: what is asked makes no sense.
+        UsageError: the request makes no sense.
     """
     how, samples = how or Stepping(), SAMPLES if samples is None else samples
     model = equations.model
@@ -209,17 +213,17 @@ def run(
 
 
 PAGE_TIME = 10.0  # s
-PAGE_STEPS = 100_000  # a run of more is too fast to be looked at as a whole
-PAGE_PHASES = 500  # of contacts, the same
+PAGE_STEPS = 100_000  # a motion that needs more is too fast to be shown as a whole
+PAGE_PHASES = 500  # of contacts, for the same reason
 
 
 def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tuple[Trajectory, str]:
-    """(the motion that a page shows, why it is shorter than others, "" where it is not).
+    """Motion that a page shows, and why it is shorter than PAGE_TIME; "" where it is not.
 
     Args:
         time: how long [s]; None: PAGE_TIME, or as `page_time` has it.
     Raises:
-        KeyboardInterrupt: somebody stopped it: a page of a part of it is not what was asked for.
+        KeyboardInterrupt: the run was interrupted: a page that shows only a part of it is not what was requested.
     """
     if time is not None:
         return _whole(run(equations, time=time, samples=samples)), ""
@@ -229,15 +233,15 @@ def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tup
 
 
 def page_stepping() -> Stepping:
-    """How a motion is followed for which nobody gave a time."""
+    """Stepping of a motion for which no time was given."""
     return Stepping(most_steps=PAGE_STEPS, most_phases=PAGE_PHASES)
 
 
 def page_time(found: Trajectory) -> tuple[float, str]:
-    """(how long a motion is shown where nobody said it [s], why that is shorter than PAGE_TIME, "" where it is not).
+    """Time for which a motion is shown where none is given [s], and why it is shorter than PAGE_TIME; "".
 
-    A round time that is over before so many steps are taken, or before constraints or contacts do not say how it goes
-    on.
+    It is a round time before too many steps are taken, or before a position from which constraints or contacts do not
+    determine how the motion goes on.
     """
     end = found.phases[-1].end if found.phases else 0.0
     if found.ended not in ("too many steps", "singular", "contact") or not end > 0:
@@ -291,16 +295,16 @@ def finished_run(
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:
-    """The phases of equations that are derived already, at values of the parameters."""
+    """Phases of equations that are derived already, at values of the parameters."""
     pulled = how.rates if how.stabilization == "baumgarte" else None
     return PhaseModels(equations.model, p, target, pulled, equations.graph)
 
 
 def _followed(phases: Iterator[PhaseRun]) -> list[PhaseRun]:
-    """The phases of a motion; those that there are, where somebody stops it between two of them.
+    """Phases of a motion; those before the interruption, where it is interrupted between two of them.
 
     Raises:
-        KeyboardInterrupt, PatienceEnded: there is none yet.
+        KeyboardInterrupt, PatienceEnded: it is interrupted before the first.
     """
     runs: list[PhaseRun] = []
     try:
@@ -314,7 +318,7 @@ def _followed(phases: Iterator[PhaseRun]) -> list[PhaseRun]:
 
 
 def _cut(run: Run, stop: BaseException) -> Run:
-    """A run as what stopped the motion after it left it."""
+    """Run with the status and message of the interruption that came after it."""
     if isinstance(stop, KeyboardInterrupt):
         return replace(run, status="interrupted", message=f"Interrupted at t = {run.end:.6g} s.")
     keep_what_there_is()
@@ -326,7 +330,7 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
     """Refuses a start at rest where branches meet, unless it stays at rest.
 
     Raises:
-        DerivationError: forces pull it away, and the constraints do not say on which branch.
+        DerivationError: forces move it away, and the constraints do not determine on which branch.
     """
     fork = None if here.begun is None else here.begun.fork
     if fork is None:
@@ -334,14 +338,14 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
     phase = models.of(here.configuration)
     rates, accelerations = np.split(np.abs(phase.rate(here.t, phase.state(here.values))), [len(phase.coordinates)])
     if np.max(rates, initial=0.0) <= COMPUTED and np.max(accelerations, initial=0.0) > COMPUTED:
-        what = f"it starts at rest in {fork.words}: forces pull it away, on which branch nothing says"
+        what = f"it starts at rest in {fork.words}: forces move it away, and nothing determines on which branch"
         raise DerivationError(
-            what, f"constraints.{fork.constraints[0]}", "give it start speeds, or start beside that position"
+            what, f"constraints.{fork.constraints[0]}", "give it start speeds, or start near that position"
         )
 
 
 def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
-    """The equations with rows that pull back what has opened, after Baumgarte.
+    """Equations with stabilized constraints after Baumgarte: accelerations that close open constraints.
 
     Args:
         rates: alpha, beta [1/s].
@@ -353,7 +357,7 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
 
 
 def _reported(found: Trajectory, until: str | None) -> Trajectory:
-    """The run, its message in the words of the condition."""
+    """Run whose message names the condition `until`."""
     if until is None or found.ended not in ("event", "finished"):
         return found
     end = found.phases[-1].end

@@ -1,6 +1,6 @@
-"""Equations -> Simulator: one motion after another, with controllers; many as arrays.
+"""Equations -> Simulator: one motion after another, from other values and starts, with controllers.
 
-Equations -> Simulator: one motion after another, from other values and starts; derived and compiled once.
+The model is derived and compiled once. Many runs are given as arrays.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 SAMPLES = 101
-MOST_BASES = 4  # derivations that are looked at whether they hold at other values
+MOST_BASES = 4  # derivations that are tried first at other values, before the model is derived again
 MOST_KEPT = 16  # models whose constraints or contacts were derived at other values of the parameters
 REACTIONS, OUTPUTS = "reactions", "outputs"
 
@@ -56,17 +56,16 @@ REACTIONS, OUTPUTS = "reactions", "outputs"
 class Simulator:
     """simulator(time=10) -> Trajectory, again and again.
 
-    A model is derived once for all values of its parameters at which the same comes of it (see `DerivedAt`): which
-    constraints
-    depend on one another may depend on the values, and then it is derived anew.
+    A model is derived once for all values of its parameters at which the derivation is the same (see `DerivedAt`).
+    Which constraints depend on one another may depend on the values; then the model is derived anew.
 
     Args:
         model: whose values hold where none are given.
         derive: model -> its equations.
         how: the integrator's way; its tolerances are those of the run.
         target: of the emitted code.
-        known: what was derived, by the values that it depends on.
-        bases: what was derived, and may hold at other values.
+        known: equations and phases that were derived, by the values that they depend on.
+        bases: derivations that may hold at other values.
     """
 
     model: Model
@@ -92,12 +91,12 @@ class Simulator:
             time: how long, as `eomgen.simulate` takes it.
             parameters, start: values that replace the model's, as `eomgen.simulate` takes them.
             samples: how many instants are given, or the instants themselves, in SI or with a unit.
-            columns: what is wanted beside the states: names of reactions, "reactions" for all, names of outputs or
+            columns: columns in addition to the states: names of reactions, "reactions" for all, names of outputs or
                 formulas like them, "outputs" for all of the model.
             until: an equation: the end, where it first holds.
         Raises:
             MissingValues: parameters without a value, all named.
-            UsageError: what is asked makes no sense.
+            UsageError: the request makes no sense.
         """
         valued = with_values(self.model, parameters, start)
         equations, models = self._at(valued)
@@ -120,7 +119,7 @@ class Simulator:
         return found if not reactions or REACTIONS in requested else _with_columns(found, requested, formulas)
 
     def prepared(self, parameters: Values, start: Values) -> None:
-        """Derives and compiles what a run from these values takes."""
+        """Derives and compiles what a run from these values needs."""
         self._at(with_values(self.model, parameters, start))
 
     def _at(self, valued: Valued) -> tuple[Equations, PhaseModels]:
@@ -133,7 +132,7 @@ class Simulator:
 
     @cached_property
     def _own(self) -> tuple[Equations, PhaseModels]:
-        """Those at the model's own values."""
+        """Equations and phases at the model's own values."""
         return self._found(Valued(self.model))
 
     def _found(self, valued: Valued) -> tuple[Equations, PhaseModels]:
@@ -165,7 +164,7 @@ class Simulator:
 
     @cached_property
     def _follows_start(self) -> bool:
-        """Whether what starts somewhere else has other equations."""
+        """True if the equations depend on the start: a slack length, or the value of a constraint, is taken from it."""
         elements = (force.element for force in self.model.forces.values())
         if any(each.slack == "start" for each in elements if each is not None):
             return True
@@ -173,18 +172,17 @@ class Simulator:
 
     @cached_property
     def equations(self) -> Equations:
-        """Those of the model at its own values."""
+        """Equations of the model at its own values."""
         return self.derive(self.model)
 
     @cached_property
     def is_constrained(self) -> bool:
-        """Whether what is derived depends on values."""
+        """True if the derivation may depend on the values of parameters: the model has constraints or contacts."""
         return has_phases(self.model) or bool(self.equations.graph.system.constraints.rows)
 
     @cached_property
     def keeps_start(self) -> bool:
-        """Whether what is derived depends on where the motion starts: contacts, constraints and springs that keep a
-        length."""
+        """True if the derivation depends on the start: contacts, constraints and springs that keep a length."""
         return has_phases(self.model) or self._follows_start
 
 
@@ -193,7 +191,7 @@ class KnownEquations:
     """Equations and phases as they were derived at values of a model.
 
     Args:
-        follows_start: whether what starts somewhere else has other equations.
+        follows_start: True if another start has other equations.
     """
 
     equations: Equations
@@ -201,7 +199,12 @@ class KnownEquations:
     follows_start: bool
 
     def holds(self, models: PhaseModels, valued: Valued) -> bool:
-        """Whether they are those of other values; `models` are these phases at such."""
+        """True if the derivation holds at other values too.
+
+        Args:
+            models: these phases at the other values of the parameters.
+            valued: the model with the other values and start.
+        """
         system, own = self.equations.graph.system, self.equations.model
         model, p = valued.model, models.p[None, :]
         given = () if self.follows_start else {name.rstrip("'") for name in valued.start}
@@ -228,12 +231,12 @@ class KnownEquations:
 
 
 def given_parameters(model: Model) -> dict[str, Expression]:
-    """The values of all parameters that have one, in place of those of a model that was derived."""
+    """Values of all parameters that have one, which replace those of the derived model."""
     return {name: part.value for name, part in model.parameters.items() if part.value is not None}
 
 
 def _formulas(model: Model, requested: tuple[str, ...]) -> dict[str, Expression]:
-    """The outputs among what is asked, and formulas that are no lone reaction."""
+    """Formulas by requested name: outputs of the model, and formulas that are not one reaction alone."""
     found = formulas_of(model) if OUTPUTS in requested else {}
     for name in requested:
         if name in model.outputs:
@@ -249,7 +252,7 @@ def _formulas(model: Model, requested: tuple[str, ...]) -> dict[str, Expression]
 
 
 def _is_reaction(text: str) -> bool:
-    """Whether it is a function of the balance alone, which is found by its name among the reactions."""
+    """True if the text is one function of reactions; its column stands among the reactions by this name."""
     try:
         call = single_call(text)
     except ExpressionError:
@@ -282,7 +285,7 @@ MOST_SAMPLES = 1_000_000  # of a controller in a run
 
 @dataclass(frozen=True)
 class Controller:
-    """What sets one input.
+    """Controller of one input.
 
     Args:
         law: (t, x) -> value, or an expression of the state.
@@ -293,8 +296,11 @@ class Controller:
     every: float | None
 
     def value(self, t: float, state: Mapping[str, float], x: np.ndarray) -> float:
-        """What it sets at a state; by name, and as (q, u).
+        """Value of the input at a state.
 
+        Args:
+            state: values by name, for an expression.
+            x: the same state as (q, u), for a function.
         Raises:
             RunFailed: no number.
         """
@@ -307,7 +313,7 @@ class Controller:
 
 
 def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Controller]:
-    """Those among the inputs: functions, and tables {"value": law, "every": time}.
+    """Controllers among the inputs: functions, and tables {"value": law, "every": time}.
 
     Raises:
         UsageError: no input of that name; a table with other keys; a time that makes no sense; a function of other
@@ -336,7 +342,11 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
 
 
 def _refuse_other_arguments(name: str, law: Callable[..., Any]) -> None:
-    """Before the run, where Python can tell what a function takes."""
+    """Refuses a function that cannot be called with (t, x), where Python knows its arguments.
+
+    Raises:
+        UsageError: the function takes other arguments.
+    """
     try:
         takes = inspect.signature(law)
     except (TypeError, ValueError):
@@ -349,7 +359,7 @@ def _refuse_other_arguments(name: str, law: Callable[..., Any]) -> None:
 
 
 def with_controlled(model: Model, names: Sequence[str]) -> Model:
-    """The model in which what controllers set are parameters."""
+    """Model in which the inputs that controllers set are parameters."""
     left = {name: part for name, part in model.inputs.items() if name not in names}
     zero = Expression.number(0)
     more = {name: part_of_values(Parameter, {"value": zero, "unit": model.inputs[name].unit}) for name in names}
@@ -361,7 +371,7 @@ class _Control:
     """The controllers of one run.
 
     Args:
-        places: of what they set, among the parameters.
+        places: index, among the parameters, of each input that they set.
         names: of x.
         known: the parameters' values by name.
     """
@@ -372,7 +382,7 @@ class _Control:
     known: Mapping[str, float]
 
     def set_(self, p: np.ndarray, t: float, values: Mapping[str, float], due: Sequence[str]) -> np.ndarray:
-        """p with what some controllers set at a state."""
+        """Parameters p with the values that the controllers `due` set at a state."""
         found, x = p.copy(), np.array([values[name] for name in self.names])
         state = {**self.known, **values}
         for name in due:
@@ -380,7 +390,7 @@ class _Control:
         return found
 
     def fed(self, names: Sequence[str]) -> Callable[[np.ndarray, float, np.ndarray], np.ndarray] | None:
-        """(p, t, x) -> p with what the functions set, x the integrated state; None without functions."""
+        """Function (p, t, x) -> p with the values set by Python functions, x the integrated state; None without any."""
         due = [name for name, each in self.controllers.items() if each.every is None]
         if not due:
             return None
@@ -404,7 +414,7 @@ def controlled_run(
     how: Stepping,
     target: str | None = None,
 ) -> Trajectory:
-    """The motion of a model in which what controllers set are parameters.
+    """Motion of a model in which the inputs set by controllers are parameters.
 
     Raises:
         NotYet: a Python function sets an input, and contacts change.
@@ -439,7 +449,7 @@ def _control(models: PhaseModels, here: PhaseStart, controllers: Mapping[str, Co
 def _phases(
     control: _Control, models: PhaseModels, here: PhaseStart, plan: Plan
 ) -> Iterator[tuple[PhaseRun, float, PhaseModels]]:
-    """(a phase, up to when it was planned, its equations at the values that are held in it), one after the other."""
+    """Phases in order: (phase, time up to which it was planned [s], equations at the input values held in it)."""
     first = models.of(here.configuration)
     p, fed = models.p, control.fed((*first.coordinates, *first.speeds))
     for start, end, due in _stretches(control.controllers, plan.end):
@@ -455,7 +465,7 @@ def _phases(
 
 
 def _stretches(controllers: Mapping[str, Controller], time: float) -> Iterator[tuple[float, float, list[str]]]:
-    """(start, end, those that are sampled at the start) of the times between two samples of any controller."""
+    """Intervals between two samples of any controller: (start [s], end [s], controllers sampled at the start)."""
     periods = {name: each.every for name, each in controllers.items() if each.every is not None}
     if sum(time / every for every in periods.values()) > MOST_SAMPLES:
         raise UsageError(f"more than {MOST_SAMPLES} samples of controllers", fix="a shorter run, or a longer `every`")
@@ -474,7 +484,7 @@ def _stretches(controllers: Mapping[str, Controller], time: float) -> Iterator[t
 
 
 # -------- runs ------------------------------------------------------------------------------------------------
-# Runs: what many motions of one model left, as arrays, a DataFrame or a Dataset.
+# Results of many motions of one model, as arrays, a DataFrame or a Dataset.
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -483,13 +493,13 @@ class Runs:
 
     Args:
         t: the instants, k [s].
-        x: states (q, u), runs x k x states; nan all along in a run that failed.
+        x: states (q, u), runs x k x states; nan at all instants of a run that failed.
         names: of the coordinates and speeds.
         status: "finished", or why a run failed; message: the same as a sentence.
-        steps: taken by each.
-        given: the values of each run, by name, of those that are not the same in all.
-        proof: -> the certificate of the equations; None out of a pickle.
-        drifts: (t, x) -> of each run how far its energy went; None where it need not stay.
+        steps: number of steps of each run.
+        given: values that differ from run to run, by name, one a run.
+        proof: -> the certificate of the equations; None after unpickling.
+        drifts: (t, x) -> drift of the energy of each run; None where the energy is not conserved.
     """
 
     t: np.ndarray
@@ -503,7 +513,7 @@ class Runs:
     drifts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        """All its numbers, the drift among them; its equations do not go into a pickle."""
+        """All numbers, the drift included; the equations are not pickled."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         return own | {"drift": self.drift, "drifts": None, "proof": None}
 
@@ -518,21 +528,21 @@ class Runs:
 
     @cached_property
     def drift(self) -> np.ndarray | None:
-        """Of each run the largest |E - E(0)| over the energy that moves; None where it need not stay."""
+        """Largest |E - E(0)| of each run, relative to the energy exchanged; None where energy is not conserved."""
         return None if self.drifts is None else self.drifts(self.t, self.x)
 
     def certify(self) -> Certificate:
         """The proof of the equations that all runs share.
 
         Raises:
-            UsageError: they come out of a pickle.
+            UsageError: the runs were unpickled, without their equations.
         """
         if self.proof is None:
             raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate_many(model), in the process that asks")
         finished = self.status == "finished"
         whole = np.isfinite(self.x).all(axis=(1, 2))
         lost = [str(k) for k in np.flatnonzero(finished != whole)]
-        wrong = f"not of run {', '.join(lost[:3])}" if lost else ""
+        wrong = f"not in run {', '.join(lost[:3])}" if lost else ""
         more = [checked("runs that are finished have numbers at all instants", wrong, "every run")]
         return self.proof() + more
 

@@ -1,8 +1,7 @@
 """Model -> Kinematics: places, velocities and accelerations at one instant, however the model gives them.
 
-A model with [given], or of bodies and constraints alone, has one configuration, and velocities that constraints and
-given equations
-say. A model with coordinates is taken at its start, or where a condition is first met.
+A model with [given], or of bodies and constraints alone, has one configuration; its velocities follow from constraints
+and given equations. A model with coordinates is taken at its start, or where a condition is first met.
 """
 
 from __future__ import annotations
@@ -97,12 +96,12 @@ def _held(model: Model) -> str:
 
 
 def _accelerated(instant_kinematics: InstantKinematics) -> State:
-    """With the accelerations where constraints and given equations determine them all."""
+    """State with the accelerations; {} where constraints and given equations do not determine them all."""
     return {} if instant_kinematics.accelerations.free else instant_kinematics.state
 
 
 def _symbol(instant_kinematics: InstantKinematics, rate: str) -> Node:
-    """omega_I for omega(I), v for the velocity of a point."""
+    """Symbol of the undetermined rate: omega_I for omega(I), vx_I for vx(I.A); with "_" where the name is taken."""
     function, _, rest = rate.removesuffix(")").partition("(")
     name = f"{function}_{rest}" if function.startswith("omega") else f"{function}_{rest.partition('.')[0]}"
     while name in instant_kinematics.system.scope.names:
@@ -111,7 +110,7 @@ def _symbol(instant_kinematics: InstantKinematics, rate: str) -> Node:
 
 
 def _rests(state: KinematicState) -> bool:
-    """Whether no body moves."""
+    """True if no body moves."""
     return all(is_zero(x) for field in state.fields.values() for x in (*field.v, *field.w))
 
 
@@ -150,7 +149,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
 
 
 def _sees_time(phase: PhaseEquations) -> bool:
-    """Whether time itself stands in where bodies are and how they move."""
+    """True if poses or velocities of bodies depend on time explicitly."""
     links, t = phase.system.motion.links, phase.system.symbols.t
     return any(depends_on(x, (t,)) for link in links for x in (*link.pose.p, *link.twist.w, *link.twist.v, *link.s))
 
@@ -163,7 +162,10 @@ def _moment(motion: MotionFromStart, at: WrittenEquation | None) -> StateAtInsta
 
 
 def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
-    """(with the accelerations by the equations of motion, whether in numbers as formulas are long); {}: no mass."""
+    """State with the accelerations of the equations of motion, {} without them; True if they are numbers.
+
+    They are numbers where their formulas would be long, and missing where no motion follows or no values are known.
+    """
     symbols = phase.system.symbols
     if not symbols.u:
         return moving, False
@@ -182,7 +184,7 @@ def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[N
     return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))}, True
 
 
-# -- as a user asks for it ------------------------------------------------------------------------------
+# -- as a user requests it ------------------------------------------------------------------------------
 
 
 @doing("the velocities")
@@ -199,12 +201,12 @@ def kinematics(
 
     Args:
         at: the instant: an equation that is first met then; None: the start, or the one configuration.
-        given: velocities besides those of the model: "omega(crank) = 2".
-        relative: (point, body) pairs: the point as it is seen from the body.
+        given: velocities in addition to those of the model: "omega(crank) = 2".
+        relative: (point, body) pairs: the motion of the point relative to the body.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
-        ExpressionError: a text that is no equation.
-        ModelError: an equation with unknown names.
+        ExpressionError: a text is no equation.
+        ModelError: an equation contains unknown names.
         DerivationError: nothing can move; too few or too many velocities are given.
     """
     model = model_at(model, parameters, start)
@@ -220,7 +222,7 @@ def _equation(model: Model, text: WrittenEquation | str) -> WrittenEquation:
 
 
 def _with_given(model: Model, equations: Sequence[WrittenEquation]) -> Model:
-    """The model that gives these velocities too, checked as a whole."""
+    """Model with these given velocities added, checked as a whole."""
     if not equations:
         return model
     own = model.given or part_of_values(Given, {})

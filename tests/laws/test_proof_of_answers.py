@@ -24,7 +24,7 @@ MODELS = Path(__file__).parent.parent.parent / "models"
 FORMULAS = "formulas, read back, hold at other states"
 TEXTS = "exact texts, read back, give the numbers"
 NUMBERS = "numbers are those of the formulas at the state"
-INSTANTS = "a run in time leads to the instants asked for"
+INSTANTS = "a run in time leads to the requested instants"
 WAYS = "functions of the configuration hold along the motion"
 REST = "at rest all forces balance"
 

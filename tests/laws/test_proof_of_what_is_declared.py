@@ -154,7 +154,7 @@ def test_a_path_that_bends_the_other_way_is_told_at_an_instant_behind_two_phases
     solved = answers.solve(eomgen.loads(BEAD))
     assert solved["v"].value == pytest.approx((64 - 2 * 9.81 * (1.5 + 2 * (1 - 3**0.5 / 2))) ** 0.5, rel=1e-10)
     checks = {check.name: check for check in solved.certify().checks}
-    assert checks["a run in time leads to the instants asked for"].detail == "of 1"
+    assert checks["a run in time leads to the requested instants"].detail == "of 1"
     stretches = Path.stretches
 
     def bent(self, value):
@@ -163,7 +163,7 @@ def test_a_path_that_bends_the_other_way_is_told_at_an_instant_behind_two_phases
 
     monkeypatch.setattr(Path, "stretches", bent)
     wrong = {check.name: check for check in answers.solve(eomgen.loads(BEAD)).certify().checks if check.ok is False}
-    assert "bodies stand in every phase" in wrong["a run in time leads to the instants asked for"].detail
+    assert "bodies stand in every phase" in wrong["a run in time leads to the requested instants"].detail
 
 
 def _with(path: Path, pieces: tuple[PathPiece, ...]) -> Path:
