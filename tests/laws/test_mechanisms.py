@@ -119,7 +119,7 @@ def test_at_a_relative_centre_both_bodies_have_one_velocity(kind, seed):
     _, mechanism = mechanism_in(linkage.text(rng=Random(seed)))
     motion = {**linkage.velocities(1.0), "0": np.zeros(3)}
     for center in mechanism.centers.values():
-        x, y, _ = map(float, mechanism.worth.of(center.point))
+        x, y, _ = map(float, mechanism.values.of(center.point))
         vx, vy, w = motion[center.pair[1]] - motion[center.pair[0]]
         assert not center.at_infinity
         assert (vx - w * y, vy + w * x) == pytest.approx((0, 0), abs=1e-9 * (1 + abs(w)) * (1 + abs(x) + abs(y)))

@@ -1,7 +1,4 @@
-"""System, velocities, accelerations at one instant -> KinematicState: fields of bodies, points, relative motion.
-
-System, velocities, accelerations at one instant -> KinematicState: fields of bodies, points, the mechanism.
-"""
+"""System, velocities, accelerations at one instant -> KinematicState: fields of bodies, points, the mechanism."""
 
 from __future__ import annotations
 
@@ -25,7 +22,7 @@ from eomgen.mechanics.kinematics.motion import (
     least_speed,
     rotation_center,
 )
-from eomgen.mechanics.start.exact import Worth
+from eomgen.mechanics.start.exact import ScalarValues
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
@@ -54,21 +51,21 @@ LARGE = 4000  # characters of a value that is not made readable any more
 
 @dataclass(frozen=True)
 class KinematicState:
-    """How a system moves at one instant, by scalars of the parameters.
+    """Velocities and accelerations of a system at one instant, as scalars of the parameters.
 
     Args:
         system: its bodies and constraints.
-        moving: what stands in place of coordinates, speeds, time and inputs.
-        accelerated: the same, the accelerations too; {} where they are not known.
-        degrees of freedom: how many there are by rank.
+        moving: values of coordinates, speeds, time and inputs.
+        accelerated: the same, with the accelerations; {} where they are not known.
+        degrees_of_freedom: their number, from the rank of the constraints.
         formula: the same by counting, a number and its text.
         when: the instant in words.
-        given: what is given of velocities and accelerations, as it was written.
-        rate: the velocity that is left as a symbol, by which all others are expressed; "" where all are known.
+        given: the given velocities and accelerations, as written.
+        rate: the velocity that is left as a symbol, in terms of which all others are expressed; "" where all are known.
         symbol: of it.
-        exact: whether the state is known in closed form.
-        rounded: whether the accelerations are numbers although the state has a closed form.
-        equations: the equations of motion by which it goes on; None where only the instant is known.
+        exact: True if the state is known in closed form.
+        rounded: True if the accelerations are numbers although the state has a closed form.
+        equations: the equations of motion; None where only the instant is known.
     """
 
     system: System
@@ -91,7 +88,7 @@ class KinematicState:
 
     @property
     def is_short(self) -> bool:
-        """Whether it is known exactly, by formulas that a reader can take."""
+        """True if the state is known exactly, by formulas short enough to read."""
         return self.exact and not self.rounded and sum(map(text_size, self.state.values())) <= SHORT
 
     @property
@@ -102,14 +99,14 @@ class KinematicState:
 
     @cached_property
     def fields(self) -> dict[str, VelocityField]:
-        """Of every body; nodes of trusses are points, not bodies."""
+        """Velocity field of every body; nodes of trusses are points, not bodies."""
         motion = self.system.motion
         bodies = [link.name for link in motion.links if not is_node(link.name)]
         return {name: field_of(motion, name).at(self.state) for name in bodies}
 
     @property
     def turning(self) -> dict[str, VelocityField]:
-        """Of the bodies that are no points."""
+        """Velocity fields of the bodies that are no point masses."""
         links = self.system.motion.links
         points = {link.name for link in links if is_particle(self.system.motion, link)}
         return {name: field for name, field in self.fields.items() if name not in points}
@@ -130,13 +127,13 @@ class KinematicState:
         return tuple((", ".join(names), *named[k][1:]) for names, k in found)
 
     def _values(self, named: Sequence[Sequence[Vector | None]]) -> list[list[Any]]:
-        """What the vectors of every point are worth, those that are not known left out."""
+        """Values of the vectors of every point; unknown vectors are left out."""
         flat = [[x for v in vectors if v is not None for x in v] for vectors in named]
-        values = iter(self.worth.of(x for vectors in flat for x in vectors))
+        values = iter(self.values.of(x for vectors in flat for x in vectors))
         return [[next(values) for _ in vectors] for vectors in flat]
 
     def _same(self, one: Sequence[Any], other: Sequence[Any]) -> bool:
-        return all(abs(x - y) < self.worth.tolerance for x, y in zip(one, other, strict=True))
+        return all(abs(x - y) < self.values.tolerance for x, y in zip(one, other, strict=True))
 
     def _named(self, link: BodyLink) -> Iterable[tuple[str, Vector]]:
         motion = self.system.motion
@@ -168,20 +165,20 @@ class KinematicState:
         return self.simple(sqrt(dot(v, v)))
 
     @cached_property
-    def worth(self) -> Worth:
-        """What scalars are worth."""
-        return Worth(self.system.scope, ZERO_AT_50 if self.exact else COMPUTED)
+    def values(self) -> ScalarValues:
+        """Values of scalars at the model's parameters."""
+        return ScalarValues(self.system.scope, ZERO_AT_50 if self.exact else COMPUTED)
 
     def number(self, x: Scalar) -> float | None:
-        """What a scalar is worth at the model's parameters; None where some have no value."""
-        return self.worth.number(x)
+        """Value of a scalar at the model's parameters; None where one that it needs has no value."""
+        return self.values.number(x)
 
     # -- the mechanism -------------------------------------------------------------------------------
 
     @cached_property
     def mechanism(self) -> Mechanism | None:
-        """In the plane."""
-        return Mechanism(self.system, self.moving, self.worth) if self.plane else None
+        """Bodies with their centres of rotation, of a plane system; None in space."""
+        return Mechanism(self.system, self.moving, self.values) if self.plane else None
 
     @cached_property
     def found(self) -> dict[PointPair, FoundPoint]:
@@ -206,7 +203,7 @@ class KinematicState:
 
 @dataclass(frozen=True)
 class Composition:
-    """Where a point is, the field of the body from which it is seen, and how it moves against it.
+    """Motion of a point composed of the motion of a carrier body and the motion relative to that body.
 
     Args:
         place: of the point, ground axes.
@@ -329,8 +326,8 @@ class BodyMotion:
         field: velocities and accelerations.
         readable: puts scalars into the state.
         ends: (name, place) of both ends of a bar; () where it is none.
-        plane: whether the motion is one in the plane.
-        kind: the kind of motion in the long run; None where it is not known, or was not asked.
+        plane: True for a motion in the plane.
+        kind: the kind of motion in the long run; None where it is not known or was not requested.
     """
 
     body: str
@@ -353,17 +350,17 @@ class BodyMotion:
 
     @cached_property
     def center(self) -> Vector | None:
-        """In the plane, the point without velocity; None where there is none."""
+        """Instantaneous centre of rotation (the point without velocity) in the plane; None where there is none."""
         return self._found(rotation_center)
 
     @cached_property
     def pole(self) -> Vector | None:
-        """In the plane, the point without acceleration; None where there is none."""
+        """Acceleration pole (the point without acceleration) in the plane; None where there is none."""
         return self._found(acceleration_pole)
 
     @cached_property
     def inflection(self) -> tuple[Vector, Scalar] | None:
-        """In the plane, (centre, radius) of the circle of the points whose path is straight there."""
+        """Inflection circle in the plane, (centre, radius): its points move without curvature of their path there."""
         middle = self._found(inflection_center)
         if middle is None or self.center is None:
             return None

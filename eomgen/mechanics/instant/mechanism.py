@@ -1,6 +1,4 @@
-"""System, velocities -> Mechanism: centres of rotation of every body and of every pair.
-
-System, velocities -> Mechanism: centres of rotation of every body and of every pair in the plane.
+"""System, velocities -> Mechanism: centres of rotation of every body and of every pair in the plane.
 
 Every body has the homogeneous centre c = (-v_0y : v_0x : w) of its velocity field (`centers`); a pair has
 c_ij = c_j - c_i. Bodies that move as one are one block; those at rest belong to the ground's.
@@ -19,7 +17,7 @@ from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, components_of
 from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
 from eomgen.mechanics.kinematics.motion import field_of
-from eomgen.mechanics.start.exact import Worth
+from eomgen.mechanics.start.exact import ScalarValues
 from eomgen.model.part import leaves_of
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.exact.normal_form import Legibly
@@ -30,7 +28,7 @@ from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, minus, plus,
 from eomgen.symbolic.numeric.work import Work
 
 FIXED = "0"
-"""How the ground is called among the bodies."""
+"""Name of the ground among the bodies."""
 
 
 @dataclass(frozen=True)
@@ -59,14 +57,14 @@ class Mechanism:
     """Rigid bodies in motion in the plane, at one configuration.
 
     Args:
-        system: whose bodies.
-        moving: what stands in place of coordinates, speeds, time and inputs.
-        worth: what scalars are worth.
+        system: the system of the bodies.
+        moving: values of coordinates, speeds, time and inputs.
+        values: values of scalars at the model's parameters.
     """
 
     system: System
     moving: Mapping[Node, Scalar]
-    worth: Worth
+    values: ScalarValues
 
     # -- bodies that move as one -------------------------------------------------------------------
 
@@ -107,7 +105,7 @@ class Mechanism:
 
     @cached_property
     def centers(self) -> dict[tuple[str, str], RotationCenter]:
-        """Of every pair of blocks; absolute ones first."""
+        """Centre of rotation of every pair of blocks; absolute ones first."""
         return {pair: self._center(pair) for pair in combinations(self.blocks, 2)}
 
     def _center(self, pair: tuple[str, str]) -> RotationCenter:
@@ -122,8 +120,8 @@ class Mechanism:
     # -- helpers -----------------------------------------------------------------------------------
 
     def is_zero(self, scalars: Iterable[Scalar]) -> bool:
-        """Whether all are zero here."""
-        return self.worth.vanish(scalars)
+        """True if all scalars are zero at this configuration."""
+        return self.values.vanish(scalars)
 
     @cached_property
     def _simple(self) -> Legibly:
@@ -265,11 +263,10 @@ class _Search:
         return found
 
     def _wanders(self, component: Component) -> bool:
-        """Whether the seat of a joint, or a point that a constraint names, moves in its body as the model says, or a
-        constraint has
-        rates beside those of the bodies.
+        """True if the line of action of a component says nothing of velocities, as no point of the body is held.
 
-        There no point of the body is held, and the line of the push says nothing of velocities.
+        So it is where the seat of a joint, or a point that a constraint names, moves in its body as prescribed, or a
+        constraint depends directly on rates of other quantities than the motion of the bodies.
         """
         motion = self.mechanism.system.motion
         if component.kind == "joint":
@@ -283,7 +280,7 @@ class _Search:
         return any(motion.moves(motion.place(point)[1]) for point in points)
 
     def _is_point(self, block: str) -> bool:
-        """Whether it is a point mass, whatever its velocity: as a body it translates."""
+        """True for a point mass without a spin: as a body it translates."""
         link = self.mechanism.system.motion.link(block)
         return is_particle(self.mechanism.system.motion, link) and all(is_zero(x) for x in link.twist.w)
 

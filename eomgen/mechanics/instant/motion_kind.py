@@ -1,4 +1,4 @@
-"""System -> Kind: what kind of motion a body makes, on what lines its points run."""
+"""System -> Kind: the kind of motion of a body, and the curves on which its points move."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ class Kinds:
         return self._in_all_directions(body, field)
 
     def _about_one_direction(self, body: str, field: VelocityField) -> Kind:
-        """omega keeps its direction."""
+        """Kind of a motion in which omega keeps its direction."""
         vanish, possible = self.possible.vanish, self.possible
         axis = self._direction(field.w)
         planar = vanish(dot(field.w, field.v))
@@ -219,10 +219,11 @@ def finite_center(field: VelocityField, whose: str) -> Vector:
         return rotation_center(field)
     if all(vanishes(x) for x in field.v):
         raise DerivationError(
-            f"{whose} is at rest: every point is a centre of rotation", fix="ask while the body turns"
+            f"{whose} is at rest: every point is a centre of rotation", fix="choose a state in which the body turns"
         )
     raise DerivationError(
-        f"{whose} translates{_along(field.v)}: its centre of rotation is at infinity", fix="ask while the body turns"
+        f"{whose} translates{_along(field.v)}: its centre of rotation is at infinity",
+        fix="choose a state in which the body turns",
     )
 
 
@@ -231,10 +232,10 @@ def _along(v: Vector) -> str:
 
 
 # -------- curves ----------------------------------------------------------------------------------------------
-# Possible, a moving place -> Curve: on what line it runs, recognised exactly by rates that vanish along every motion.
+# Possible, a moving place -> Curve: the line on which it moves, known exactly by rates that vanish in every motion.
 #
-# at rest: c' = 0;   straight: c' x c'' = 0; a circle: the centre of curvature stays, c + |c'|^2 (c' x c'') x c' / |c'
-# x c''|^2
+# at rest: c' = 0;   straight: c' x c'' = 0;
+# a circle: the centre of curvature is constant, c + |c'|^2 (c' x c'') x c' / |c' x c''|^2
 
 
 TRIED = (Fraction(0), Fraction(1), Fraction(1, 2), Fraction(2))  # values of what a constant does not depend on
@@ -349,7 +350,7 @@ def curve_of(place: Vector, possible: Possible, constants: Constants) -> Curve:
 
 
 def _arm(v: Vector, a: Vector) -> Vector:
-    """From a point with velocity v and acceleration a to the centre of curvature of its way."""
+    """Vector from a point with velocity v and acceleration a to the centre of curvature of its path."""
     n = cross(v, a)
     return times(over(dot(v, v), dot(n, n)), cross(n, v))
 
@@ -363,7 +364,7 @@ def _direction(v: Vector, possible: Possible, constants: Constants) -> Vector | 
 
 
 def _turning(n: Vector, possible: Possible) -> tuple[Scalar, ...]:
-    """What vanishes where the direction of n stays: n x n'."""
+    """Components of n x n', which vanish if the direction of n is constant; () if n is along z."""
     return cross(n, possible.rate_of(n)) if not possible.vanish(n[0], n[1]) else ()
 
 
@@ -409,10 +410,10 @@ class Possible:
         return vector_of(self.rate(x))
 
     def vanish(self, *scalars: Scalar) -> bool:
-        """Whether all of them are zero along every motion.
+        """True if all scalars are zero along every motion.
 
         Raises:
-            DerivationError: the constraints do not close, or there is no state at which the scalars have values.
+            DerivationError: the constraints cannot be satisfied, or the scalars have values at no state.
         """
         left = [x for x in scalars if type(x) is Node or x != 0]
         return not left or all(self._vanish_at(left, state) for state in self.states)
@@ -479,7 +480,7 @@ class _LinearRows:
 #
 #     c = p + omega x v / omega^2 in ground axes,   R^T (c - p) in the body's: the moving one rolls on the fixed one
 #
-# Where one parameter moves the body (one freedom, or time alone) they are functions of the coordinates, or of t.
+# Where one parameter moves the body (one degree of freedom, or time) they are functions of the coordinates, or of t.
 
 
 @dataclass(frozen=True)
@@ -536,11 +537,10 @@ def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
 
 
 def parameters(kinds: Kinds) -> int:
-    """How many parameters move a system: its degrees of freedom by rank, and the time where something moves as
-    given."""
+    """Number of parameters that move a system: its degrees of freedom by rank, plus 1 if something moves with time."""
     return degrees_of_freedom(kinds.system.constraints, kinds.possible.states[0]) + moves_by_itself(kinds.system)
 
 
 def moves_by_itself(system: System) -> bool:
-    """Whether coordinates move as given."""
+    """True if something moves with time as prescribed: nu or sigma is not 0."""
     return not all(is_zero(x) for x in (*system.scope.nu, *system.constraints.sigma))

@@ -1,4 +1,4 @@
-"""System -> Quantities: what output functions ask of it, as graph scalars."""
+"""System -> Quantities: the values of output functions as graph scalars."""
 
 from __future__ import annotations
 
@@ -48,23 +48,23 @@ from eomgen.symbolic.numeric.work import Work
 
 
 def requests_motion(formula: Expression) -> bool:
-    """Whether velocities or accelerations stand in a formula: functions of them, or rates of coordinates."""
+    """True if a formula contains velocities or accelerations: functions of them, or rates of coordinates."""
     moves = any(call.name in FUNCTIONS and FUNCTIONS[call.name].moves for call in formula.calls)
     return moves or any(name.endswith("'") for name in formula.names)
 
 
 def requests_of(formula: Expression, source: str) -> bool:
-    """Whether a formula calls functions that are found from this source."""
+    """True if a formula calls functions that are found from this source."""
     return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)
 
 
 @dataclass(frozen=True)
 class Quantities:
-    """What the functions of the outputs are worth in one system: the scene in which they are written.
+    """Values of the output functions in one system: the scene in which the functions are written.
 
     Args:
         system: the system.
-        at: exact scalars that stand in place of coordinates, speeds, accelerations and t in the reactions.
+        at: exact scalars in place of coordinates, speeds, accelerations and t in the reactions.
         balance: the balance of the bodies, where it is solved already.
     """
 
@@ -112,7 +112,7 @@ class Quantities:
 
     @property
     def is_plane(self) -> bool:
-        """Whether all motion is in the plane."""
+        """True if all motion is in the plane."""
         return self.system.scope.model.space == "plane"
 
     @property
@@ -122,11 +122,11 @@ class Quantities:
 
     @property
     def names(self) -> Mapping[str, Scalar]:
-        """What the names of an expression stand for."""
+        """Scalars for which the names of an expression stand."""
         return self.system.scope.names
 
     def position(self, point: str) -> Vector:
-        """Where a point is, ground axes [m]."""
+        """Position of a point, ground axes [m]."""
         return self.system.motion.position(self.system.motion.place(point))
 
     def body_of(self, point: str) -> str:
@@ -134,7 +134,7 @@ class Quantities:
         return self.system.motion.place(point)[0] or GROUND
 
     def origin(self, body: str) -> Vector:
-        """Where the frame of a body, or of the ground, begins [m]."""
+        """Position of the origin of the frame of a body, or of the ground [m]."""
         return self.system.motion.link(body).pose.p if body in self.system.motion.index else ZERO
 
     def axes(self, body: str) -> Matrix:
@@ -217,7 +217,7 @@ class Quantities:
         return mass_properties(self.system.scope, body)
 
     def parts(self, body: str) -> int | None:
-        """How many parts a body is made of; None where it is not."""
+        """Number of parts of which a body is made; None where it is not made of parts."""
         parts = self.system.scope.model.bodies[body].parts
         return None if parts is None else len(parts)
 
@@ -227,11 +227,11 @@ class Quantities:
         return found
 
     def without_inertia(self, bodies: Sequence[str]) -> tuple[str, ...]:
-        """Those that have a mass and say nothing of its inertia."""
+        """Names of those bodies that have a mass but no stated inertia."""
         return shapeless(self.system.motion, bodies)
 
     def known_about_z(self, bodies: Sequence[str]) -> tuple[str, ...]:
-        """Those of which only the moment about z is known."""
+        """Names of those bodies of which only the moment of inertia about z is known."""
         return flat_bodies(self.system.motion, bodies)
 
     def tensor(self, point: Vector, bodies: Sequence[str]) -> Matrix:
@@ -239,7 +239,7 @@ class Quantities:
         return tensor_about(self.system.motion, point, bodies)
 
     def principal_moments(self, tensor: Matrix) -> tuple[Scalar, ...]:
-        """Ascending [kg m^2]."""
+        """Principal moments of inertia, ascending [kg m^2]."""
         return principal_moments(tensor, self.system.scope)
 
     def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector:
@@ -255,14 +255,14 @@ class Quantities:
         return energy_of_force(self.system, name)
 
     def power(self, name: str | None = None) -> Scalar:
-        """Of everything applied, of one force, or of what acts on one body [W]."""
+        """Power of all applied loads, of one force, or of the loads on one body [W]."""
         return power_of_loads(self.system, name)
 
     def effort(self, force: str) -> Scalar:
-        """What draws the points of a force together [N], or turns its second body [N m].
+        """Force that draws the points of a force element together [N], or moment that turns its second body [N m].
 
         Raises:
-            DerivationError: it acts otherwise.
+            DerivationError: it acts neither between two points nor between two bodies.
         """
         effort = self.system.scope.model.forces[force].effort(
             SystemScene(self.system.motion, f"forces.{force}", self.system.loads.begun)
@@ -270,7 +270,7 @@ class Quantities:
         if effort is None:
             raise DerivationError(
                 f"force '{force}' acts neither between two points nor between two bodies",
-                fix="ask of a spring or a damper",
+                fix="name a spring or a damper",
             )
         return effort
 
@@ -292,7 +292,7 @@ class Quantities:
         return reactions_of(self.system, self.at, short=True) if self.balance is None else self.balance
 
     def is_truss(self, name: str) -> bool:
-        """Whether a name is that of a truss."""
+        """True if a name is that of a truss."""
         constraint = self.system.scope.model.constraints.get(name)
         return constraint is not None and constraint.table == "trusses"
 
@@ -306,7 +306,7 @@ class Quantities:
 
     @cached_property
     def _acts_at_no_place(self) -> bool:
-        """Whether the bodies cannot be balanced one by one."""
+        """True if the bodies cannot be balanced one by one, as a load acts at no place."""
         try:
             refuse_placeless(self.system)
         except DerivationError:
@@ -314,7 +314,7 @@ class Quantities:
         return False
 
     def drive(self, coordinate: str) -> Scalar:
-        """What moves a driven coordinate as given."""
+        """Force or moment of the drive that moves a driven coordinate as given."""
         return drive(self.system, coordinate)
 
     def section(self, body: str) -> SectionForces:
@@ -329,7 +329,7 @@ class Quantities:
 
     @cached_property
     def _sections(self) -> dict[str, SectionForces]:
-        """The section forces of the bodies of which they were asked."""
+        """Cache of the section forces already found, by body."""
         return {}
 
     # -- along coordinates ---------------------------------------------------------------------------
@@ -338,7 +338,7 @@ class Quantities:
         """The system among whose speeds it is, or its rate, and its place; of replaced rates the system over the rates.
 
         Raises:
-            DerivationError: it is no freedom.
+            DerivationError: it is no degree of freedom.
         """
         declared = self.system.scope.model.speeds
         turning = {e.name for four in self.system.scope.quaternions for e in four}
@@ -350,12 +350,12 @@ class Quantities:
                 return system, names.index(sought)
         if coordinate in turning:
             raise DerivationError(
-                f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no freedom",
-                fix="ask it of the speeds that the joint's `omega` names",
+                f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no degree of freedom",
+                fix="take one of the speeds that the joint's `omega` names",
             )
         raise DerivationError(
-            f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom",
-            fix="ask for drive(...) of it",
+            f"{function}({coordinate}): '{coordinate}' moves as given, it is no degree of freedom",
+            fix=f"use drive({coordinate})",
         )
 
     def _carried(self, system: System, scalar: Scalar) -> Scalar:

@@ -1,9 +1,8 @@
 """Model -> Model in which every body that only constraints can hold is free to move.
 
-A body without joint, or `placed` by constants, stands still by declaration: nothing of it can move. For velocities the
-constraints alone say what it can do. So it gets displacements from where it stands, 0 at the start: x, y and a turn in
-the
-plane; x, y, z and three turns about its own successive axes in space. Then the constraints are rows in their rates.
+A body without joint, or `placed` by constants, stands still by declaration. For velocities the constraints alone say
+how it can move. So it gets displacements from where it stands, 0 at the start: x, y and a turn in the plane; x, y, z
+and three turns about its own successive axes in space. Then the constraints are rows in their rates.
 """
 
 from typing import Annotated, Any, ClassVar

@@ -1,6 +1,4 @@
-"""Model, [given] -> velocities and accelerations of all bodies at one configuration.
-
-Model, [given] -> Snapshot: velocities and accelerations of all bodies at one configuration.
+"""Model, [given] -> InstantKinematics: velocities and accelerations of all bodies at one configuration.
 
     J u + sigma = 0,   J a + gamma = 0        the constraints, bodies that only constraints hold displaced (`loose`)
     left - right = 0                          what is given, linear in u or in a and in the unknowns
@@ -55,14 +53,14 @@ class Undetermined(DerivationError):
 
 @dataclass(frozen=True)
 class Known:
-    """What the equations of one order say.
+    """Solution of the equations of one order: velocities, or accelerations.
 
     Args:
-        values: of the velocities (or accelerations) and unknowns; those that stay free stand in them.
-        free: what stays free.
-        degrees of freedom: how many degrees of freedom the constraints leave.
-        unknowns: how many unknowns stand in the given equations.
-        given: how many of both the given equations take.
+        values: of the velocities (or accelerations) and unknowns, in terms of those that stay free.
+        free: those that stay free.
+        degrees_of_freedom: their number under the constraints alone.
+        unknowns: the number of unknowns in the given equations.
+        given: the number of degrees of freedom and unknowns that the given equations determine.
     """
 
     values: State
@@ -73,7 +71,7 @@ class Known:
 
     @property
     def missing(self) -> int:
-        """How many equations would determine the rest."""
+        """Number of equations still needed to determine the rest."""
         return self.degrees_of_freedom + self.unknowns - self.given
 
 
@@ -87,8 +85,8 @@ class InstantKinematics:
         velocity, acceleration: the given equations.
         speeds: the start speeds of the model's own coordinates that are given, too.
         assumed: a velocity that is taken to be a symbol: {text: symbol}.
-        exact: whether the places are; else they are numbers.
-        located: where coordinates are that stay symbols, as their closed form would be long, in numbers.
+        exact: True if the places are exact; else they are numbers.
+        located: numbers for the coordinates that stay symbols, as their closed form would be long.
     """
 
     system: System
@@ -149,7 +147,7 @@ class InstantKinematics:
 
     @property
     def _near(self) -> Mapping[Node, float] | None:
-        """Where coordinates are that are known in numbers only; None where all are known exactly."""
+        """Numbers for the coordinates that are not known in closed form; None where all are exact."""
         return None if self.exact and not self.located else self.located
 
     # -- values ------------------------------------------------------------------------------------
@@ -222,7 +220,7 @@ class InstantKinematics:
                 )
 
     def _open(self, known: Known, order: str, noun: str) -> Undetermined:
-        many = "1 freedom" if known.degrees_of_freedom == 1 else f"{known.degrees_of_freedom} degrees of freedom"
+        many = f"{known.degrees_of_freedom} degree{'s' if known.degrees_of_freedom != 1 else ''} of freedom"
         if known.unknowns:
             many += f" and {known.unknowns} unknown{'s' if known.unknowns > 1 else ''}"
             noun = "equation"
@@ -334,10 +332,10 @@ def _still(system: System, state: State) -> State:
 
 
 def mobility_of(model: Model) -> int:
-    """In how many ways the bodies of a model can move at its start, those that only constraints hold included.
+    """Number of degrees of freedom at the start by rank; bodies that only constraints hold are counted as free.
 
     Raises:
-        DerivationError: constraints that do not close at the start.
+        DerivationError: constraints that are not satisfied at the start.
     """
     return instant_kinematics_of(altered(model, given=None)).velocities.degrees_of_freedom
 
@@ -532,7 +530,7 @@ def _matrix(lines: Sequence[GivenRow], unknowns: Sequence[Node], values: State) 
 
 
 def _rank(matrix: np.ndarray) -> int:
-    """Of A in [A | b]."""
+    """Rank of A in the augmented matrix [A | b]."""
     return len(independent_rows(matrix[:, :-1], RANK))
 
 

@@ -1,1 +1,1 @@
-"""What holds bodies at one configuration, and how they could move: structures and velocity plans."""
+"""Rigidity of a system at one configuration: structures with their mobility, and plans of possible velocities."""

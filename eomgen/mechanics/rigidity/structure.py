@@ -1,4 +1,4 @@
-"""System, a configuration -> Structure: what holds the bodies there, and how they could move."""
+"""System, a configuration -> Structure: the reactions that hold the bodies there, and the motions left to them."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.linear import LinearSystem, Pivots, Solution, general_solution
 
 # -------- structure -------------------------------------------------------------------------------------------
-# System, a configuration -> Structure: what holds the bodies there, and how they could move.
+# System, a configuration -> Structure: the reactions that hold the bodies there, and the motions left to them.
 #
 # The equations of the bodies at rest are  G rho + applied = 0:  a column a reaction, a row a direction in which a
 # body may move. Read the other way they are the velocities that the reactions forbid:
@@ -38,7 +38,7 @@ from eomgen.symbolic.solve.linear import LinearSystem, Pivots, Solution, general
 #
 # so that   mobility = rows - rank,   degree of indeterminacy = columns - rank.   With one reaction released, G^T xi =
 # its unit vector, the bodies have one motion left: the mechanism of the principle of virtual work. A force that is
-# asked for ([unknowns]) holds the bodies like a reaction.
+# sought ([unknowns]) holds the bodies like a reaction.
 
 
 UnknownColumn = tuple[int, int]
@@ -71,12 +71,12 @@ class Structure:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of every row: reaction_x(B), or the unknown."""
+        """Name of every row: reaction_x(B), or the unknown."""
         return self.balance.names
 
     @property
     def unknowns(self) -> tuple[Node, ...]:
-        """Of the loads."""
+        """Unknowns of the loads."""
         return self.balance.unknowns
 
     @cached_property
@@ -92,22 +92,22 @@ class Structure:
 
     @property
     def rank(self) -> int:
-        """How many of the reactions are independent, at the model's values of the parameters."""
+        """Number of independent reactions, at the model's values of the parameters."""
         return self._ranks[0]
 
     @property
     def mobility(self) -> int:
-        """In how many independent ways the bodies can move."""
+        """Number of independent motions of the bodies."""
         return len(self.columns) - self.rank
 
     @property
     def indeterminacy(self) -> int:
-        """How many reactions too many there are for the balance of the bodies."""
+        """Degree of static indeterminacy: the number of redundant reactions."""
         return len(self.rows) - self.rank
 
     @property
     def is_special(self) -> bool:
-        """Whether its rank is less than that of structures with other values of the parameters."""
+        """True if its rank is less than that of structures with other values of the parameters."""
         return self.rank < self._ranks[1]
 
     # -- motions -----------------------------------------------------------------------------------
@@ -127,12 +127,12 @@ class Structure:
 
     @cached_property
     def turns_idly(self) -> bool:
-        """Whether all that can move are straight bodies about their own lines, no point displaced, no load at work."""
+        """True if the only motions left are straight bodies turning about their own lines, without work of loads."""
         return bool(self.loose) and all(self._is_idle(plan) for plan in self.loose)
 
     @cached_property
     def is_in_balance(self) -> bool:
-        """Whether the loads do no work in any motion that nothing resists."""
+        """True if the loads do no work in any motion that nothing resists."""
         return all(plan.vanishes((self._work(plan),)) for plan in self.loose)
 
     def _is_idle(self, plan: VelocityPlan) -> bool:
@@ -141,7 +141,7 @@ class Structure:
         return plan.vanishes((*moved, self._work(plan)))
 
     def _work(self, plan: VelocityPlan) -> Scalar:
-        """Of all loads, as the bodies' equations hold them; unknown ones do none in a motion that nothing resists."""
+        """Power of all known loads in a motion; unknown loads do no work in a motion that nothing resists."""
         applied = {(self.system.motion.index[e.body], e.direction): e.applied for e in self.balance.equations}
         given = {**self.at, **dict.fromkeys(self.unknowns, 0)}
         loads = substituted(tuple(applied.get(column, 0) for column in self.columns), given)
@@ -160,7 +160,7 @@ class Structure:
         return tuple(found)
 
     def determines(self, combination: Mapping[int, Scalar]) -> bool:
-        """Whether the balance gives sum of k_j rho_j a single value."""
+        """True if the balance gives sum of k_j rho_j a single value."""
         works = (sum((k * stress.get(j, 0) for j, k in combination.items()), start=0) for stress in self.stresses)
         return all(is_zero(x) or holds_identically(x) for x in works)
 
@@ -203,7 +203,7 @@ class Structure:
 
     @cached_property
     def _columns(self) -> tuple[ScalarRow, ...]:
-        """Of each row the velocities that a velocity 1 along it alone takes."""
+        """For each row the velocities of the bodies that give a velocity 1 along it and 0 along the others."""
         return tangents(self._solved.velocities, self._solved.deltas)
 
     @cached_property
@@ -221,7 +221,7 @@ class Structure:
 
     @cached_property
     def _ranks(self) -> tuple[int, int]:
-        """At the model's own parameters, and at others like these."""
+        """Ranks at the model's own parameters, and at perturbed ones."""
         own, others = (self._numbers(self._parameters(shaken=shaken)) for shaken in (False, True))
         return sparse_rank(own), sparse_rank(others)
 
@@ -232,7 +232,10 @@ class Structure:
 
     @cached_property
     def _solved(self) -> _Solved:
-        """With pivots that do not vanish at parameters like the model's, or where those are special, at these."""
+        """General solution of G^T xi = delta.
+
+        The pivots do not vanish at perturbed parameters, or, where the model's own are special, at these.
+        """
         graph = self.system.scope.graph
         parameters = self._parameters(shaken=not self.is_special)
         deltas = tuple(graph.symbol(f"(delta {k})") for k in range(len(self.rows)))
@@ -302,7 +305,7 @@ def _directions(system: System) -> list[UnknownColumn]:
 
 
 def _is_point_that_turns(system: System, column: UnknownColumn) -> bool:
-    """Whether it is the turning of a node or a point mass on which no moment acts: it is no motion of its own."""
+    """True if the column is the rotation of a node or point mass, which is no motion of its own."""
     body, direction = column
     part = system.scope.model.bodies.get(system.motion.links[body].name)
     point = part is None or (part.shape is not None and part.shape.is_point)
@@ -310,7 +313,7 @@ def _is_point_that_turns(system: System, column: UnknownColumn) -> bool:
 
 
 def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
-    """What a unit of an unknown load adds to an effect; None where it does not stand in it."""
+    """Derivative of an effect with respect to an unknown load; None where it does not occur in the effect."""
     force, couple = (tuple(derivative(x, unknown) for x in v) for v in (effect.force, effect.couple))
     if all(map(is_zero, (*force, *couple))):
         return None
@@ -322,14 +325,14 @@ def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
 
 
 MOST_NAMES = 6  # of parts that move together
-MOST_MOTIONS = 3  # that are told in words
+MOST_MOTIONS = 3  # that are described in words
 
 
 def refuse_loose(structure: Structure, degrees_of_freedom: int = 0) -> None:
     """Refuse bodies that can move although no coordinate describes it, and would.
 
     Args:
-        degrees of freedom: the motions that coordinates describe.
+        degrees_of_freedom: the number of motions that coordinates describe.
     Raises:
         DerivationError: which bodies can move, and how.
     """
@@ -348,10 +351,10 @@ def refuse_loose(structure: Structure, degrees_of_freedom: int = 0) -> None:
 
 
 def stays(structure: Structure) -> bool:
-    """Whether what nothing resists stays where it is all the same.
+    """True if the bodies stay in place although nothing resists some of their motions.
 
-    A straight body does not turn about its own line. Where the loads do no work what hangs on strings hangs still, and
-    so does a machine of which an unknown load is asked for.
+    So it is where only straight bodies could turn about their own lines, or where the loads do no work and the moving
+    bodies hang on strings, or an unknown load is sought.
     """
     if structure.turns_idly:
         return True
@@ -360,7 +363,7 @@ def stays(structure: Structure) -> bool:
 
 
 def _hangs(structure: Structure, plan: VelocityPlan) -> bool:
-    """Whether a string pulls every body that moves."""
+    """True if a string pulls every body that moves in the plan."""
     system = structure.system
     constraints = system.scope.model.constraints
     ropes = [
@@ -430,7 +433,7 @@ def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
 
 
 def _screw(plan: VelocityPlan, block: RigidBlock) -> str:
-    """In space: the axis through w x v_O / w.w along w, and the advance along it."""
+    """Description of a screw motion in space: the axis through w x v_O / w.w along w, and the advance along it."""
     w, v = block.spin, block.velocity
     square = dot(w, w)
     place = tuple(plan.simple(over(x, square)) for x in cross(w, v))

@@ -42,7 +42,7 @@ class PlanCenter:
     """The centre of rotation of a body in the plane.
 
     Args:
-        place: where it is; None: at infinity, the body translates, or everywhere, it is at rest.
+        place: its position; None: at infinity, the body translates, or everywhere, it is at rest.
         direction: of a translation, the velocity of all points; (0, 0, 0) at rest; None for a centre in sight.
     """
 
@@ -55,12 +55,12 @@ class VelocityPlan:
     """A field of velocities of rigid bodies, a velocity plan.
 
     Args:
-        system: whose bodies.
+        system: the system of the bodies.
         at: the configuration.
-        parameters: values of 50 digits at which the motion is what it is for all others, or is asked for.
+        parameters: values of 50 digits at which scalars are tested: generic ones, or the requested ones.
         velocities: of each body (velocity of the mass centre, spin) in the axes of its equations, 6.
-        places: where those points are that were asked for; plans of one structure share them.
-        known: what scalars are worth that were asked for; shared too.
+        places: cache of the positions of points; plans of one structure share it.
+        known: cache of the values of scalars; shared too.
     """
 
     system: System
@@ -97,11 +97,11 @@ class VelocityPlan:
         return self.simple.vector(self.raw_spin(body))
 
     def center_velocity(self, body: str) -> Vector:
-        """Of the mass centre, ground axes."""
+        """Velocity of the mass centre, ground axes."""
         return self.simple.vector(self.field(body).v)
 
     def velocity(self, place: BodyPoint) -> Vector:
-        """Of a place of a body, ground axes; of the ground 0."""
+        """Velocity of a point of a body, ground axes; of the ground 0."""
         return self.simple.vector(self.raw_velocity(place))
 
     def raw_spin(self, body: str | None) -> Vector:
@@ -114,7 +114,7 @@ class VelocityPlan:
         return ZERO if body is None else self.raw_velocity_at(body, self.position(place))
 
     def raw_velocity_at(self, body: str, position: Vector) -> Vector:
-        """Of the point of a body that is at a place of the ground, ground axes, not written out."""
+        """Velocity of the point of a body that is at a position in space, ground axes, not written out."""
         return self.field(body).velocity(position)
 
     def field(self, body: str) -> VelocityField:
@@ -128,7 +128,7 @@ class VelocityPlan:
         return VelocityField(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
 
     def position(self, place: BodyPoint) -> Vector:
-        """Of a place in this configuration, ground axes."""
+        """Position of a point of a body in this configuration, ground axes."""
         if place not in self.places:
             self.places[place] = vector_of(substituted(self.system.motion.position(place), self.at))
         return self.places[place]
@@ -161,7 +161,7 @@ class VelocityPlan:
         return SIXTH * self.simple(sqrt(self.simple(dot(along, along)))) * total
 
     def work_of_effects(self, effects: Sequence[Effect]) -> Scalar:
-        """Of forces and couples as the bodies' equations hold them, not written out."""
+        """Power of forces and couples in the form of the bodies' equations, not written out."""
         total: Scalar = 0
         for effect in effects:
             pairs = zip(substituted(effect.six, self.at), self.velocities[effect.link], strict=True)
@@ -173,7 +173,7 @@ class VelocityPlan:
         return vector_of(substituted(in_ground_axes(self.system.motion, vector, axes), self.at))
 
     def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
-        """Whether all of them are 0, beside what they are multiples of."""
+        """True if all scalars are 0, compared with the largest of `beside`."""
         nodes = [x for x in scalars if type(x) is Node]
         if len(nodes) < len(scalars) and not all(is_zero(x) for x in scalars if type(x) is not Node):
             return False
@@ -184,7 +184,7 @@ class VelocityPlan:
         return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers(nodes))
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
-        """What scalars are worth at these parameters, with 50 digits."""
+        """Values of scalars at these parameters, with 50 digits."""
         new = tuple(dict.fromkeys(x for x in scalars if x not in self.known))
         if new:
             self.known.update(zip(new, evaluate(new, self.parameters, fifty_digits()), strict=True))
@@ -209,7 +209,7 @@ class VelocityPlan:
         return self.velocities[self.system.motion.index[body]]
 
     def _in_ground(self, body: str, components: Sequence[Scalar]) -> Vector:
-        """From the axes of the body's equations."""
+        """Vector in ground axes of components in the axes of the body's equations."""
         vector = vector_of(components)
         if self._axes.plane:
             return vector
@@ -230,12 +230,12 @@ NodeNumbers = Sequence[Any]
 
 @dataclass(frozen=True)
 class RigidBlock:
-    """What moves as one rigid body.
+    """Parts that move as one rigid body.
 
     Args:
         bodies: their names.
         members: of trusses, (truss, "n1-n2").
-        nodes: of trusses, of which no member moves along: points.
+        nodes: nodes of trusses without a member that moves with them: points.
         spin: angular velocity, ground axes.
         velocity: of the point of the block at the ground's origin, ground axes.
     """
@@ -296,7 +296,7 @@ def resting_blocks(plan: VelocityPlan) -> tuple[str, ...]:
 
 
 def numeral(number: int) -> str:
-    """By which a textbook names a block: I, II, III, IV, ..."""
+    """Roman numeral by which textbooks name a block: I, II, III, IV, ..."""
     text = ""
     for value, letters in ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I")):
         text += letters * (number // value)
@@ -316,7 +316,7 @@ class _Part:
 
     Args:
         numbers: its spin, and the velocity of its point at the ground's origin, 6, with 50 digits.
-        motion: both in closed form, where they are asked for.
+        motion: both in closed form, computed on request.
     """
 
     bodies: tuple[str, ...]
@@ -336,18 +336,18 @@ def _bodies(plan: VelocityPlan) -> Iterable[_Part]:
 
 @dataclass(frozen=True)
 class _Group:
-    """What moves as one.
+    """Group of parts that move as one.
 
     Args:
         parts: the first has the numbers of all.
-        known: of the nodes that were asked, whether they move with it.
+        known: cache of the nodes tested: True if they move with the group.
     """
 
     parts: list[_Part]
     known: dict[str, bool] = field(default_factory=dict)
 
     def carries(self, node: str, moving: NodeNumbers) -> bool:
-        """Whether a node in the plane moves with it: v = v_0 + w x r."""
+        """True if a node in the plane moves with the group: v = v_0 + w x r."""
         if node not in self.known:
             _, _, w, v_x, v_y, _ = self.parts[0].numbers
             vx, vy, x, y = moving
@@ -383,7 +383,7 @@ def _nodes_of(plan: VelocityPlan, members: Sequence[Member]) -> Callable[[str], 
 
 
 def _numbers_of(one: NodeNumbers, other: NodeNumbers) -> tuple[Any, ...]:
-    """Of a member by its nodes, w = r x (v_2 - v_1) / r.r; () of one that does not keep its length."""
+    """Spin and velocity of a member from its nodes, w = r x (v_2 - v_1) / r.r; () if its length changes."""
     (vx, vy, x, y), (wx, wy, x_2, y_2) = one, other
     ax, ay, dx, dy = wx - vx, wy - vy, x_2 - x, y_2 - y
     if abs(ax * dx + ay * dy) > ZERO_AT_50:

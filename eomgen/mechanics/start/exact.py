@@ -504,9 +504,9 @@ def values_for(
 
 
 # -------- numeric value ---------------------------------------------------------------------------------------
-# Scope -> Worth: what scalars are worth at the model's parameters, with 50 digits, and whether they vanish there.
+# Scope -> ScalarValues: values of scalars at the model's parameters, with 50 digits, and a test if they vanish there.
 #
-# Parameters without a value, and symbols that were left free, are something at random.
+# Parameters without a value, and symbols that were left free, have random values.
 
 
 def known_parameters(scope: Scope) -> dict[Node, float]:
@@ -528,12 +528,12 @@ def shown_numbers(scalars: Sequence[Scalar | None], values: Mapping[Node, Scalar
 
 
 @dataclass(frozen=True)
-class Worth:
-    """Values of scalars.
+class ScalarValues:
+    """Values of scalars at the model's parameters.
 
     Args:
         scope: of the model.
-        tolerance: what counts as zero.
+        tolerance: absolute value below which a scalar counts as zero.
     """
 
     scope: Scope
@@ -548,7 +548,7 @@ class Worth:
         return evaluate(wanted, values, fifty_digits())
 
     def vanish(self, scalars: Iterable[Scalar]) -> bool:
-        """Whether all are zero."""
+        """True if all scalars are zero."""
         return all(abs(x) < self.tolerance for x in self.of(scalars))
 
     def number(self, x: Scalar) -> float | None:
