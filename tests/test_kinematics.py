@@ -384,5 +384,5 @@ def test_a_tie_that_nothing_free_can_close_is_refused_by_name():
     kind = "pin"
     points = ["B.P", "C.P"]
     """
-    with pytest.raises(eomgen.DerivationError, match="row 2 of 'apart' cannot hold: nothing that is free moves it"):
+    with pytest.raises(eomgen.DerivationError, match="row 2 of 'apart' cannot hold: no free coordinate moves it"):
         eomgen.derive(eomgen.loads(text))

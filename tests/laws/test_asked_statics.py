@@ -171,7 +171,7 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
             {},
             "a spring holds only what a coordinate moves",
         ),
-        (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: nothing that is free moves it (it is 3/10 - r off)"),
+        (BARROW.replace("[0, 0.2]", "[0, 0.3]"), {}, "cannot hold: no free coordinate moves it (it is 3/10 - r off)"),
     ],
 )
 def test_it_is_said_what_is_wrong(text, requested, reported):
@@ -311,7 +311,7 @@ outputs = { D = "drive(s)" }
 def test_friction_under_what_is_all_driven_is_refused_at_rest_and_answered_where_it_slides():
     """mu m g moves it while s' > 0; at rest friction and drive share one force: the reason is named."""
     model = eomgen.loads(DRIVEN_ON_A_FLOOR)
-    with pytest.raises(eomgen.EomgenError, match="'floor' cannot stick: what is driven slides it"):
+    with pytest.raises(eomgen.EomgenError, match="'floor' cannot stick: a drive makes it slide"):
         eomgen.statics(model)
     found = eomgen.solve(model)
     assert found["D"].value == pytest.approx(0.3 * 2 * 9.81)

@@ -1,1 +1,1 @@
-"""Constraints: their rows, their rank, what they eliminate, and the states that satisfy them."""
+"""Constraints: their rows, their rank, the elimination of dependent speeds, and the states that satisfy them."""

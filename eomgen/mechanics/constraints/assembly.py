@@ -1,6 +1,4 @@
-"""Constraints -> where coordinates start that they place, and whether branches meet there.
-
-Constraints -> where the coordinates start that the constraints place, or move.
+"""Constraints -> start values of the coordinates that they determine, and the forks where branches of motion meet.
 
 phi(q) = 0        dependent coordinates from their guesses, then the nearest place of all others
 """
@@ -47,11 +45,10 @@ SEEDS = (11, 12)  # of values for parameters that have none: what is no closed f
 
 
 def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
-    """Where the coordinates start that the constraints place, or move: in closed form, else in numbers; {} where none
-    do.
+    """Start values that the constraints change from the declared ones, in closed form or else in numbers.
 
     Raises:
-        DerivationError: a place has no closed form, and parameters have no value.
+        DerivationError: a value has no closed form, and parameters have no value.
     """
     scope, rows = constraints.motion.scope, gaps_of(constraints)
     if not rows:
@@ -69,7 +66,7 @@ def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
     exact = {q: x for q, x in found.items() if q in moved and all(each.agrees(x, q) for each in located)}
     left = [q for q in moved if q not in exact or depends_on(exact[q], moved)]
     if left and drawn:
-        what = f"where '{left[0].name}' starts has no closed form, and no number while parameters have no value"
+        what = f"the start of '{left[0].name}' has no closed form, and no number while parameters have no value"
         raise DerivationError(what, f"coordinates.{left[0].name}", "give the parameters values")
     return exact | {q: Fraction(str(states[0][q])) for q in left}
 
@@ -87,7 +84,7 @@ def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int
 
 
 def _differs(declared: Scalar, q: Node, state: State) -> bool:
-    """Whether a coordinate is not where it is declared to start."""
+    """True if a coordinate differs from its declared start."""
     before = float(evaluate((declared,), state, fifty_digits())[0])
     return abs(float(state[q]) - before) > COMPUTED * (1 + abs(before))
 
@@ -205,10 +202,10 @@ class Fork:
 
 
 def fork_at(constraints: Constraints, state: State) -> Fork | None:
-    """Whether the closing rows are less independent there than elsewhere; None where they are not.
+    """The fork at a state where the rank of the closing rows is less than elsewhere; None where it is not.
 
     Raises:
-        MissingValues, DerivationError: the constraints close nowhere near.
+        MissingValues, DerivationError: the constraints cannot be satisfied near.
     """
     if not constraints.closing or not constraints.motion.scope.symbols.u:
         return None
@@ -229,12 +226,12 @@ def fork_at(constraints: Constraints, state: State) -> Fork | None:
 
 
 def leads_on(constraints: Constraints, fork: Fork, state: State) -> bool:
-    """Whether accelerations exist with these speeds: J a + gamma = 0."""
+    """True if accelerations exist with these speeds: J a + gamma = 0."""
     return bool(_Search(constraints, fork, state, ()).size(np.zeros(0)) <= CARRIED)
 
 
 def is_at_rest(constraints: Constraints, state: State) -> bool:
-    """Whether all speeds are 0 there."""
+    """True if all speeds are 0 in the state."""
     return all(abs(state[u]) <= SOLVED for u in constraints.motion.scope.symbols.u)
 
 
@@ -276,7 +273,7 @@ class _Search:
         return min(found, key=lambda d: float(np.linalg.norm(d)), default=None)
 
     def size(self, d: np.ndarray) -> float:
-        """What is left of both equations, against the size of the terms."""
+        """Largest residual of both equations, relative to the size of the terms."""
         return float(np.max(np.abs(self.left(d)), initial=0.0))
 
     def left(self, d: np.ndarray) -> np.ndarray:

@@ -1,8 +1,6 @@
-"""Constraints -> states at which the loops close, and the nearest one to a rough state.
+"""Constraints -> states that satisfy them, phi = 0 and J u + sigma = 0, in numbers of 50 digits.
 
-Constraints -> states in which the loops close: phi = 0 and J u + sigma = 0, in numbers of 50 digits.
-
-Where loops are redundant the rank of J shows only as well as phi = 0 holds: an error d of the position
+Where loops are redundant the rank of J can be seen only as precisely as phi = 0 holds: an error d of the position
 makes redundant rows differ by d. So positions are sought to 1e-28.
 """
 
@@ -209,7 +207,7 @@ def nearest_root(
 
 @dataclass(frozen=True)
 class _Gaps:
-    """What is open in a state, and its slopes by the free coordinates, measured in sizes of these."""
+    """Gaps of the constraints in a state, and their slopes by the free coordinates, measured in sizes of these."""
 
     gaps: tuple[Scalar, ...]
     derivatives: tuple[Scalar, ...]
@@ -337,9 +335,9 @@ def _unit(J: np.ndarray, M: np.ndarray | None) -> np.ndarray:
 
 
 def regular(constraints: Constraints, state: State, free: Sequence[Node]) -> bool:
-    """Whether the gaps are as independent there as in a configuration that is not special.
+    """True if the gaps are as independent in a state as in a configuration that is not special.
 
-    Slopes are measured by those of that configuration: where all gaps are flat none is.
+    Slopes are compared with those of that configuration: where all slopes vanish, the state is not regular.
     """
     J = [_slope(constraints, each, free) for each in (state, _another(constraints, state, free))]
     _, rows, columns = balanced(J[1])
@@ -359,24 +357,24 @@ def _another(constraints: Constraints, state: State, free: Sequence[Node]) -> St
 
 
 def far(constraints: Constraints, before: State, after: State, given: Sequence[Node]) -> bool:
-    """Whether a given coordinate moved the gaps by more than a turn of 1 rad of some coordinate does."""
+    """True if the change of a given coordinate moved the gaps by more than a change of 1 of any given one would."""
     slopes = _slopes(_slope(constraints, after, given))
     moved = [abs(float(after[q] - before[q])) for q in given]
     return bool(np.any(slopes * np.array(moved) > np.max(slopes, initial=0.0)))
 
 
 def is_guess(model: Model, name: str) -> bool:
-    """Whether nobody gave the start of a coordinate or speed."""
+    """True if the start of a coordinate or speed is not given, or is only a guess by `near`."""
     return not _given(model, name)
 
 
 def is_typed(model: Model, name: str) -> bool:
-    """Whether a person typed the start of a coordinate or speed, in place of what the model declares."""
+    """True if a person typed the start of a coordinate or speed, in place of what the model declares."""
     return any(value.typed for value in _given(model, name))
 
 
 def _given(model: Model, name: str) -> list[Expression]:
-    """What says where a coordinate or speed starts; of a declared speed without a start the speeds of its rates."""
+    """Expressions of the start of a coordinate or speed; for a declared speed without one, those of its rates."""
     if name in model.coordinates:
         part = model.coordinates[name]
         found = [part.start if part.near is None else None]
@@ -410,7 +408,10 @@ def _moved(constraints: Constraints, state: State, free: Sequence[Node]) -> Cons
 
 
 def _nearest(constraints: Constraints, state: State, free: Sequence[Node], guessed: Sequence[Node]) -> State | None:
-    """By moving these alone, from where they stand, then from other guesses; the nearest of those that leap."""
+    """The nearest state that satisfies the constraints with only `free` moved; None where none is found.
+
+    The search starts where they stand, then at other guesses; of states that are all far away, the nearest.
+    """
     given = [q for q in free if q not in guessed]
     leaps: list[tuple[float, State]] = []
     for start in _guesses(state, [q for q in free if q in guessed]):
@@ -477,7 +478,7 @@ def _slope(constraints: Constraints, state: State, free: Sequence[Node]) -> np.n
 
 
 def _slopes(J: np.ndarray) -> np.ndarray:
-    """How far each column moves the gaps, none of them nothing."""
+    """Length of each column of J, bounded below so that none is 0."""
     lengths = np.linalg.norm(J, axis=0)
     return np.asarray(np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0)))
 

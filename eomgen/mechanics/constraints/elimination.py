@@ -2,8 +2,8 @@
 
     J_d u_d + J_i u_i + sigma = 0   ->   u_d = A u_i + b,   N = [1; A],   nu = [0; b]
 
-Linear even where positions are not. A and b have the determinant of J_d below the line: where it vanishes (a dead
-centre, a change point) the dependent coordinates do not follow the independent ones, and have no value.
+Linear even where positions are not. A and b have the determinant of J_d as denominator: where it vanishes (a dead
+centre, a change point) the independent coordinates do not determine the dependent ones.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]
-FAR = (3.0, 1.0, 0.3)  # from the start, at which chosen rows are looked at
+FAR = (3.0, 1.0, 0.3)  # distances from the start at which chosen rows are tested
 FAR_STATES = 8
 LEAN = 0.02  # of the largest share of the chosen rows in the determinant of all
 SHAKEN = (2, 3)  # seeds of states with parameters of their own
@@ -57,13 +57,13 @@ class DependentBlock:
 
 @dataclass(frozen=True)
 class Elimination:
-    """What dependent coordinates leave.
+    """Result of the elimination of dependent coordinates.
 
     Args:
         scope: the symbols and kinematic equations with the independent speeds alone.
-        used: the rows that hold by it: of those that determine dependent rates, the coordinate that each would leave
-            free; of those that follow from them, "".
-        blocks: what must stay regular.
+        used: the rows satisfied by it: for a row that determines dependent rates, the coordinate that would be free
+            without it; for a row that follows from these, "".
+        blocks: the matrices J_d that must stay regular.
     """
 
     scope: Scope
@@ -99,7 +99,7 @@ def refuse_undetermined(elimination: Elimination | None, scope: Scope, place: Ma
     """
     for block in singular_blocks(elimination, scope):
         if is_zero(substituted((block.determinant,), place)[0]):
-            fix = "start beside it, or leave out `dependent`: then their rates belong to the state"
+            fix = "start near it, or leave out `dependent`: then their rates belong to the state"
             raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
 
 
@@ -168,7 +168,7 @@ def _dependent_speeds(constraints: Constraints) -> list[int]:
 
 
 def _difficulty(constraints: Constraints, i: int, dependent: Sequence[int]) -> tuple[int, int, int]:
-    """How much work a row makes: numbers before parameters before what moves, few coefficients, short ones."""
+    """Sort key of a row by its cost: constant entries before parameters before variables, then few, then short ones."""
     scope = constraints.motion.scope
     moving = (*scope.symbols.q, scope.symbols.t)
     entries = [constraints.J[i][k] for k in dependent if not is_zero(constraints.J[i][k])]
@@ -186,7 +186,7 @@ def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept:
 
 
 def _released_by(J_d: np.ndarray) -> list[int]:
-    """Of each row a dependent speed of its own that moves where that row alone is taken away: J_d^-1 is not zero."""
+    """Dependent speed of each row, all different, that becomes free without that row: its entry of J_d^-1 is not 0."""
     moved = abs(np.linalg.inv(J_d)).T
     found = cramer.matching([np.flatnonzero(row > RANK * max(row)).tolist() for row in moved])
     return [found[i] for i in range(len(J_d))]
@@ -221,7 +221,7 @@ class _LinearRows:
         constraints: all of them.
         numbers: J at a state in which they hold.
         rows: of the closing rows.
-        dependent, kept: which speeds are solved for, and which are not.
+        dependent, kept: indices of the speeds that are solved for, and of those that are not.
         vanishing: (row, speed) of entries that vanish wherever the constraints hold.
         are_squared: whether they are taken together, J_d^T (J_d u_d + J_i u_i + sigma) = 0.
     """
@@ -245,9 +245,9 @@ class _LinearRows:
         return replace(self, vanishing=frozenset((int(i), int(k)) for i, k in np.argwhere(zero)))
 
     def lean(self, sharing: Sequence[int]) -> bool:
-        """Whether the rows come to depend on one another where with those that share they do not.
+        """True if the chosen rows become dependent at some states where all rows together do not.
 
-        |J_d|^2 / |J_d^T J_d of all| at states far from one another, at which the constraints hold.
+        Measured by |J_d|^2 / |J_d^T J_d of all rows| at states far from one another that satisfy the constraints.
         """
         lengths = np.linalg.norm(self.numbers, axis=1, keepdims=True)
         rows, shares = [*self.rows, *sharing], []

@@ -1,4 +1,4 @@
-"""Model -> Freedom: the degrees of freedom by rank; what rows of velocities really are."""
+"""Model -> Freedom: the degrees of freedom by rank; the integrability of velocity constraints."""
 
 from __future__ import annotations
 
@@ -32,12 +32,10 @@ from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import LinearSystem, Pivots, general_solution
 
 # -------- freedom ---------------------------------------------------------------------------------------------
-# Model -> Freedom: the degrees of freedom by rank, beside the count by formula; redundant constraints by name.
+# Model -> Freedom: the degrees of freedom by rank and by the count of formulas; redundant constraints by name.
 #
-# By rank:     f = nu - rank J  at a generic configuration in which the constraints hold; of a quaternion's four rates
-# its
-# norm
-#              takes one.
+# By rank:     f = nu - rank J  at a generic configuration in which the constraints hold; the norm of a quaternion
+#              takes one of its four rates.
 # By formula:  f = 3 Nb + 2 Np - sum of the components of joints, constraints and given motions
 #              (in space 6 Nb + 3 Np); it counts redundant components too, and then says too little.
 
@@ -73,11 +71,10 @@ class Freedom:
         formula: the same as text.
         redundant: closing rows that follow from those declared before them; then rows that only react, and hold what
             joints or other constraints hold already.
-        identical_rows: what the coordinates satisfy by themselves: it only carries a reaction.
+        identical_rows: rows that the coordinates satisfy by themselves: they only carry a reaction.
         closing_rows: the others.
         not_counted: why not, or "".
-        integrability: what the rows of velocities alone are, None where there are none; degrees of freedom in position
-            may be
+        integrability: of the rows of velocities alone, None where there are none; degrees of freedom in position may be
             more than those in velocity.
     """
 
@@ -168,7 +165,7 @@ def is_particle(motion: Motion, link: BodyLink) -> bool:
 
 
 def _components(constraints: Constraints, link: BodyLink, free: int, columns: TwistColumns) -> int:
-    """How many components of motion the joint takes; what is placed, or has no joint, keeps all.
+    """Number of components of motion that the joint takes away; 0 for a placed body or one without a joint.
 
     A variable that is a constant (`angle = 0`) is one more, unless a constraint that this satisfies is counted for it.
     """
@@ -187,7 +184,7 @@ def _ways(motion: Motion, link: BodyLink) -> TwistColumns:
 
 
 def _sliding(columns: TwistColumns) -> TwistColumns:
-    """Those that turn nothing."""
+    """The columns without a rotation."""
     return tuple((w, v) for w, v in columns if all(is_zero(x) for x in w))
 
 
@@ -232,10 +229,10 @@ def redundant_rows(constraints: Constraints, state: State | None = None) -> tupl
 
 
 def rows_alike(constraints: Constraints) -> tuple[int, ...]:
-    """Of each closing row a number that it has together with those with which it shares what it holds.
+    """Number of the group of each closing row; rows of one group depend linearly on one another.
 
-    Which of them is the one that follows may change along a motion: d cos q = 0 and d sin q = 0 hold d in turns. Rows
-    are of one kind where their lengths are, at a generic state, within LONGER of one another.
+    The row of a group that is redundant may change along a motion: d cos q = 0 and d sin q = 0 determine d in turns.
+    Rows are of one kind where their lengths are, at a generic state, within LONGER of one another.
     """
     own = tuple(range(len(constraints.closing)))
     if len(own) < 2:
@@ -352,12 +349,12 @@ def _own_ways(motion: Motion, link: BodyLink, state: State, loose: Container[str
 
 
 def is_placed(link: BodyLink) -> bool:
-    """Whether it stands where it is said to, and no joint holds it there."""
+    """True if a body stands where the model places it, without a joint that carries a reaction."""
     return link.joint is None or not link.joint.carries_reaction
 
 
 def _carried(link: BodyLink, state: State) -> np.ndarray:
-    """From the parent's twist to the child's that moves with it, at the child's origin."""
+    """Matrix from the parent's twist to that of a child fixed to it, at the child's origin."""
     R = _numbers([x for row in link.local.R for x in row], state).reshape(3, 3).T
     turned = np.block([[R, np.zeros((3, 3))], [np.zeros((3, 3)), R]])
     found: np.ndarray = _shifted(-_numbers(link.point, state)) @ turned @ _shifted(_numbers(link.local.p, state))
@@ -375,8 +372,7 @@ def _numbers(scalars: Sequence[Scalar], state: State) -> np.ndarray:
 
 
 # -------- integrability ---------------------------------------------------------------------------------------
-# Constraints -> what the rows of velocities alone really are: holonomic or not, and how many degrees of freedom there
-# are in position.
+# Constraints -> integrability of the rows of velocities alone, and the number of degrees of freedom in position.
 #
 # Over y = (q, t) a row J q' + sigma = 0 is a form w = J dq + sigma dt; rows with a gap, the norms of quaternions and
 # driven coordinates are others, each of them integrable. By Frobenius a row can be integrated together with these
@@ -384,10 +380,10 @@ def _numbers(scalars: Sequence[Scalar], state: State) -> np.ndarray:
 #
 #     dw(X, Y) = X^T (dw_b/dy_a - dw_a/dy_b) Y = 0   for all X, Y that all of them allow.
 #
-# What velocities reach is spanned by the fields X and their Lie brackets [X, Y] = (dY/dy) X - (dX/dy) Y, taken until
-# nothing new comes: its dimension, less one for t, counts the degrees of freedom in position (Rashevskii, Chow).
-# Source: Bloch,
-# Nonholonomic Mechanics and Control, 2nd ed., sections 2.2 and 4.1.
+# The reachable directions are spanned by the fields X and their Lie brackets [X, Y] = (dY/dy) X - (dX/dy) Y, taken
+# until nothing new comes: their dimension, less one for t, is the number of degrees of freedom in position
+# (Rashevskii, Chow).
+# Source: Bloch, Nonholonomic Mechanics and Control, 2nd ed., sections 2.2 and 4.1.
 
 
 LONGEST = 400  # characters of a form that is integrated in closed form
@@ -413,7 +409,7 @@ class VelocityRow:
 
 @dataclass(frozen=True)
 class Integrability:
-    """What the rows of velocities alone are.
+    """Integrability of the rows of velocities alone.
 
     Args:
         rows: each of them.
@@ -464,12 +460,12 @@ class _Forms:
 
 
 def integrability_of(constraints: Constraints) -> Integrability | None:
-    """What the closing rows of velocities alone are; None where there are none.
+    """Integrability of the closing rows of velocities alone; None where there are none.
 
     Args:
         constraints: over the rates, before any elimination.
     Raises:
-        MissingValues, DerivationError: the constraints do not close near the start.
+        MissingValues, DerivationError: the constraints cannot be satisfied near the start.
     """
     moving = tuple(row for row in constraints.closing if row.gap is None)
     if not moving:

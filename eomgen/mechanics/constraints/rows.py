@@ -119,7 +119,7 @@ class Constraints:
     rows: tuple[Row, ...]
 
     def __getstate__(self) -> dict[str, Any]:
-        """Without what was found of them."""
+        """State to be pickled, without the cached results."""
         return {name: value for name, value in self.__dict__.items() if name != RECALLED}
 
     @property
@@ -195,9 +195,9 @@ def _held_on_path(motion: Motion, link: BodyLink) -> ConstraintRow:
 
 
 def _dragged(name: str) -> DerivationError:
-    """That what is driven slides a contact which was to stick."""
-    what = f"'{name}' cannot stick: what is driven slides it, and nothing that is free moves it"
-    fix = "at rest its friction and the drive share one force: leave the friction out, or ask `solve`, where it slides"
+    """Error: a contact that was to stick is made to slide by a drive."""
+    what = f"'{name}' cannot stick: a drive makes it slide, and no free coordinate moves it"
+    fix = "at rest its friction and the drive share one force: leave the friction out, or use `solve`, where it slides"
     return DerivationError(what, f"constraints.{name}", fix)
 
 
@@ -225,7 +225,8 @@ def _row(motion: Motion, name: str, number: int, row: ConstraintRow, *, used: bo
     if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
         if row.gap is None and row.rate is None:
             raise _dragged(name)
-        what, fix = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
+        what = "no free coordinate moves it"
+        fix = "put its points where they meet, or give the bodies more degrees of freedom"
         off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", fix)
     return Row(
@@ -286,7 +287,7 @@ def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
 
 
 def _holds(motion: Motion, scalar: Scalar) -> bool:
-    """Whether the scalar is zero whatever the motion; where roots and sizes choose a branch, on that of the start.
+    """True if the scalar is zero in every motion; of roots and absolute values, on the branch of the start.
 
     L - |L - x| - x is zero wherever x < L, as at the start, and not for all x and L.
     """
@@ -300,7 +301,7 @@ def _holds(motion: Motion, scalar: Scalar) -> bool:
 
 
 def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
-    """States beside the start, at parameters beside the model's; none where a value is missing."""
+    """States near the start, at parameters near the model's; none where a value is missing."""
     scope, rng, digits = motion.scope, Random(5), fifty_digits()
     known = exact_parameters(scope.model)
     symbols = scope.symbols
@@ -321,9 +322,9 @@ def _aside(rng: Random) -> Fraction:
 
 
 def _is_met(motion: Motion, gap: Scalar) -> bool:
-    """Whether bodies that all stand still meet at the model's own values: 0.2 and r with r = 0.2."""
-    worth = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
-    return worth is not None and abs(worth) < SOLVED
+    """True if the gap of bodies that all stand still vanishes at the model's own values: 0.2 and r with r = 0.2."""
+    value = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
+    return value is not None and abs(value) < SOLVED
 
 
 def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
@@ -345,7 +346,7 @@ def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Sca
 
 
 def _slide(motion: Motion, pushes: tuple[Push, ...]) -> Scalar:
-    """What points that move in their bodies add to the power of the pushes."""
+    """Power that pushes have from points that move in their bodies."""
     return sum((slide_power(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
 
 
@@ -367,12 +368,12 @@ def slide_power(motion: Motion, push: PointForce) -> Scalar:
 
 
 def holds_identically(scalar: Scalar) -> bool:
-    """Whether the scalar is zero at all values of its symbols (exactly, at random states)."""
+    """True if the scalar is zero at all values of its symbols (exactly, at random states)."""
     return hold_identically((scalar,))[0]
 
 
 def hold_identically(scalars: Sequence[Scalar]) -> list[bool]:
-    """Of each whether it is zero at all values of its symbols; what they share is evaluated once."""
+    """True for each scalar that is zero at all values of its symbols; shared parts are evaluated once."""
     groups = [[(x, 0)] for x in scalars if type(x) is Node]
     verdicts = iter(equal_in_field(groups) if groups else ())
     return [_settled(x, next(verdicts)) if type(x) is Node else is_zero(x) for x in scalars]
@@ -383,17 +384,17 @@ def _settled(x: Scalar, verdict: Equality | None) -> bool:
 
 
 # -------- edges -----------------------------------------------------------------------------------------------
-# Motion -> Edges: where a constraint no longer says at which place it holds its bodies (a wheel that lies flat).
+# Motion -> Edges: the limits of a constraint, at which it no longer determines where it acts (a wheel that lies flat).
 #
-# Beyond its limits a constraint goes on as it was, though what it stands for does not: a run that passes them is told
-# of it.
+# Beyond its limits a constraint continues as it was although its physical meaning ends: a run that passes them reports
+# it.
 
 
 LOOKED = 200  # rows of a run at which limits are looked at
 
 
 def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
-    """Of all constraints of the model but those that are open."""
+    """Edges of all constraints of the model except the open ones."""
     constraints = [
         (name, constraint) for name, constraint in motion.scope.model.constraints.items() if name not in open
     ]
@@ -405,7 +406,7 @@ def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
 
 
 def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
-    """What is left until a motion ends at each of them."""
+    """Distance left to each edge, at which a motion ends."""
     return tuple(edge.vanishes - Fraction(AT_AN_EDGE) for edge in edges)
 
 

@@ -1,1 +1,1 @@
-"""Equations of motion: the system, the ways to derive them, accelerations, and what is known before anything moves."""
+"""Equations of motion: the system, the ways to derive them, accelerations, and properties known before any motion."""

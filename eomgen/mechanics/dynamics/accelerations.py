@@ -143,7 +143,7 @@ Matrix6 = list[list[Scalar]]
 
 @dataclass(frozen=True)
 class JointElimination:
-    """What is left of one eliminated column: speed index k, column s, I s, d and r."""
+    """Quantities of one eliminated column for the back substitution: speed index k, column s, I s, d and r."""
 
     k: int
     s: Six

@@ -1,5 +1,6 @@
-"""Equations of motion -> accelerations and multipliers: by determinants, the shortest formulas of small systems, or by
-factors, whose pivots vanish at no state.
+"""Equations of motion -> accelerations and multipliers, by determinants or by factors.
+
+Determinants give the shortest formulas of small systems; the pivots of factors vanish at no state.
 
 M a - J^T lam = forcing,   J a = -gamma
 """

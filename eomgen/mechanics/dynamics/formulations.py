@@ -214,7 +214,7 @@ def force_side(loads: Loads) -> ScalarRow:
 
 
 def applied_to_bodies(loads: Loads) -> dict[str, Wrench]:
-    """What is applied to each body, efforts of joints included: at its origin, in its axes."""
+    """Applied wrench on each body, efforts of joints included: at its origin, in its axes."""
     motion = loads.motion
     wrenches = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
     wrenches += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]
@@ -323,7 +323,7 @@ def derived_by(method: str, system: System) -> EquationsOfMotion:
 #
 #     0 = Q_k(q, q', t)        of a free coordinate k with M_kj = 0 for all j, in place of M_k a + c_k = Q_k
 #
-# Between springs it is a constraint of places, beside a damper one of rates: the node's rate is that of a first-order
+# Between springs it is a constraint of positions, with a damper one of rates: the node's rate is that of a first-order
 # state.
 # The multiplier of such a constraint is 0, as nothing else is left along the coordinate; all others keep their
 # equations.
@@ -341,7 +341,7 @@ def with_nodes_balanced(model: Model) -> Model:
 
 
 def reported_of_nodes(model: Model) -> tuple[str, ...]:
-    """What such a model assumes, in words."""
+    """Sentences that state the assumption of such a model."""
     constraints = [name for name, constraint in model.constraints.items() if isinstance(constraint, NodeBalance)]
     follows = "moves no mass: it follows from the balance of what pushes it"
     return tuple(f"{name.removeprefix(PREFIX)} {follows} ({name})" for name in constraints)
@@ -368,7 +368,7 @@ def _balanced(model: Model) -> Model:
 
 
 def _is_lean(body: Body) -> bool:
-    """Whether a body may have no mass."""
+    """True if a body may have no mass: none is given, or one that is 0."""
     masses = [body.mass, getattr(body.shape, "mass", None)]
     given = [x for x in masses if x is not None]
     return not body.parts and (not given or any(x.literal == 0 for x in given))

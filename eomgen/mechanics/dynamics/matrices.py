@@ -1,4 +1,4 @@
-"""Equations of motion -> matrices that users ask for: g(q), C(q, u), Jacobians, a system of sympy."""
+"""Equations of motion -> matrices for users: g(q), C(q, u), Jacobians, a system of sympy."""
 
 from __future__ import annotations
 

@@ -51,7 +51,7 @@ from eomgen.symbolic.solve.solving import vanishes
 # motion, states around, and from each of them by Newton's method over every switch into the next.
 
 
-MOST = 64  # pieces that are told apart
+MOST = 64  # pieces that are distinguished
 MOST_OF_ONE = 12  # pieces of one quantity that are entered, evenly spread: a road of 100 arcs is one formula in each
 ROUNDS = 3  # of entering pieces from those found
 STEPS, LONG = 24, 0.1  # steps along the own motion, and of how many seconds
@@ -76,11 +76,11 @@ class Condition:
 
 @dataclass(frozen=True)
 class Extent:
-    """Where something holds.
+    """Extent of a property: everywhere, under conditions, or nowhere.
 
     Args:
-        everywhere: in every piece.
-        within: where not everywhere: the conditions under which it does, met at the start; () nowhere.
+        everywhere: True if it holds in every piece.
+        within: if not everywhere, the conditions under which it holds, satisfied at the start; () nowhere.
     """
 
     everywhere: bool
@@ -90,7 +90,7 @@ class Extent:
         return self.everywhere or bool(self.within)
 
     def __and__(self, other: Extent) -> Extent:
-        """Where both hold."""
+        """Extent in which both properties hold."""
         if not self or not other or (self.everywhere and other.everywhere):
             return EVERYWHERE if self.everywhere and other.everywhere else NOWHERE
         return Extent(False, tuple(dict.fromkeys((*self.within, *other.within))))
@@ -102,7 +102,7 @@ class Extent:
 
     @property
     def limits(self) -> tuple[Scalar, ...]:
-        """What is negative inside the pieces in which it holds."""
+        """Scalars that are negative inside the pieces in which the property holds."""
         return tuple(x.left - x.right if x.relation == "<=" else x.right - x.left for x in self.within)
 
 
@@ -111,7 +111,7 @@ EVERYWHERE, NOWHERE = Extent(True), Extent(False)
 
 @dataclass(frozen=True)
 class Division:
-    """The pieces of some scalars, looked for when they are first asked.
+    """The pieces of some scalars, searched at their first use.
 
     Args:
         system: whose they are.
@@ -134,7 +134,7 @@ class Division:
         return self.search.start
 
     def where(self, decide: Callable[[Choices], bool]) -> Extent:
-        """Where a property holds that is decided piece by piece: what fails where the motion starts holds nowhere."""
+        """Extent of a property that is decided piece by piece; nowhere if it fails in the piece of the start."""
         if self.start is not None and not self._decided(decide, self.start):
             return NOWHERE
         if not self.found:
@@ -165,7 +165,7 @@ class Division:
         return [(self.nodes[k], self.start[k]) for k in kept]
 
     def conditions(self, x: Node, choice: int) -> Iterator[Condition]:
-        """What holds where a node chooses so."""
+        """Conditions under which a node makes this choice."""
         if x.op == "sampled":
             ends = sampled_of(x.args[1]).spline.bounds
             if choice > 0:
@@ -193,7 +193,7 @@ class Division:
 
 
 def moving_symbols(system: System) -> frozenset[Node]:
-    """What changes along a motion."""
+    """Symbols that change along a motion: t, q, u, a, lam and the inputs."""
     symbols = system.symbols
     return frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values()))
 
@@ -216,7 +216,7 @@ def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Divi
 def where_holds(
     equations: EquationsOfMotion, scalars: Sequence[Scalar], decide: Callable[[tuple[Scalar, ...]], bool]
 ) -> Extent:
-    """Where a property of scalars holds; `decide` is asked of them as they are in each piece."""
+    """Extent of a property of scalars; `decide` is called with the form that they have in each piece."""
     division = division_of(equations, scalars)
     if division is None:
         return EVERYWHERE if decide(tuple(scalars)) else NOWHERE
@@ -225,7 +225,7 @@ def where_holds(
 
 
 def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
-    """Where a function of the motion does not jump: everywhere, or in the piece of the start alone."""
+    """Extent in which a function of the motion does not jump: everywhere, or the piece of the start alone."""
     division = division_of(equations, (x,))
     if division is None:
         return EVERYWHERE
@@ -405,22 +405,22 @@ class _Search:
 
 
 def _spread(count: int) -> list[int]:
-    """Of so many pieces of one quantity some, evenly spread, the first and the last among them."""
+    """Indices of at most MOST_OF_ONE of `count` pieces, evenly spread, with the first and the last."""
     many = min(count, MOST_OF_ONE)
     return sorted({round(i * (count - 1) / (many - 1)) for i in range(many)}) if many > 1 else [0]
 
 
 # -------- jumps -----------------------------------------------------------------------------------------------
-# Forces, a state -> whether a force jumps there: dry friction that is written as -c*sign(x'), where nothing slides.
+# Forces, a state -> True if a force jumps there: dry friction that is written as -c*sign(x'), where nothing slides.
 #
-# At rest such a force may have any value in between, and whether it holds is not said by the equations of motion.
+# At rest such a force may have any value in between, and the equations of motion do not say if it holds.
 
 
 SMOOTH = "tanh(w/eps) in place of sign(w) runs, and creeps where dry friction sticks: the slower, the smaller eps is"
 
 
 def signs_of_rates(system: System) -> tuple[Scalar, ...]:
-    """What stands in sign(...) in the forces, and changes with a rate."""
+    """Arguments of sign(...) in the forces that depend on speeds."""
     if signs_of_rates not in system.found:
         forces = generalized_forces(system.loads)
         given = [node.args[0] for node in order(forces) if node.op == "sign"]

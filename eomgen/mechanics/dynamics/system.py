@@ -40,16 +40,15 @@ from eomgen.symbolic.numeric.evaluation import transplanted
 
 @dataclass(frozen=True)
 class System:
-    """What every formulation assembles from: the three suppliers, which do not see one another.
+    """Motion, loads and constraints from which every formulation assembles the equations; none of them uses another.
 
     Args:
         motion, loads, constraints: over the independent speeds alone.
-        modes: how the contacts are that can end, slide or stick, by constraint.
-        elimination: how the dependent coordinates follow; None where there are none.
+        modes: states of the contacts that can end, slide or stick, by constraint.
+        elimination: that of the dependent coordinates; None where there are none.
         free: the same system with every rate a speed, dependent coordinates free and all constraints closing; None
-            where it
-            is the same.
-        declared: the rates that follow from declared speeds, and where these do not determine them.
+            where it is the same.
+        declared: the rates that follow from declared speeds, with the places where these do not determine them.
     """
 
     motion: Motion
@@ -74,11 +73,11 @@ class System:
 
     @cached_property
     def found(self) -> dict[Any, Any]:
-        """What was found of it once, and is asked by many: its reactions."""
+        """Cache of results that several stages use, as its reactions."""
         return {}
 
     def standing(self, places: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
-        """At t = 0, nothing moving: the coordinates where they are said to be, and the inputs there."""
+        """State at t = 0 with all speeds and accelerations 0: the given coordinates, and the inputs there."""
         symbols = self.symbols
         still = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0), **places}
         own = substituted(tuple(self.inputs[name] for name in symbols.inputs), still)
@@ -125,7 +124,7 @@ def free_system_of(
 
 
 def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:
-    """Where coordinates of a system start that do not start where they are declared to, in another scope."""
+    """Start values, in another scope, of the coordinates of a system whose start is not the declared one."""
     places = system.loads.begun
     values = transplanted(tuple(places.values()), scope.graph, scope.names)
     own = {q.name: q for q in scope.symbols.q}
@@ -168,7 +167,7 @@ def powered_forces(loads: Loads) -> ScalarRow:
 
 
 def acting(loads: Loads, holds: Callable[[ScalarRow], bool]) -> str:
-    """What acts with generalized forces of which something holds, by its name: "the force 'd' and the joint of 'x'"."""
+    """Names of the forces and joints whose generalized forces have a property: "the force 'd' and the joint of 'x'"."""
     found = [f"the force '{force.name}'" for force in loads.applied if holds(force_row(loads, force))]
     found += [f"the joint of '{effort.body}'" for effort in loads.efforts if holds(effort_row(loads.motion, effort))]
     return " and ".join(dict.fromkeys(found))

@@ -1,4 +1,4 @@
-"""Equations of motion -> what can be said of energy and mass before anything moves, and where they have no value."""
+"""Equations of motion -> statements on energy and mass before any motion, and places where a force has no value."""
 
 from __future__ import annotations
 
@@ -30,16 +30,16 @@ from eomgen.symbolic.print.text import text_size, to_text
 # Equations of motion -> what can be said of its energy and its mass before anything moves.
 
 
-LONG = 120  # characters of a balance that is told
+LONG = 120  # characters of a balance that is printed
 
 
 def is_conservative(equations: EquationsOfMotion) -> bool:
-    """Whether T + V stays in every motion: nothing moves by itself, and Q is -N^T dV/dq alone, in every piece."""
+    """True if T + V is conserved: nothing moves as prescribed, and Q is -N^T dV/dq alone, in every piece."""
     return where_conservative(equations).everywhere
 
 
 def where_conservative(equations: EquationsOfMotion) -> Extent:
-    """In which pieces of min, max, abs, sign, cases and samples T + V stays."""
+    """Extent, in pieces of min, max, abs, sign, cases and samples, in which T + V is conserved."""
     t = equations.symbols.t
     by_itself = (*equations.nu, *equations.sigma)
     if any(not is_zero(x) for x in by_itself) or depends_on(equations.V, (t,)) or depends_on(equations.T, (t,)):
@@ -56,7 +56,7 @@ def where_conservative(equations: EquationsOfMotion) -> Extent:
 
 
 def why_not_conservative(equations: EquationsOfMotion) -> str:
-    """What keeps T + V from staying, in words; "" where it stays."""
+    """Reason in words why T + V is not conserved everywhere; "" where it is."""
     held = where_conservative(equations)
     if held.everywhere:
         return ""
@@ -107,7 +107,7 @@ def _massless(equations: EquationsOfMotion, k: int) -> Problem:
 
 
 def _by_its_balance(equations: EquationsOfMotion, k: int) -> str:
-    """How a node between springs, or springs and dampers, follows from its own balance; "" where nothing pushes it."""
+    """Advice to let a node between springs and dampers follow from its own balance; "" where no such force acts."""
     force, u = equations.forcing[k], equations.symbols.u[k]
     q = next((q for q in equations.symbols.q if f"{q.name}'" == u.name), None)
     if q is None or is_zero(force) or text_size(force) > LONG or not depends_on(force, (q, u)):
@@ -136,21 +136,21 @@ def _idle(equations: EquationsOfMotion) -> tuple[Problem, ...]:
 
 
 def _is_full(system: System) -> bool:
-    """Whether every body has inertia in all directions, and every speed is that of one joint: M is regular."""
+    """True if every body has inertia in all directions, and every speed is that of one joint: M is regular."""
     rates = [rate for link in system.motion.links for rate in link.s_rate]
     own = len(rates) == len(set(rates)) and set(rates) == set(system.symbols.u)
     return own and not any(_is_lean(system, link) for link in system.motion.links)
 
 
 def _is_lean(system: System, link: BodyLink) -> bool:
-    """Whether a body has motions without kinetic energy, as far as zeros on the diagonal of its inertia tell."""
+    """True if the mass or a diagonal entry of the inertia of a body is 0: motions without kinetic energy."""
     mass = mass_properties(system.scope, link.name)
     axes = (2,) if system.scope.model.space == "plane" else range(3)
     return is_zero(mass.m) or any(is_zero(mass.I[k][k]) for k in axes)
 
 
 def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
-    """Whether all motions have, those that the constraints forbid too: M is regular."""
+    """True if all motions have kinetic energy, those that the constraints forbid too: M is regular in the state."""
     values = {node: float(x) for node, x in state.items()}
     M = np.array(evaluate([x for row in equations.M for x in row], values, FLOAT)).reshape(len(equations.M), -1)
     sizes = np.diag(M)
@@ -180,7 +180,7 @@ def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, fl
 
 
 def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Problem:
-    """Which body turns idly, or which coordinates move nothing."""
+    """Problem that names a body that turns without inertia, or coordinates that move no mass."""
     moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > SHARE]
     names = ", ".join(f"'{name}'" for name in moving)
     for link in system.motion.links:
@@ -214,7 +214,7 @@ REASONS = {
 
 @dataclass(frozen=True)
 class Valueless:
-    """What has no value in a state.
+    """Part of a model that has no value in a state.
 
     Args:
         where: its path in the model.

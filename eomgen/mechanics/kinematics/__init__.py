@@ -1,1 +1,1 @@
-"""Where bodies are and how they move: the symbols of a derivation, motions, masses, applied loads."""
+"""Kinematics and loads of bodies: the symbols of a derivation, poses and twists, masses, applied loads."""

@@ -108,7 +108,7 @@ def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:
 
 
 def _orientation(link: BodyLink) -> tuple[Scalar, ...]:
-    """What tells how a body stands: its angle in the plane, its rotation matrix in space."""
+    """Orientation of a body: its angle in the plane, the entries of its rotation matrix in space."""
     return (link.angle,) if link.angle is not None else tuple(x for row in link.pose.R for x in row)
 
 
@@ -168,7 +168,7 @@ def armature_mass(motion: Motion) -> list[tuple[int, int, Scalar]]:
 
 
 def armature_bias(motion: Motion, size: int) -> list[Scalar]:
-    """What is added to c: armature D_k (d/dt s' at a = 0), and what given energies take at a = 0."""
+    """Terms added to c: armature D_k (d/dt s' at a = 0), and those of given energies at a = 0."""
     c: list[Scalar] = [0] * size
     for link, k, armature in armatures(motion):
         bias = motion.scope.time_derivative((link.s_rate[k],))[0]
@@ -199,7 +199,7 @@ def given_momenta(scope: Scope) -> ScalarRow:
 
 
 def given_inertia(scope: Scope) -> ScalarRow:
-    """What given energies take along each speed: their share of M a + c."""
+    """Share of given energies in M a + c, along each speed."""
     taken = list(_given_bias(scope))
     for i, j, value in _given_mass(scope):
         taken[i] = taken[i] + value * scope.symbols.a[j]

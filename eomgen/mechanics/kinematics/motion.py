@@ -1,4 +1,4 @@
-"""Scope -> Motion: where every body is and how it moves, over the scalars of the graph."""
+"""Scope -> Motion: pose and twist of every body, over the scalars of the graph."""
 
 from __future__ import annotations
 
@@ -47,8 +47,8 @@ from eomgen.symbolic.solve.solving import vanishes
 #
 #     xi_i = Ad(parent -> i) xi_parent + S s',      s' = D u + d.
 #
-# Two descriptions of velocity are kept apart on purpose: the twists of this recursion, and the time derivatives of
-# the poses. The certificate compares them.
+# Two descriptions of velocity stay separate on purpose: the twists of this recursion, and the time derivatives of the
+# poses. The certificate compares them.
 
 
 GROUND = -1
@@ -87,7 +87,7 @@ class BodyLink:
 
     @property
     def local(self) -> Pose:
-        """Where the joint leaves the child's axes and the joint point, in the parent."""
+        """Pose of the child's axes and of the joint point, in the parent."""
         return self.before.then(self.relative)
 
 
@@ -108,7 +108,7 @@ class Motion:
 
     @cached_property
     def decided(self) -> dict[Node, None]:
-        """The scalars whose numbers at the start have decided what loads and constraints are (`SystemScene.worth`)."""
+        """Scalars whose values at the start decided the form of loads and constraints (`SystemScene.worth`)."""
         return {}
 
     @cached_property
@@ -141,7 +141,7 @@ class Motion:
         return {}
 
     def moves(self, scalars: tuple[Scalar, ...]) -> bool:
-        """Whether any of the scalars depends on coordinates or time."""
+        """True if any of the scalars depends on coordinates or time."""
         moving = {*self.scope.symbols.q, self.scope.symbols.t}
         return any(symbol in moving for symbol in symbols_of(scalars))
 
@@ -159,14 +159,14 @@ class Motion:
 
     @cached_property
     def B(self) -> tuple[tuple[tuple[Scalar, ...], ...], ...]:
-        """Of each body the 6 rows of xi = B u + beta (angular first, body origin, body axes)."""
+        """The 6 rows of B of each body, xi = B u + beta (angular first, body origin, body axes)."""
         twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
         rows = jacobian(tuple(twists), self.scope.symbols.u)
         return tuple(tuple(rows[6 * i : 6 * i + 6]) for i in range(len(self.links)))
 
     @cached_property
     def alpha(self) -> tuple[tuple[Scalar, ...], ...]:
-        """Of each body the 6 entries of xi' = B a + alpha."""
+        """The 6 entries of alpha of each body, xi' = B a + alpha."""
         twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
         rates = self.scope.time_derivative(tuple(twists))
         return tuple(tuple(rates[6 * i : 6 * i + 6]) for i in range(len(self.links)))
@@ -307,12 +307,12 @@ def shortened_twist(twist: Twist) -> Twist:
 
 
 def _turned_angle(scope: Scope, joint: Any) -> Scalar:
-    """In the plane: the angle of the fixed rotations before the joint, all of them about z."""
+    """Angle of the fixed rotations before the joint in the plane, all of them about z."""
     return sum((scope.value(turn.angle) for turn in joint.turned or ()), start=0)
 
 
 def _seat(scope: Scope, joint: Any) -> Vector:
-    """Where the joint sits, parent's axes: `at`, or the parent's point named by `on`."""
+    """Position of the joint, parent's axes: `at`, or the parent's point named by `on`."""
     on = joint.on
     if on is not None and "." in on:
         body, point = on.split(".", 1)
@@ -358,7 +358,7 @@ def slide_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
 
 @dataclass(frozen=True)
 class Lock:
-    """Where the angles of one body are locked: the determinant of their axes is zero."""
+    """Gimbal lock of the three angles of a body: the determinant of their axes is zero there."""
 
     body: str
     determinant: Scalar
@@ -368,7 +368,7 @@ class Lock:
 
 
 def locks_of(motion: Motion) -> tuple[Lock, ...]:
-    """Of each body that turns by three angles, one of them at least free to change, where they lock."""
+    """Gimbal locks of the bodies that turn by three angles, at least one of them free to change."""
     found = []
     for link in motion.links:
         sequence = getattr(link.joint, "orientation", None)
@@ -480,21 +480,24 @@ def field_of(motion: Motion, body: str) -> VelocityField:
 
 
 def rotation_center(field: VelocityField) -> Vector:
-    """In the plane: the point of the body at rest, p_O + omega x v_O / omega^2.
+    """Instantaneous centre of rotation in the plane, the body's point without velocity: p_O + omega x v_O / omega^2.
 
     Raises:
-        DerivationError: omega = 0 for good; what was left to say is that it translates or rests.
+        DerivationError: omega = 0 in every motion: the body translates or is at rest.
     """
     if vanishes(field.w[2]):
         state = "rests" if all(vanishes(x) for x in field.v) else "translates"
         raise DerivationError(
-            f"the body {state}: it has no centre of rotation at a finite place", fix="ask while the body turns"
+            f"the body {state}: it has no centre of rotation at a finite place",
+            fix="choose a state in which the body turns",
         )
     return plus(field.p, times(over(1, field.w[2]), cross(UP, field.v)))
 
 
 def acceleration_pole(field: VelocityField) -> Vector:
-    """In the plane: the point without acceleration, p_O + (omega^2 a_O + epsilon x a_O)/(omega^4 + epsilon^2).
+    """Acceleration pole in the plane, the point without acceleration.
+
+    p_O + (omega^2 a_O + epsilon x a_O)/(omega^4 + epsilon^2)
 
     Raises:
         DerivationError: omega = epsilon = 0: all points have the same acceleration.
@@ -503,14 +506,14 @@ def acceleration_pole(field: VelocityField) -> Vector:
     if vanishes(w) and vanishes(e):
         raise DerivationError(
             "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
-            fix="ask while the body turns",
+            fix="choose a state in which the body turns",
         )
     arm = plus(times(w * w, field.a), cross(field.e, field.a))
     return plus(field.p, times(over(1, w * w * w * w + e * e), arm))
 
 
 def axis_point(field: VelocityField) -> Vector:
-    """In space: the point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega."""
+    """Point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega, in space."""
     return plus(field.p, times(over(1, dot(field.w, field.w)), cross(field.w, field.v)))
 
 

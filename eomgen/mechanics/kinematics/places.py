@@ -51,12 +51,12 @@ class Located:
         return float(evaluate((x,), self.numbers, FLOAT)[0])
 
     def agrees(self, x: Scalar, node: Node) -> bool:
-        """Whether x is worth what the node is worth there."""
+        """True if x has the value that is known of the node."""
         number = self.numbers.get(node, math.nan)
         return abs(self.value(x) - number) <= CARRIED * (1 + abs(number))
 
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
-        """The candidate that the node is worth there, the nearest of several; whole turns added if it has them.
+        """The candidate with the value known of the node, the nearest of several; whole turns added if it has them.
 
         A turn is 2 pi, or 2 pi/q where the node stands in waves of q times it alone. A candidate of more than a page is
         none: no reader follows it, and what depends on it would be longer still.
@@ -73,7 +73,7 @@ class Located:
         return min(found, key=lambda each: each[0])[1] if found else None
 
     def root(self, equation: Scalar, node: Node) -> Scalar | None:
-        """The root of the equation that the node is worth there."""
+        """The root of the equation with the value known of the node."""
         return self.chosen(roots(equation, node, self.positive, Work.VALUE), node, equation)
 
 
@@ -158,8 +158,8 @@ def _relation(left: Sequence[Scalar], unknowns: Collection[Node], located: Locat
 def _of_loop(left: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:
     """The unknowns of two equations that hold no third one, each by the equation without the other; {}: none such.
 
-    One that has a short root comes alone: put in, it leaves a shorter one for the other. So a parallelogram hands on
-    the angle of its crank itself, rather than an arc tangent that is worth it.
+    One that has a short root comes alone: put in, it leaves a shorter one for the other. So a parallelogram gives the
+    angle of its crank itself, rather than an arc tangent of the same value.
     """
     found: dict[Node, Scalar] = {}
     for i, j, q, first, second in _loops(left, unknowns):
@@ -176,7 +176,7 @@ def _of_loop(left: Sequence[Scalar], unknowns: Collection[Node], located: Locate
 
 
 def _joined(left: list[Scalar], unknowns: Collection[Node], located: Located) -> bool:
-    """In place of one equation of a loop, the one without the angle that both hold; False where there is no loop."""
+    """Replaces one equation of a loop by one without the angle common to both; False where there is no loop."""
     loop = next(_loops(left, unknowns), None)
     if loop is None:
         return False

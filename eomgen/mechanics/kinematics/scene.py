@@ -1,4 +1,4 @@
-"""Motion -> SystemScene: what force laws and constraints ask of a system, in which mode of its contacts."""
+"""Motion -> SystemScene: quantities of a system for force laws and constraints, in a given mode of its contacts."""
 
 from __future__ import annotations
 
@@ -35,11 +35,11 @@ from eomgen.symbolic.print.text import to_text
 
 @dataclass(frozen=True)
 class SystemScene:
-    """What the force laws and the constraints ask of a system in motion.
+    """Quantities of a system in motion from which force laws and constraints are built.
 
     Args:
-        where: the part that asks, for messages.
-        begun: where coordinates start that do not start where they are declared to.
+        where: the part that uses them, for messages.
+        begun: start values of the coordinates whose start is not the declared one.
     """
 
     motion: Motion
@@ -95,7 +95,7 @@ class SystemScene:
         return self.motion.carrier_of(first, second)
 
     def seen_from(self, body: str | None) -> SystemScene:
-        """The same as a body sees it that carries what is asked for: its axes stand for the ground's."""
+        """The scene seen from a body that carries the part: its axes stand for the ground's."""
         return self if body is None else SystemScene(self.motion.seen_from(body), self.where, self.begun)
 
     def angle(self, body: str) -> Scalar:
@@ -182,7 +182,7 @@ class SystemScene:
         return self.own_place(body, line[0]), self.own_place(body, line[1])
 
     def radius(self, body: str) -> Scalar:
-        """Of the body's round shape [m]."""
+        """Radius of the body's round shape [m]."""
         shape: Any = self.motion.scope.model.bodies[body].shape
         return self.value(shape.radius)
 
@@ -194,7 +194,7 @@ class SystemScene:
         return self.motion.moves(scalars)
 
     def vanishes(self, scalar: Scalar) -> bool:
-        """Whether the scalar is zero whatever the values of its symbols."""
+        """True if the scalar is zero whatever the values of its symbols."""
         return scalar == 0 if type(scalar) is not Node else equal_at_random_states([(scalar, 0)]).equal
 
     def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
@@ -215,12 +215,12 @@ class SystemScene:
 
 
 def start_values(scope: Scope, among: Iterable[Node] | None = None) -> dict[Node, Scalar]:
-    """Where coordinates start, as expressions of the parameters; None: all of them."""
+    """Start values of coordinates, as expressions of the parameters; of all of them for None."""
     return {q: start_value(scope, q) for q in (scope.symbols.q if among is None else among)}
 
 
 def start_value(scope: Scope, q: Node) -> Scalar:
-    """Where a coordinate starts, as an expression of the parameters."""
+    """Start value of a coordinate, as an expression of the parameters."""
     coordinate = scope.model.coordinates[q.name]
     if coordinate.motion is not None:
         return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
@@ -270,7 +270,7 @@ def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node,
 
 @dataclass(frozen=True)
 class ContactMode:
-    """How one contact is.
+    """State of one contact.
 
     Args:
         closed: False: the contact is open, the string slack.

@@ -1,4 +1,4 @@
-"""Model -> Scope: the symbols of one derivation, and what every name of an expression stands for."""
+"""Model -> Scope: the symbols of one derivation, and the scalars for which the names of expressions stand."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import cramer
 
 # -------- scope -----------------------------------------------------------------------------------------------
-# Model -> Scope: the symbols of one derivation, and what every name of an expression stands for.
+# Model -> Scope: the symbols of one derivation, and the scalars for which the names of expressions stand.
 #
 # q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero row of N and its
 # given rate in nu; a dependent one has the row that the constraints give, and is free until then. Declared speeds take
@@ -83,7 +83,7 @@ class Scope:
 
     @cached_property
     def combines(self) -> bool:
-        """Whether some of its speeds are combinations of rates."""
+        """True if some of its speeds are combinations of rates."""
         return any(self.model.speeds[u.name].rate is not None for u in self.symbols.u if u.name in self.model.speeds)
 
     @cached_property
@@ -222,7 +222,7 @@ def _speeds_by_rates(model: Model, names: Mapping[str, Scalar]) -> dict[str, Sca
 
 
 def _is_long(law: Scalar, t: Node) -> bool:
-    """Whether a given rate or acceleration reads better by a name: a function of t, or a long constant; no samples."""
+    """True if a given rate or acceleration is named to be readable: a function of t or a long constant, no samples."""
     if type(law) is not Node or law.op == "sampled":
         return False
     return depends_on(law, (t,)) or length_of(law) > LONGEST_LAW
@@ -307,7 +307,7 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
 
 
 def _has_rooted_sines(f: Scalar, x: Node) -> bool:
-    """Whether sines or cosines of x stand under a root: integrals of such are elliptic but for a few."""
+    """True if sines or cosines of x are under a root: integrals of these are elliptic, with few exceptions."""
     under = [a for node in order((f,)) if node.op == "sqrt" for a in node.args if holds_op(a, "sin", "cos")]
     return any(depends_on(node, (x,)) for node in order(under) if node.op in ("sin", "cos"))
 
@@ -396,8 +396,8 @@ def shorter_row(x: Scalar) -> Scalar:
 #     q' = N u + nu of the rates that are left,  w = Y u + y   ->   u = Y^-1 (w - y),   q' = (N Y^-1) w + (nu - N Y^-1
 #         y)
 #
-# A coordinate whose rate stands in no declared speed keeps it for a speed. The four rates of a quaternion follow from
-# the angular velocity, e' = 1/2 e o (0, w), without any inverse. The speeds are the rates that are kept, in the order
+# A coordinate whose rate occurs in no declared speed has this rate as a speed. The four rates of a quaternion follow
+# from the angular velocity, e' = 1/2 e o (0, w), without any inverse. The speeds are the remaining rates, in the order
 # of the coordinates, then the declared ones in the order of the model.
 
 
@@ -425,8 +425,8 @@ def with_declared_speeds(
         vanishes: whether a scalar is zero at all states.
         shorter: puts a coefficient of N into a shorter form.
     Raises:
-        ModelError: not one speed for each freedom; a speed that is not linear in the rates; speeds that depend on one
-            another.
+        ModelError: not one speed for each degree of freedom; a speed that is not linear in the rates; speeds that
+            depend on one another.
     """
     u, graph = scope.symbols.u, scope.graph
     declared = tuple(name for name, part in scope.model.speeds.items() if part.rate is not None)
@@ -533,5 +533,5 @@ def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node
             "a coordinate that constraints determine may be `dependent`"
         )
     else:
-        fix = "one for each freedom: leave out what follows from the others"
+        fix = "declare one for each degree of freedom: leave out those that follow from the others"
     raise ModelError(f"{what} ({named})", "speeds", fix)

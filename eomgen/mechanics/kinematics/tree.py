@@ -1,4 +1,4 @@
-"""Motion -> Branches: the tree of bodies as the recursive methods walk it, and Newton-Euler over it."""
+"""Motion -> Branches: the tree of bodies for the recursive methods, and the Newton-Euler recursion over it."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ class Branch:
         p_rate, p_bias: apparent velocity and acceleration (at a = 0) of its origin in the parent, parent's axes.
         w, w_bias: angular velocity against the parent and its apparent rate at a = 0, own axes.
         columns: per speed index k the column of the joint's own twist, at the origin.
-        moments: mass of the body, regrouped: what a hinge cannot tell from mass of its parent is put there.
+        moments: mass of the body, regrouped: mass that a hinge cannot distinguish from mass of its parent is put there.
         axes: from body axes to working axes.
     """
 
@@ -117,7 +117,7 @@ def origin_of(motion: Motion, link: BodyLink) -> Vector:
 
 
 def offset_of(motion: Motion, link: BodyLink) -> Vector:
-    """From the parent's origin to this branch's, in the parent's body axes."""
+    """Vector from the parent's origin to this branch's, in the parent's body axes."""
     place = link.local.point(minus(origin_of(motion, link), link.point))
     return place if link.parent == GROUND else minus(place, origin_of(motion, motion.links[link.parent]))
 
@@ -206,7 +206,7 @@ def _own_moments(motion: Motion, link: BodyLink, plane: bool) -> Moments:
 
 
 def _flat(moments: Moments, plane: bool) -> Moments:
-    """In the plane only the polar moment Jxx + Jyy counts: it is kept as Jxx, which no rotation changes."""
+    """Moments of the body; in the plane with the polar moment Jxx + Jyy in place of Jxx, which no rotation changes."""
     if not plane:
         return moments
     polar = moments.J[0][0] + moments.J[1][1]
