@@ -14,12 +14,10 @@ from eomgen.symbolic.numeric.work import seldom_from_now_on
 
 
 def run() -> NoReturn:
-    """The process is gone with its last word: graphs are not taken apart node by node, which takes a sixth of its time.
+    """Runs the command line and ends the process at once; graphs are not freed node by node (1/6 of the time).
 
-    Nor are they looked through for cycles before.
-
-    What others asked for at the end of the process is done first. Where another thread is at work, or a profiler looks
-    on, all is as usual.
+    They are not searched for cycles at the end, either. Functions registered with `atexit` run first. Where another
+    thread is running, or a profiler is active, the process ends in the usual way.
     """
     seldom_from_now_on()
     code: Any = 0
@@ -37,7 +35,7 @@ def run() -> NoReturn:
 
 
 def _is_watched() -> bool:
-    """Whether a profiler, a debugger or a measure of coverage has its own last word."""
+    """True if a profiler, a debugger or a coverage tool is active, which has to write its results at the end."""
     monitoring = getattr(sys, "monitoring", None)  # of Python 3.12 on, six tools
     tools = monitoring is not None and any(map(monitoring.get_tool, range(6)))
     return bool(sys.getprofile() or sys.gettrace() or tools)

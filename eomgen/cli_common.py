@@ -1,4 +1,4 @@
-"""What every verb of the command line shares: how it is run, where its model comes from, where its result goes.
+"""Common parts of all verbs of the command line: how a verb is run, where its model is read and its result written.
 
 Results go to stdout, everything else to stderr.
 """
@@ -127,7 +127,7 @@ class Source:
     name: str
 
     def warned(self, document: Document, model: Model) -> Document:
-        """The document of a model made of it; what is hardly meant in that is told at its place in the text."""
+        """The document of a model made of it; cautions about the model get their place in the text."""
         from eomgen.model.reader import located, warned
 
         own = tuple(located(problem, self.data, self.name) for problem in document.cautions)
@@ -136,11 +136,11 @@ class Source:
 
 @dataclass(frozen=True)
 class Delivery:
-    """What a verb tells.
+    """The result of a verb, as it is written.
 
     Args:
-        text: its result in the form that was asked.
-        lines: what is said beside it, on stderr.
+        text: its result in the requested form.
+        lines: messages, written to stderr.
         code: the exit code.
     """
 
@@ -149,7 +149,10 @@ class Delivery:
     code: int
 
     def deliver(self, output: str | None = None, *, on_stderr: bool = False) -> int:
-        """The result to stdout, into a file or beside the messages, these to stderr; the exit code."""
+        """Writes the result to stdout or into a file, and the messages to stderr; returns the exit code.
+
+        The result too goes to stderr where `on_stderr` is set.
+        """
         if on_stderr:
             sys.stderr.write(self.text)
         else:
@@ -160,7 +163,7 @@ class Delivery:
 
 
 def delivery_of(document: Document, form: str, *, strict: bool = False) -> Delivery:
-    """What is told of a document.
+    """The text, messages and exit code of a document.
 
     Args:
         strict: warnings end in exit 1.
@@ -177,7 +180,7 @@ def delivery_of(document: Document, form: str, *, strict: bool = False) -> Deliv
 def deliver(
     document: Document, form: str, output: str | None = None, *, on_stderr: bool = False, strict: bool = False
 ) -> int:
-    """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code."""
+    """Writes the result in its form to stdout or into a file, and the messages to stderr; returns the exit code."""
     return delivery_of(document, form, strict=strict).deliver(output, on_stderr=on_stderr)
 
 
@@ -196,7 +199,7 @@ def deliver_several(
 ) -> int:
     """A result of each of several models, one after the other, in JSON a list; the largest exit code.
 
-    A model that is wrong is told, and the next one follows.
+    The problems of a wrong model are reported, and the next one follows.
     """
     from eomgen.documents import rendered
     from eomgen.documents.proven import proven_as
@@ -232,7 +235,7 @@ def put(text: str, output: str | None = None) -> None:
 
 @contextmanager
 def reading(path: str) -> Iterator[Source]:
-    """The model of a file (- is stdin); what a verb finds wrong with one of its parts is told at its place there."""
+    """The model of a file (- is stdin); what a verb finds wrong with one of its parts is reported at its place."""
     from eomgen.model.reader import bytes_at, loads, located
     from eomgen.proof.declared_numbers import numbers_otherwise
 
@@ -245,7 +248,7 @@ def reading(path: str) -> Iterator[Source]:
         if wrong := numbers_otherwise(data, model):
             raise DerivationError(wrong, fix="this is a mistake of eomgen, not of your model")
         yield Source(model, data, name)
-    except EomgenError as error:  # the edge: whatever is wrong is told at its place in the file
+    except EomgenError as error:  # the edge: whatever is wrong is reported at its place in the file
         of_model = isinstance(error, (ModelError, DerivationError, RunFailed))  # no option, file or tool
         problems = tuple(located(problem, data, name, by_name=of_model) for problem in problems_of(error))
         raise Placed(error.exit_code, problems) from error
@@ -269,7 +272,7 @@ def write_requested(
     strict: bool = False,
     **options: Any,
 ) -> int:
-    """The document of a verb, in the form that is asked."""
+    """The document of a verb, in the requested form."""
     form = form_requested(wants_json, format_, output)
     with reading(model) as source:
         document = requested_document(made, source, options, follow)
@@ -300,7 +303,7 @@ def requested_document(
 def write_result(
     found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
 ) -> int:
-    """What a verb finds, at the start or elsewhere, drawn and proven where that is asked."""
+    """Writes the result of a verb, at the start or elsewhere, with its plot and its proof where these are requested."""
     from eomgen.verbs.outcome import shown, with_start_reported
 
     def made(declared: Model, **requested: Any) -> Document:

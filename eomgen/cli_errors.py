@@ -1,4 +1,6 @@
-"""The edge of the command line: whatever leaves a verb becomes a sentence and an exit code, on streams of any kind.
+"""The outermost layer of the command line: whatever leaves a verb becomes a sentence and an exit code.
+
+It is written on streams of any kind.
 
 Exit codes: 0 ok, 1 the model is wrong, 2 usage, 3 derivation or run failed, 4 an optional tool is missing, 70 an
 internal error, 74 a failed write, 130 interrupted; 141 where the reader of stdout went away.
@@ -38,7 +40,7 @@ IN_ASCII = {
 
 
 class Placed(Exception):
-    """What went wrong with a model, at its places in the file."""
+    """Problems of a model, each at its place in the file."""
 
     def __init__(self, exit_code: int, problems: tuple[Problem, ...]) -> None:
         self.exit_code, self.problems = exit_code, problems
@@ -49,7 +51,7 @@ class ReaderGone(Exception):
 
 
 def guarded(verb: Callable[[], int], words: Sequence[str]) -> int:
-    """The exit code of a verb; what went wrong in it is told, for machines too where they are asked for."""
+    """The exit code of a verb; what went wrong in it is reported, with --json as JSON too."""
     wants_json = "--json" in words or "--format json" in " ".join(words).replace("=", " ")
     with _streams(), _signals(), warnings.catch_warnings():
         if not sys.warnoptions:
@@ -66,14 +68,14 @@ def guarded(verb: Callable[[], int], words: Sequence[str]) -> int:
 
 
 def problems_of(error: EomgenError) -> tuple[Problem, ...]:
-    """What an error tells, one by one."""
+    """The problems that an error carries, one by one."""
     if isinstance(error, ModelError):
         return error.problems
     return (Problem(error.where, error.what, fix=error.fix),)
 
 
 def failure(code: int, problems: Sequence[Problem]) -> str:
-    """What went wrong, as JSON."""
+    """The problems of a failed verb as JSON."""
     error = {"exit_code": code, "problems": [problem.as_dict() for problem in problems]}
     return json.dumps({"schema_version": SCHEMA_VERSION, "error": error}, indent=1) + "\n"
 
@@ -84,7 +86,7 @@ def say(line: str) -> None:
 
 
 def in_ascii(character: str) -> str:
-    """What stands for a character where there are only others: dtheta for δθ."""
+    """The ASCII spelling of a character, for streams that can show no others: dtheta for δθ."""
     if character in IN_ASCII:
         return IN_ASCII[character]
     if greek := spelled(character):
@@ -124,7 +126,7 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
             WriteFailed.exit_code,
             (Problem(str(error.filename or ""), f"cannot be written: {error.strerror}"),),
         )
-    except Exception as error:  # the one place where whatever is left is told as what it is: a mistake of ours
+    except Exception as error:  # the one place where whatever is left is reported as what it is: a mistake of ours
         return _internal(error, words)
     return code, found, "\n\n".join(map(str, found))
 
@@ -147,7 +149,7 @@ def _internal(error: Exception, words: Sequence[str]) -> tuple[int, tuple[Proble
 
 
 def _reported(code: int, problems: tuple[Problem, ...], text: str, wants_json: bool) -> int:
-    """The problems on stderr, and for machines on stdout where they are asked for."""
+    """Writes the problems to stderr, and to stdout too where JSON is requested; returns the exit code."""
     if text:
         say(text)
     if problems and wants_json:
@@ -189,7 +191,7 @@ class _Shown:
         """Everything is written already."""
 
     def isatty(self) -> bool:
-        """Whether somebody looks on."""
+        """True if the stream is a terminal."""
         return self._stream is not None and self._stream.isatty()
 
     def _letters(self, text: str) -> str:
@@ -198,7 +200,7 @@ class _Shown:
         return text.translate({ord(c): in_ascii(c) for c in lacking})
 
     def _give_up(self) -> None:
-        """What is left in its buffer goes nowhere, at the end of the process too."""
+        """Sends what is left in the stream's buffer to the null device, so that the end of the process cannot fail."""
         with suppress(OSError, ValueError, AttributeError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), self._stream.fileno())
 

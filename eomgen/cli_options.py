@@ -1,4 +1,4 @@
-"""What verbs are asked on the command line: options that they share, and the endings of the files that they write."""
+"""Options that several verbs share, and the file endings that they write."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def words(context: click.Context, option: click.Parameter, text: str | None) -> 
 
 
 def refuse_beside(option: str, heeded: tuple[str, ...]) -> None:
-    """Refuses what was typed beside an option and would not be heeded.
+    """Refuses what was typed together with an option and would have no effect.
 
     Raises:
         UsageError: something was; all of it is named.
@@ -81,7 +81,7 @@ def refuse_idle(**heeded: tuple[bool, str]) -> None:
     """Refuses what was typed and would change nothing.
 
     Args:
-        heeded: of an option, by the name of its argument: whether it changes something, and what it is for.
+        heeded: {name of the option's argument: (whether it changes something, what it is for)}.
     Raises:
         UsageError: such a one was typed.
     """
@@ -151,7 +151,7 @@ def with_picture(function: Callable[..., int]) -> Callable[..., int]:
 
 
 def form_requested(wants_json: bool, format_: str | None, output: str | None = None) -> str:
-    """The form that is asked, else that of the ending of the file.
+    """The requested form, else that of the ending of the file.
 
     Raises:
         UsageError: no form has that ending.

@@ -1,8 +1,8 @@
-"""What is kept from one process to the next in the user's cache folder: compiled code, derivations.
+"""Files that are cached from one process to the next in the user's cache folder: compiled code, derivations.
 
-Each is a file NAME-DIGEST.SUFFIX: NAME is the digest of all that it hangs on, DIGEST that of NAME and the content. It
-is written beside and renamed. What belongs to another, what others may write, what was cut, turned or renamed is not
-taken for what its name says.
+Each is a file NAME-DIGEST.SUFFIX: NAME is the digest of everything that it depends on, DIGEST that of NAME and the
+content. It is written under another name and then renamed. A file is ignored where it belongs to another user, others
+can write it, or its content does not match its name (cut off, changed or renamed).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def digest(content: bytes) -> str:
 
 
 def cache_folder() -> Path | None:
-    """Where things are kept; None for a user without a home."""
+    """The folder of the cached files; None for a user without a home."""
     try:
         place = Path(platformdirs.user_cache_dir("eomgen"))
     except RuntimeError:
@@ -55,7 +55,7 @@ def cache_place() -> Path:
 
 
 def contents(place: Path, name: str, suffix: str) -> Iterator[tuple[Path, bytes]]:
-    """The files of this name that are what their names say, with what stands in them."""
+    """(path, content) of each intact file of this name, see `content_of`."""
     for path in place.glob(f"{name}-*{suffix}"):
         content = content_of(path)
         if content is not None:
@@ -63,7 +63,7 @@ def contents(place: Path, name: str, suffix: str) -> Iterator[tuple[Path, bytes]
 
 
 def content_of(path: Path) -> bytes | None:
-    """What stands in a file, where it is what its name says, and nobody else can write it."""
+    """The content of a file; None where its name does not match it, or others can write it."""
     try:
         if not is_ours(path) or _others_write(path):
             return None
@@ -74,7 +74,7 @@ def content_of(path: Path) -> bytes | None:
 
 
 def put_whole(made: Path, place: Path, name: str) -> Path:
-    """A file that was made beside, under its name; another process sees all of it or nothing.
+    """Renames a file, complete under another name, to its name in the cache; other processes see all of it or nothing.
 
     Raises:
         OSError: it cannot be put there.
@@ -93,7 +93,7 @@ def used(path: Path) -> None:
 
 
 def is_ours(path: Path) -> bool:
-    """Whether a file or folder belongs to this user; on Windows what is below the user's folder does."""
+    """True if a file or folder belongs to this user; on Windows everything below the user's folder does."""
     return not hasattr(os, "getuid") or path.stat().st_uid == os.getuid()
 
 
@@ -107,7 +107,7 @@ def _others_write(path: Path) -> bool:
 
 
 def _let_go(place: Path, new: Path) -> None:
-    """Takes away what nobody has used for long, and the oldest where there are too many or too large."""
+    """Deletes files unused for long, and the oldest where they are too many or together too large."""
     with suppress(OSError):  # another process does the same
         found = [(path.stat(), path) for path in place.glob(f"*{new.suffix}")]
         size = 0

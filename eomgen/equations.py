@@ -218,7 +218,7 @@ class Equations(Result):
         return self.symbols[str(key)]
 
     def _value(self, given: Any) -> Any:
-        """What a name is replaced by, in sympy."""
+        """The sympy expression that replaces a name."""
         import sympy
 
         from eomgen.symbolic.print.sympy_form import to_sympy
@@ -248,7 +248,7 @@ class Equations(Result):
         """Every reaction of joints and constraints, in q, u and the accelerations.
 
         Raises:
-            DerivationError: a body is held by nothing; a force acts at no place.
+            DerivationError: a body is unsupported; a force has no point of application.
         """
         return reactions_of(self.system)
 
@@ -351,7 +351,7 @@ class Equations(Result):
         Args:
             target: as of `rhs`.
         Raises:
-            DerivationError: a body is held by nothing; a force acts at no place.
+            DerivationError: a body is unsupported; a force has no point of application.
         """
         names, program = self.reactions_program
         return ReactionFunction(names, compiled(program, target))
@@ -392,7 +392,7 @@ class Equations(Result):
         return self._with_assumptions(derivation_of(self.in_print, self.method, full=full, in_time=in_time))
 
     def _with_assumptions(self, derivation: Document) -> Document:
-        """What had to be assumed stands first."""
+        """The derivation with a first step that lists the assumptions."""
         return replace(derivation, steps=(*assumption_steps(self.assumptions), *derivation.steps))
 
     @doing("the derivation, step by step")
@@ -403,7 +403,7 @@ class Equations(Result):
         return replace(self._derivation(full=True), entries=self.entries)
 
     def entries(self) -> dict[str, Any]:
-        """What `derive --json` carries."""
+        """The fields of the JSON of `derive --json`."""
         payload = equations_payload(self.graph, self.method, self._texts)
         return {**payload, "assumptions": list(self.assumptions)}
 

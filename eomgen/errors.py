@@ -1,4 +1,4 @@
-"""What can go wrong, said so that it can be fixed: what is wrong, where, and how to fix it."""
+"""Errors that a user can act on: what is wrong, where, and how to fix it."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ class Problem:
         return visible("\n".join(lines))
 
     def as_dict(self) -> dict[str, str | int | None]:
-        """For machines, its place taken apart: file, line and column where there are any."""
+        """The problem as a JSON object; its place also as file, line and column where it has them."""
         file, line, column = (*self.where.rsplit(":", 2), "", "")[:3]
         placed = line.isdigit() and column.isdigit()
         return {
@@ -95,7 +95,7 @@ class ModelError(EomgenError):
 
 
 class MissingValues(ModelError):
-    """Numbers were asked of parameters that have none; names them all."""
+    """Numbers are needed of parameters that have none; names them all."""
 
     def __init__(self, names: tuple[str, ...], where: str = "") -> None:
         self.names = tuple(names)
@@ -135,7 +135,7 @@ class OpenConstraints(DerivationError):
     """Constraints that no place near the start closes.
 
     Args:
-        nearest: how near they come to closing, in words; it takes a search, and is sought when somebody reads it.
+        nearest: how near they come to closing, in words; found by a search, which runs when it is first read.
     """
 
     def __init__(self, what: str, where: str = "", fix: str = "", nearest: Callable[[], str] = str) -> None:
@@ -146,7 +146,7 @@ class OpenConstraints(DerivationError):
 
     @property
     def what(self) -> str:
-        """What is wrong, and how near it is to being right."""
+        """The description of what is wrong, and how near the constraints come to closing."""
         self._said, self._nearest = self._said + self._nearest(), str
         return self._said
 

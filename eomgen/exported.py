@@ -1,8 +1,8 @@
 """Model -> URDF, for what URDF can say: a tree of links on hinges, slides and free joints; the rest is listed.
 
 A link's frame sits where its joint does, in the axes of its body, and its joint's origin is where that frame is when
-every coordinate is 0; so import gives the same equations again. Names and limits that a remark tells, as import writes
-it, are those of the file: "joint a.b, from -1 to 2 rad, at most 5 N*m, at most 3 rad/s".
+every coordinate is 0; so import gives the same equations again. Names and limits come from a remark of the model,
+as import writes it, where there is one: "joint a.b, from -1 to 2 rad, at most 5 N*m, at most 3 rad/s".
 """
 
 from __future__ import annotations
@@ -146,7 +146,7 @@ class _Writing:
         ]
 
     def _stands(self, link: BodyLink) -> bool:
-        """Whether a link of the ground is fixed to it in the ground's own place and axes."""
+        """True if a link of the ground is fixed to it with the ground's own origin and axes."""
         R, p = (place := link.before.then(link.relative)).R, place.p
         held = all(symbol in self.known for symbol in symbols_of((*link.s, *p, *(x for row in R for x in row))))
         return held and self.numbers((*minus(p, (0, 0, 0)), *(x for row in R for x in row)), link.name) == STANDING
@@ -193,9 +193,9 @@ class _Writing:
         return f'<dynamics damping="{damping!r}"/>'
 
     def _followed(self) -> dict[str, tuple[str, str]]:
-        """Of a coordinate that a constraint makes follow another: (the constraint, how it follows).
+        """{coordinate that a constraint couples to another one: (the constraint, its <mimic> element)}.
 
-        Of the two the later follows, or the one that no motor drives.
+        Of the two coordinates the later one is the follower, or the one that no motor drives.
         """
         found: dict[str, tuple[str, str]] = {}
         driven = {name for name, _ in self._driven()}
@@ -216,7 +216,7 @@ class _Writing:
         return found
 
     def _mimic(self, q: str) -> str:
-        """How a coordinate follows another one."""
+        """The <mimic> element of a coordinate; "" if it follows no other."""
         constraint, how = self.followed.get(q, ("", ""))
         if constraint:
             self.left.setdefault("", []).append(constraint)
@@ -242,7 +242,7 @@ class _Writing:
         return [f"  <transmission name={name}><joint name={name}/></transmission>" for name in names]
 
     def _values(self) -> None:
-        """What of the values that act and start is not said."""
+        """Lists the inputs' values, start values and given motions, which URDF cannot express."""
         model = self.system.scope.model
         acting = [name for name, part in model.inputs.items() if _is_given(part.value)]
         starts = [name for name, part in model.coordinates.items() if _is_given(part.start) or _is_given(part.speed)]
@@ -252,7 +252,7 @@ class _Writing:
                 self.left.setdefault(what, []).extend(names)
 
     def _forces(self) -> None:
-        """What of the forces and constraints is not said."""
+        """Lists the forces and constraints that URDF cannot express."""
         said = set(self.left.pop("", []))
         constraints = [name for name in self.system.scope.model.constraints if name not in said]
         fields = self.numbers(self.system.loads.fields, "forces")

@@ -24,14 +24,14 @@ from eomgen.errors import WriteFailed
 
 try:
     import fcntl
-except ImportError:  # Windows has no locks of this kind: there age tells what nobody uses
+except ImportError:  # Windows has no locks of this kind: there the age decides what nobody uses
     fcntl = None  # type: ignore[assignment]
 
 Content = str | bytes | Callable[[IO[bytes]], object]
 
 PREFIX = ".eomgen-"
 LEFT = re.compile(re.escape(PREFIX) + "[0-9a-f]{16}")
-HOUR = 3600.0  # seconds after which a folder beside is nobody's, where locks cannot tell
+HOUR = 3600.0  # seconds after which a temporary folder is nobody's, where there are no locks
 SILENCE = 30.0  # seconds after which nothing more is awaited of a pipe
 LOOK = 0.1  # seconds between two looks at a silent pipe
 TRIES = 10  # another process may take a new folder away before it is locked
@@ -81,7 +81,7 @@ def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Pa
 
 
 def read(path: str | Path, most: int) -> bytes:
-    """What stands in a file, comes through a pipe or out of a device: so many bytes and one more, which says "longer".
+    """The content of a file, a pipe or a device: at most `most` bytes, and one more if it is longer.
 
     Raises:
         OSError: it cannot be read, or a pipe stays silent.
@@ -97,7 +97,7 @@ def read(path: str | Path, most: int) -> bytes:
 
 
 def read_stdin(most: int) -> bytes:
-    """What comes through stdin, as of `read`; of somebody who types it is awaited as long as it takes.
+    """The content of stdin, read as in `read`; typed input is awaited without a time limit.
 
     Raises:
         OSError: it cannot be read, or a pipe stays silent.
@@ -111,9 +111,9 @@ def read_stdin(most: int) -> bytes:
 
 
 def _through(handle: int, most: int) -> bytes:
-    """Part by part; where as many bytes came as are wanted the next part is empty, as it is at the end.
+    """Reads part by part; after as many bytes as are wanted the next part is empty, as it is at the end.
 
-    It is awaited look by look: between two of them whoever waits less long stops it (--patience).
+    The next part is awaited in short steps, so that a shorter time limit can stop it between two of them (--patience).
     """
     data = b""
     while True:
@@ -220,7 +220,7 @@ def _clear(folder: Path) -> None:
 
 
 def _is_left(place: Path) -> bool:
-    """Whether its process has ended: nobody holds its lock."""
+    """True if the process that made the folder has ended: nobody holds its lock."""
     try:
         if fcntl is None:
             return time.time() - place.stat().st_mtime > HOUR

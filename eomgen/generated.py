@@ -72,11 +72,11 @@ class Generated:
         stem: NAME of the files and functions.
         origin: what the files say that they were made from.
         targets: the languages.
-        actuated: the actuators of inverse dynamics, () for all speeds; None where these are not asked for.
+        actuated: the actuators of inverse dynamics, () for all speeds; None where it is not requested.
         integrator: whether the C has one of its own.
-        float32: whether all is in single precision.
-        slopes: whether the slopes of the right-hand side are asked for.
-        linear: whether the regressor is asked for.
+        float32: True for single precision everywhere.
+        slopes: True if the slopes of the right-hand side are requested.
+        linear: True if the regressor is requested.
     """
 
     model: Model
@@ -126,7 +126,7 @@ class Generated:
 
     @cached_property
     def inverse(self) -> Emitted | None:
-        """Inverse dynamics, described; None where it is not asked for."""
+        """Inverse dynamics, described; None where it is not requested."""
         if self.actuated is None:
             return None
         found = self.equations.inverse_dynamics(self.actuated)
@@ -141,9 +141,9 @@ class Generated:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What is not in the code, and why."""
+        """Remarks on what is not in the code, and why."""
         left = (f"the output {name}: {why}" for name, why in self.equations.requested_outputs.left.items())
-        unfinished = ["matrices: friction hangs on the reactions"] if self.equations.graph.friction else []
+        unfinished = ["matrices: friction depends on the reactions"] if self.equations.graph.friction else []
         open_constraints = (
             "what puts the constraints back as they open by the errors of many steps (--baumgarte lets them pull)"
         )
@@ -168,7 +168,7 @@ class Generated:
 
     @cached_property
     def jacobian(self) -> Emitted | None:
-        """The slopes of the right-hand side, described; None where they are not asked for, or nothing moves."""
+        """The slopes of the right-hand side, described; None where they are not requested, or nothing moves."""
         if not self.slopes or not self.equations.graph.symbols.q:
             return None
         found = self.equations.slopes
@@ -177,7 +177,7 @@ class Generated:
 
     @cached_property
     def regressor(self) -> Emitted | None:
-        """The regressor and its base columns, described; None where it is not asked for.
+        """The regressor and its base columns, described; None where it is not requested.
 
         Raises:
             DerivationError: Coulomb friction of a contact.
@@ -197,8 +197,7 @@ class Generated:
         return regressor_of(self.equations.system)
 
     def _are_single(self, v: TestVector) -> bool:
-        """Whether slopes have one value: where a change opens constraints that follow from others, they hang on the
-        pivots."""
+        """True if the slopes are unique: where a change opens redundant constraints, they depend on the pivots."""
         if not self.equations.graph.J or any(y != y for y in v.result):
             return True
         found = self.equations.rhs_jacobian(v.t, v.x, v.p, v.inputs, single=True)
@@ -262,7 +261,7 @@ class Generated:
         return certify(equations.graph) + more
 
     def _checks(self, plain: Equations) -> Iterator[Check]:
-        """Of every function in every language.
+        """Checks of every function in every language.
 
         Args:
             plain: the equations whose constraints do not pull, in which inverse dynamics is written.
@@ -301,7 +300,7 @@ class Generated:
                 yield self._single(target, emitted)
 
     def _packed(self) -> Iterator[Check]:
-        """What FMUs say of their variables."""
+        """Checks of what FMUs declare of their variables."""
         symbols = self.equations.graph.symbols
         x0, p0 = (() if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
         states = dict(zip((x.name for x in (*symbols.q, *symbols.u)), x0, strict=bool(len(x0))))
@@ -311,7 +310,7 @@ class Generated:
                 yield fmu_reported(content, states if len(given) == len(symbols.parameters) else {}, given)
 
     def _single(self, target: str, emitted: Emitted) -> Check:
-        """The text in single precision, run, against the vectors and the tolerances that stand beside it."""
+        """The text in single precision, run, against its test vectors and their tolerances."""
         program, reported = emitted
         stem, single = stem_of(self.stem), target_named(target).single
         assert single is not None
@@ -327,7 +326,7 @@ class Generated:
         return checked(what, f"{error:.2g} tolerances away" if error > 1 else "", how)
 
     def _runs(self, target: str, emitted: Emitted) -> bool:
-        """Whether the same function in doubles does: then what is refused is the text, and nothing is missing."""
+        """True if the same function in double precision compiles: then no tool is missing, and the text is at fault."""
         try:
             return self._written(target, emitted).code() is not None
         except (RunFailed, ToolMissing):
@@ -429,7 +428,7 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
     """Refuses an integrator of what cannot have one.
 
     Raises:
-        UsageError: C is not asked for; contacts or paths change the equations on the way.
+        UsageError: C is not among the languages; contacts or paths change the equations on the way.
     """
     if "c" not in targets:
         raise UsageError("an integrator is written in C", fix="ask for --target c too")
@@ -445,7 +444,7 @@ def _inside(texts: Mapping[str, FileContent], folder: str) -> dict[str, FileCont
 
 
 def _remarks(model: Model) -> dict[str, str]:
-    """Of each argument its SI unit where the file names a unit, and what it is."""
+    """{argument: its SI unit, where the file names a unit, and its description}."""
     remarks = {}
     for part_of in (model.parameters, model.coordinates, model.inputs):
         for name, part in part_of.items():

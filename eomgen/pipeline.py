@@ -57,7 +57,7 @@ def derive(
         UsageError: an unknown method.
         NotYet: a kind that this version does not derive.
         DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is
-            held by nothing, or a force acts at no place.
+            unsupported, or a force has no point of application.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
     if method not in METHODS:
@@ -202,7 +202,7 @@ def simulate(
 
 
 def _warned(model: Model, found: Trajectory) -> Trajectory:
-    """The run; what is missing of it is a warning of whoever asked for it."""
+    """The run; what is missing of it is a warning to the caller."""
     from eomgen.simulation.result import OnDemand
 
     passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])

@@ -1,1 +1,1 @@
-"""What a user declares: Model and its parts, and the reader of model files. Computes nothing."""
+"""The declared model: Model and its parts, and the reader of model files. Computes nothing."""

@@ -1,4 +1,4 @@
-"""Expressions of parameters -> numbers: in which order parameters follow from one another, what one is worth."""
+"""Expressions of parameters -> numbers: the order in which parameters follow from one another, and their values."""
 
 from collections.abc import Iterator, Mapping
 
@@ -37,7 +37,7 @@ def _needed(parameters: Mapping[str, Expression | None], name: str) -> Iterator[
 
 
 def value_of(expression: Expression, values: Mapping[str, AnyNumber]) -> AnyNumber | None:
-    """What an expression is worth with these values (`pi` among them); None with names besides, or without value."""
+    """The value of an expression at these values (`pi` among them); None with other names, or without a value."""
     if not expression.names <= values.keys():
         return None
     try:

@@ -9,7 +9,7 @@ from typing import Any
 def begun_speeds(speeds: Mapping[str, Any]) -> dict[str, frozenset[str]]:
     """{speed: the rates that go with it} of those that have a `start`, or share rates with one that has.
 
-    Sharing reaches through others: where w1 holds x' and y', and w2 holds y' and z', a start of w2 speaks for both.
+    Sharing reaches through others: where w1 holds x' and y', and w2 holds y' and z', a start of w2 decides for both.
     """
     groups: list[tuple[set[str], set[str]]] = []
     for name, part in speeds.items():

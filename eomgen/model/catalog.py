@@ -34,7 +34,7 @@ class Catalog:
 
     @cached_property
     def symbols(self) -> dict[str, str]:
-        """What each name of an expression is: {"m": "parameter", ...}."""
+        """{name in expressions: its kind}: {"m": "parameter", ...}."""
         kinds = {
             "parameters": "parameter",
             "coordinates": "coordinate",
@@ -114,7 +114,7 @@ def not_in_the_plane(catalog: Catalog, path: DocumentPath, part: Any, keys: tupl
 
 
 def is_round(catalog: Catalog, body: Any, sizes: tuple[str, ...] = ("radius",)) -> bool:
-    """Whether a body's shape has a radius, or other such sizes (or could not be read)."""
+    """True if a body's shape has a radius, or other such sizes (or could not be read)."""
     part = catalog.table("bodies").get(body)
     return part is None or ("bodies", body, "shape") in catalog.broken or any(hasattr(part.shape, x) for x in sizes)
 

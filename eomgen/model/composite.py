@@ -47,7 +47,7 @@ class PlacedPiece:
 
     @property
     def sign(self) -> int:
-        """-1 for a hole, which takes away."""
+        """-1 for a hole, which removes material; 1 for anything else."""
         return -1 if self.piece.hole else 1
 
 
@@ -128,7 +128,7 @@ def _placed(piece: Any, m: Any, value: ValueOf) -> MassProperties:
 
 
 def pose_of(piece: Any, value: ValueOf) -> Pose:
-    """Where a piece's frame stands in the body: turned as `turned` says, then by `angle` about `axis`."""
+    """Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`."""
     R = oriented(piece.turned, value)
     if piece.angle is not None:
         angle = value(piece.angle)
@@ -137,7 +137,7 @@ def pose_of(piece: Any, value: ValueOf) -> Pose:
 
 
 def _weights(pieces: Sequence[Any], masses: Sequence[Any], value: ValueOf) -> list[Any]:
-    """What the mass centre is weighted with: masses; measures where all of them share, so that it needs no mass."""
+    """Weights of the mass centre: masses, or measures where all pieces share one mass, so that it is not needed."""
     if all(piece.shape.mass is None for piece in pieces):
         return [_sign(piece) * piece.shape.measure(value) for piece in pieces]
     return [_sign(piece) * m for piece, m in zip(pieces, masses, strict=True)]

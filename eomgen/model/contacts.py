@@ -41,7 +41,7 @@ class Contact:
 
     @property
     def declared_at(self) -> str:
-        """Where: constraints.wall, bodies.bead.joint."""
+        """Path of its declaration: constraints.wall, bodies.bead.joint."""
         return f"bodies.{self.name}.joint" if self.of_joint else f"constraints.{self.name}"
 
     @property

@@ -1,4 +1,4 @@
-"""What is wrong with a model, where in it, and in which words."""
+"""Problems of a model: what is wrong, where in it, and in which words."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import field
@@ -28,7 +28,7 @@ class Diagnostic:
         column, length: the culprit within the text of an expression (None: all of it).
         key: the culprit is the key itself, not its value.
         raw: what could not be read (names in it count as used).
-        instead: of a key, for which one it was read.
+        instead: of a key, the one for which it was read.
         beside: column and length of a second culprit in the same text.
     """
 
@@ -56,7 +56,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
 
 
 def meant(word: str, known: Iterable[str]) -> tuple[str, ...]:
-    """What a word may stand for: what it is called here, else what is nearest."""
+    """The names that a word may stand for: what it is called here, else what is nearest."""
     words = [] if len(word) > LONGEST_WORD else sorted(islice(known, MOST_WORDS))
     close = get_close_matches(word, words, n=1, cutoff=0.6)
     return other_words(word, words) or tuple(close or [name for name in words if name.lower() == word.lower()][:1])
@@ -123,7 +123,7 @@ def unknown_keys(
     *,
     needed: Iterable[str] = (),
 ) -> dict[str, str]:
-    """Every key of a table that nobody reads is a finding; {what one may have meant that is not there: the key}.
+    """Reports every key of a table that nobody reads; {key that one may have meant and is missing: the key}.
 
     Where a single key is strange, and a single one of those that are needed is missing, the one was meant by the other.
     """

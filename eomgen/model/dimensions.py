@@ -37,11 +37,11 @@ def dimensions(catalog: Catalog) -> Iterator[Diagnostic]:
 
 @dataclass(frozen=True)
 class Inferred:
-    """What is known of the dimensions of a model.
+    """Dimensions of a model, as far as they follow from its units and expressions.
 
     Args:
-        errors: where declared units contradict one another.
-        warnings: where inferred ones do.
+        errors: places where declared units contradict one another.
+        warnings: places where inferred ones do.
         names: the dimension of every name, with its unknowns.
     """
 
@@ -68,14 +68,14 @@ class Names:
         self.parameters = frozenset(catalog.table("parameters").keys() & self.declared)
 
     def of(self, name: str, also: dict[str, Dimension] | None = None) -> Dimension:
-        """Of a name, a prime for each derivative by time."""
+        """The dimension of a name, a prime for each derivative by time."""
         base = name.rstrip("'")
         known = also[base] if also and base in also else self._known.get(base)
         found = Inference.named(base) if known is None else known
         return found if base == name else found.times(SECOND, len(base) - len(name))
 
     def of_call(self, call: Call) -> Dimension | None:
-        """Of a function of the motion; None where a constraint's gap decides it, or it is none."""
+        """The dimension of a function of the motion; None where a constraint's gap decides it, or it is unknown."""
         function = FUNCTIONS.get(call.name)
         if function is None or max(function.per, default=-1) >= len(call.args):
             return None
@@ -91,16 +91,16 @@ class Names:
         return found
 
     def walk(self) -> Walk:
-        """One pass over a formula, whatever does not fit in it left alone."""
+        """A pass over a formula by which its own clashes are not reported."""
         return Walk(self.of, self.inference, self.of_call, self.parameters, self.moves, fixes=False)
 
     def is_declared(self, name: str) -> bool:
-        """By the file itself: what a joint implies of its speeds may hide a factor 1: `couple = ["-w1", 0, 0]`."""
+        """True if the file declares it; speeds of joints do not count: `couple = ["-w1", 0, 0]` may hide a factor 1."""
         return (base := name.rstrip("'")) in self.declared or base in TIME
 
 
 def inferred(catalog: Catalog) -> Inferred:
-    """Every expression of a model walked through once."""
+    """The dimensions that follow from every expression of the model, each examined once."""
     names, sound = Names(catalog), []
     errors: list[Diagnostic] = []
     warnings: list[Diagnostic] = []
@@ -131,7 +131,7 @@ def inferred_units(model: Any) -> dict[str, str]:
 
 
 def _clashes(catalog: Catalog, leaf: Leaf, names: Names, *, strict: bool) -> Iterator[Clash]:
-    """What does not fit in one value of the model."""
+    """Clashes of dimensions in one value of the model."""
     value, rule = leaf.value, leaf.rule
     also = _also(getattr(rule, "also_in", "1")) if getattr(rule, "also", ()) else {}
 
@@ -169,7 +169,7 @@ def _dimension(unit: str) -> Dimension:
 
 
 def _needed(leaf: Leaf, names: Names) -> Dimension | None:
-    """What a field needs: by its rule, its part's unit, the coordinate to which it belongs; None: anything."""
+    """Dimension that a field needs: by its rule, its part's unit, or the coordinate to which it belongs; None: any."""
     table, rule, part = leaf.path[0], leaf.rule, leaf.part
     key = str(leaf.path[-1])
     if table == "coordinates" and key in RATES:

@@ -1,4 +1,4 @@
-"""What a model moves by itself: driven coordinates, laws of inputs, speeds at the start.
+"""Prescribed quantities of a model: driven coordinates, laws of inputs, speeds at the start.
 
 Model -> the coordinates that move as functions of time: driven by themselves, or by a constraint that says so.
 """
@@ -51,7 +51,7 @@ def law_of(model: Model, value: Any) -> Expression | None:
     try:
         law = as_expression(value)
     except ExpressionError:
-        return None  # told where it is read as an input
+        return None  # reported where it is read as an input
     moving = {*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds}
     return law if law.names & moving else None
 

@@ -1,6 +1,6 @@
-"""What a value of a model may be: one rule per concept, and rules made of rules.
+"""Rules for the values of a model: one rule for each concept, and rules made of rules.
 
-What a value of a model may be: one rule per concept, written once in a field's type.
+A rule says what a value may be; it stands once, in a field's type.
 
 A part of the model is a frozen dataclass whose fields are annotated `Annotated[type, rule]`. From
 these rules alone come the reading of texts and numbers (`read`), the walk that every check makes
@@ -49,7 +49,7 @@ class WholeRule:
 
 
 def read_text(parse: Callable[[], Parsed], raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Parsed | None:
-    """What a grammar makes of a text; what is wrong with it is found at its column."""
+    """The result of a grammar's parser on a text; None, and a diagnostic at its column, where the text is wrong."""
     try:
         return parse()
     except ExpressionError as error:
@@ -127,12 +127,12 @@ def in_si(value: Expression | None, unit: Unit | None) -> Expression | None:
 
 
 def is_mixed(value: Expression, unit: Unit) -> bool:
-    """Whether a value has parameters in it, which are in SI, beside a unit that is not: it may mean two things."""
+    """True if a value contains parameters, which are in SI, and has a unit that is not: it may mean two things."""
     return bool(value.names - {"pi", "t"}) and (unit.factor != 1 or unit.pi_power != 0)
 
 
 def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Diagnostic:
-    """What is wrong with a value that is_mixed."""
+    """The diagnostic of a value that is_mixed."""
     what = f"'{value.text}' has names in it, which are in SI, but the unit '{unit.text}' is not"
     return Diagnostic(path, what, "leave the unit out, or give it to the numbers")
 
@@ -162,7 +162,7 @@ class WrittenEquation:
     """left = right, as it was written.
 
     Args:
-        units: those that were typed beside the sides, of which plain numbers are not in SI yet; None: all is in SI.
+        units: those that were typed behind the sides, of which plain numbers are not in SI yet; None: all is in SI.
     """
 
     left: Expression
@@ -257,7 +257,7 @@ class VectorRule:
 
 @dataclass(frozen=True)
 class AxialRule:
-    """What has one component in the plane (about z) and several in space: a couple, an inertia.
+    """A value with one component in the plane (about z) and several in space: a couple, an inertia.
 
     Args:
         item: the rule of a component.
@@ -331,7 +331,7 @@ class TextRule(WholeRule):
 
 @dataclass(frozen=True)
 class EventRule(WholeRule):
-    """Which of several events: a number from 1 on, or "every"."""
+    """The number of one of several events, from 1 on, or "every"."""
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> int | str | None:
         whole = not isinstance(raw, (bool, str)) and isinstance(raw, (int, Decimal)) and raw == int(raw)

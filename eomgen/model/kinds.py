@@ -33,7 +33,7 @@ from eomgen.symbolic.expression.splines import SMOOTH
 from eomgen.symbolic.print.names import LONGEST, Symbol, parse_symbol
 
 ValueOf = Callable[[Expression], Any]
-"""What an expression is worth, in the arithmetic of whoever asks."""
+"""Value of an expression, in the arithmetic of the caller."""
 VectorFormula = tuple[Expression, ...]
 
 RESISTS = "it drives away from its rest"
@@ -125,7 +125,7 @@ SYMBOL = ParsedTextRule(
 
 @dataclass(frozen=True)
 class ReactionSymbols:
-    """What the reactions of a joint or a constraint are called.
+    """Symbols of the reactions of a joint or a constraint.
 
     Args:
         letter: of all of them: A gives A_x, A_y, M_A; of one that is alone its symbol.

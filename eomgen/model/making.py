@@ -16,12 +16,12 @@ MOST_DIAGNOSTICS = 200  # of one model: more say nothing new
 
 
 def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
-    """A model from the tables of a file, unchecked; what could not be read is None and among the findings."""
+    """A model from the tables of a file, unchecked; what could not be read is None and has a diagnostic."""
     return read_part(cls, {"name": title, **raw}, (), found, known=("eomgen",))
 
 
 def diagnostics_of(model: Any, found: list[Diagnostic]) -> list[Diagnostic]:
-    """What is wrong with a model that was read, beyond what reading found already."""
+    """The problems of a model that was read, beyond those found by reading it."""
     catalog = Catalog(model, tuple(found))
     every = (diagnostic for check in ALL for diagnostic in check(catalog))
     return list(dict.fromkeys(islice(every, MOST_DIAGNOSTICS)))

@@ -73,7 +73,7 @@ def _rule_of(annotation: Any) -> Any:
 
 class _Fields:
     """The signature of a part's class, for `help` and editors: its fields by name, without the rules by which they are
-    read; each is told in the words of the docstring."""
+    read; each is described in the docstring."""
 
     def __get__(self, instance: Any, cls: Any) -> Signature:
         own = [Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)]
@@ -112,7 +112,7 @@ class Part:
             cls.__repr__ = Part.__repr__  # type: ignore[method-assign]
 
     def __repr__(self) -> str:
-        """What is given, as it is written: Revolute(on='cart', angle='theta')."""
+        """The part as it is written, with its given fields: Revolute(on='cart', angle='theta')."""
         slots = slots_of(type(self))
         given = ((slot.name, getattr(self, slot.name)) for slot in slots if getattr(self, slot.name) != slot.default)
         return f"{type(self).__name__}({', '.join(f'{name}={_shown(value)}' for name, value in given)})"
@@ -140,7 +140,7 @@ def _in_si(cls: Any, values: dict[str, Any], raw: Mapping[str, Any]) -> dict[str
 
 
 def title_of(cls: Any) -> str:
-    """What messages call a part of this class."""
+    """The name of parts of this class in messages."""
     return getattr(cls, "title", "") or getattr(cls, "kind", "") or cls.__name__.lower()
 
 
@@ -182,7 +182,7 @@ class PartRule:
 def read_part(
     cls: Any, raw: Mapping[str, Any], path: DocumentPath, found: list[Diagnostic], known: tuple[str, ...] = ()
 ) -> Any:
-    """A part from a table: unknown keys and missing ones are findings; what can be read is kept."""
+    """A part from a table: unknown and missing keys are reported; what can be read is used."""
     slots = slots_of(cls)
     inline = next((slot for slot in slots if slot.inline), None)
     own = [slot for slot in slots if slot is not inline]
@@ -209,7 +209,7 @@ def read_part(
 
 
 def _read_instead(slot: Slot, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
-    """A value under a key that was mistyped, so that what follows from it is no error; a table tells its own."""
+    """A value under a key that was mistyped, so that what follows from it is no error; a table reports its own."""
     wrong: list[Diagnostic] = []
     value = slot.rule.read(raw, path, wrong)
     if isinstance(raw, Mapping):

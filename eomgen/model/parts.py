@@ -113,7 +113,7 @@ class Coordinate(Part):
 
     @property
     def driven(self) -> bool:
-        """Whether it moves as the model says."""
+        """True if the model prescribes its motion."""
         return any(law is not None for law in (self.motion, self.rate, self.acceleration))
 
 
@@ -200,7 +200,7 @@ class Body(Part):
         parts: a composite of shapes and holes.
         points: further points, `{ hook = [0, "l/2"] }`, which may hold coordinates and t, and then move in the body
             [m].
-        joint: how it hangs (None: its frame is the ground's and does not move).
+        joint: its connection (None: its frame is the ground's and does not move).
     """
 
     title: ClassVar[str] = "body"
@@ -240,7 +240,7 @@ class Linearize(Part):
     Args:
         about: the equilibrium nearest to the start; the start, which must be a steady motion; or the steady motion
             sought from there.
-        coordinates: that are asked for alone (None: all).
+        coordinates: the requested ones (None: all).
     """
 
     title: ClassVar[str] = "[linearize]"
@@ -267,7 +267,7 @@ class Given(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Unknown(Part):
-    """A number that is asked, and what it is.
+    """A number that is sought, and what it is.
 
     Args:
         about: what it is.
@@ -284,7 +284,7 @@ class Unknown(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Output(Part):
-    """What is asked, by name.
+    """A requested result, by name.
 
     Args:
         value: an expression that may call functions of the motion.
@@ -322,7 +322,7 @@ class Model(Part):
     """A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order.
 
     Args:
-        name: of the system (a file's stem where it is left out).
+        name: of the system (the file's stem where it is left out).
         space: the plane (x right, y up, turns about z, counter-clockwise positive), or space; required.
         about, source: remarks.
         parameters: constants.
@@ -334,10 +334,10 @@ class Model(Part):
         constraints: all contacts beyond the one joint of each body.
         trusses: massless bars between hinges.
         forces: what is applied.
-        linearize: about which state small motions are taken.
+        linearize: the state about which small motions are taken.
         given: known velocities and accelerations at one instant.
-        unknowns: numbers that are asked of statics.
-        outputs: what is asked.
+        unknowns: numbers that statics is to find.
+        outputs: requested results.
 
     Raises:
         ModelError: on construction, with every problem at once.
@@ -366,7 +366,7 @@ class Model(Part):
         finish(self)
 
     def __getstate__(self) -> dict[str, Any]:
-        """What was declared; what was derived of it (`records.recalled`) is derived anew where it is needed."""
+        """The declared model; what was derived from it (`frozen.recalled`) is derived anew where it is needed."""
         return {name: value for name, value in self.__dict__.items() if name != RECALLED}
 
     def __repr__(self) -> str:
@@ -376,7 +376,7 @@ class Model(Part):
         return f"<model {self.name!r} {where}: {', '.join(sizes) or 'nothing in it'}>"
 
     def scene(self) -> Any:
-        """What can be drawn of the model at a state, forces left out: a Scene, `to_json()` as data.
+        """The scene: what can be drawn of the model at a state, forces left out; `to_json()` gives it as data.
 
         Raises:
             DerivationError, NotYet: what cannot be derived is not drawn either.
@@ -385,11 +385,11 @@ class Model(Part):
 
     @property
     def picture(self) -> Any:
-        """Where it starts, as it is drawn: shows itself in a notebook, `save("model.svg")` writes it."""
+        """Picture of the model at its start: shows itself in a notebook, `save("model.svg")` writes it."""
         return import_module("eomgen").rest_picture(self)  # as above
 
     def _repr_png_(self) -> bytes | None:
-        """Where it starts, for notebooks; None where that cannot be drawn."""
+        """Picture of the model at its start, for notebooks; None where it cannot be drawn."""
         try:
             found: bytes = self.picture._repr_png_()
         except EomgenError:

@@ -35,7 +35,7 @@ class Span:
 
 @dataclass
 class Index:
-    """Where the keys and values of a text stand.
+    """Places of the keys and values of a text.
 
     Args:
         text: the text.
@@ -253,7 +253,7 @@ def _decoded(word: str) -> str:
 
 
 def _offsets(source: str) -> list[int] | None:
-    """Of each character of a string's value, where it stands in the string's source; one more for its end."""
+    """Place of each character of a string's value in the string's source; one more for its end."""
     if not source or source[0] not in "'\"":
         return None
     quote = source[:3] if source[:3] in ('"""', "'''") else source[0]

@@ -36,7 +36,7 @@ def load(path: str | FilePath) -> Model:
 
 
 def bytes_at(path: str | FilePath) -> bytes:
-    """What stands in a file (- is stdin), as far as a model may be long.
+    """The content of a file (- is stdin), up to the length that a model may have.
 
     Raises:
         ModelError: it cannot be read.
@@ -111,7 +111,7 @@ def _named(what: str, index: Index) -> tuple[str, ...]:
 
 
 def warned(model: Model, data: bytes, name: str) -> tuple[Problem, ...]:
-    """What is allowed in a model and hardly meant, at its places in the text that the model was read from."""
+    """The warnings of a model, each at its place in the text that the model was read from."""
     index = index_of(_text(data, name))
     return _problems(list(warnings_of(model)), index, name)
 
@@ -178,7 +178,7 @@ def _decimal(word: str) -> Decimal:
 
 
 def _not_toml(error: Exception, index: Index, name: str) -> Problem:
-    """The problem that tomllib tells, at the place that it tells."""
+    """The problem that tomllib reports, at the place that it reports."""
     message = str(error)
     place = re.search(r"\(at (?:line (\d+), column (\d+)|end of document)\)", message)
     what = re.sub(r"\s*\(at .*\)$", "", message)
@@ -196,7 +196,7 @@ def _not_toml(error: Exception, index: Index, name: str) -> Problem:
 
 
 def _version(raw: dict[str, Any]) -> list[Diagnostic]:
-    """The findings of the first key, `eomgen = 1`."""
+    """Diagnostics of the first key, `eomgen = 1`."""
     if "eomgen" not in raw:
         return [Diagnostic((), "the file does not say that it is a model", "begin it with the line: eomgen = 1")]
     version = raw["eomgen"]
@@ -207,7 +207,7 @@ def _version(raw: dict[str, Any]) -> list[Diagnostic]:
 
 
 def _problems(found: list[Diagnostic], index: Index, name: str) -> tuple[Problem, ...]:
-    """Each finding at its place, in the order of the file."""
+    """Each diagnostic at its place, in the order of the file."""
     found = _as_written(found)
     placed = sorted(((_span(diagnostic, index), diagnostic) for diagnostic in found), key=lambda pair: pair[0].start)
     problems = tuple(
@@ -218,7 +218,7 @@ def _problems(found: list[Diagnostic], index: Index, name: str) -> tuple[Problem
 
 
 def _as_written(found: list[Diagnostic]) -> list[Diagnostic]:
-    """The findings, their paths through the keys that stand in the file, where some were read for others."""
+    """The diagnostics, with the keys that stand in the file in their paths, where some were read for others."""
     written = {(*f.path[:-1], f.instead): f.path for f in found if f.instead}
     return [replace(f, path=_through(f.path, written)) for f in found] if written else found
 
@@ -288,7 +288,7 @@ def reported_of_toml(what: str, text: str, offset: int) -> tuple[str, str]:
 
 
 def _of_character(before: str, culprit: str) -> str:
-    """By the character at which it stops."""
+    """The fix that follows from the character at which tomllib stops; "" if none does."""
     if culprit in ("\n", "#") and before.rfind("{") > max(before.rfind("}"), before.rfind("\n[")):
         return "a table in braces stands in one line; or write it as one with a head, like [bodies.boom.joint]"
     if culprit == ";" and before.count("[") > before.count("]"):
@@ -307,7 +307,7 @@ def _of_character(before: str, culprit: str) -> str:
 
 
 def _of_line(what: str, text: str, before: str, culprit: str) -> str:
-    """By the line in which it stops."""
+    """The fix that follows from the line in which tomllib stops; "" if none does."""
     line = text[before.rfind("\n") + 1 :].split("\n", 1)[0]
     if found := _COMMA.search(line):
         return f"write a decimal point: {found[1].replace('.', '')}.{found[2]}"
@@ -327,7 +327,7 @@ def _of_line(what: str, text: str, before: str, culprit: str) -> str:
 
 
 def _of_words(what: str) -> str:
-    """By what tomllib says."""
+    """The fix that follows from tomllib's message."""
     if "digits" in what or "deep" in what:
         return "make it smaller"
     if "Expected '='" in what:

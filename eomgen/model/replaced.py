@@ -34,12 +34,12 @@ Values = Mapping[str, Typed]
 
 @dataclass(frozen=True)
 class Taken:
-    """What was made of something that was typed.
+    """The interpretation of something that was typed.
 
     Args:
-        value: in the unit; None where it needs parameters without one; of a range, a slider or a law what it is made
-            of, each.
-        told: how these are said.
+        value: in the unit; None where it needs parameters without one; of a range, a slider or a law all the values of
+            which it consists.
+        reported: the text that says it, where it is no single value.
     """
 
     name: str
@@ -135,7 +135,7 @@ def with_values(
 
 
 def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
-    """A plain number in Python is in SI; of an angle that the file has in degrees more than a turn is hardly meant."""
+    """Warns of an angle of more than a turn, given in Python as a plain number, which is in SI, not in degrees."""
     angle = found.unit is not None and found.unit.si == "rad" and found.unit.text != "rad"
     number = math.nan
     with suppress(ValueError):
@@ -164,7 +164,7 @@ def taken_of(model: Model, settled: Settled) -> Taken:
     number, unit, dimension = None, settled.unit, settled.dimension
     try:
         number = value_of(settled.value, {**exact_parameters(model), "pi": math.pi})
-    except ModelError:  # a parameter without a value: told by whoever needs it
+    except ModelError:  # a parameter without a value: reported by whoever needs it
         number = None
     if number is not None:
         number = float(number if unit is None else unit.from_si(float(number), math.pi))
@@ -281,7 +281,7 @@ class TypedNumbers:
     """Numbers as a person types them for one name: "45", "45 deg", "pi/4 rad".
 
     Args:
-        declared: whether plain numbers are in the unit that the file declares; else they are in SI.
+        declared: True if plain numbers are in the unit that the file declares; else they are in SI.
     """
 
     model: Model
@@ -300,16 +300,16 @@ class TypedNumbers:
 
     @property
     def size(self) -> float:
-        """Of a plain number, in SI."""
+        """Value of a plain number 1, in SI."""
         return 1.0 if self.unit is None or not self.declared else self.unit.size
 
     def taken(self, typed: str, texts: Sequence[str], reported: Callable[[list[str]], str]) -> Taken:
-        """What is said of numbers that belong together.
+        """The interpretation of numbers that belong together.
 
         Args:
             typed: all that was typed.
             texts: each number of it.
-            told: (the numbers as they were taken, each with its unit) -> how they are said.
+            reported: (the numbers as they were taken, each with its unit) -> how they are said.
         """
         found = [taken_of(self.model, Typing(self.model, self.declared).value(self.name, text)) for text in texts]
         values = tuple(each.value for each in found if isinstance(each.value, float))
@@ -317,7 +317,7 @@ class TypedNumbers:
         return Taken(self.name, typed, values, found[0].unit, reported(words))
 
     def number(self, text: Typed) -> float:
-        """In SI.
+        """The number that was typed, in SI.
 
         Raises:
             ValueError: it is no number.
@@ -335,7 +335,7 @@ class TypedNumbers:
 
 
 def typed_values(given: Any) -> list[Typed]:
-    """The values of what is given in Python: one, several, an array with a unit beside it, an array of pint's."""
+    """The values of what is given in Python: one, several, an array with its unit, an array of pint's."""
     if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], str) and not isinstance(given[0], str):
         return [(x, given[1]) for x in np.atleast_1d(given[0]).tolist()]
     if hasattr(given, "to_base_units"):
@@ -344,7 +344,7 @@ def typed_values(given: Any) -> list[Typed]:
 
 
 def are_several(given: Any) -> bool:
-    """Whether what is given in Python are values one by one, an array with a unit among them; not one value."""
+    """True if values given in Python are several, perhaps an array with a unit, and not one value."""
     if isinstance(given, tuple) and len(given) == 2 and isinstance(given[1], str):
         given = given[0]
     return isinstance(given, list) or np.ndim(getattr(given, "magnitude", given)) == 1

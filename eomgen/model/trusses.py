@@ -38,16 +38,16 @@ def _members(name: str, truss: Truss) -> Members:
 
 
 def is_node(body: str) -> bool:
-    """Whether a body of a model in parts is a node of a truss."""
+    """True if a body of a model in parts is a node of a truss."""
     return "." in body
 
 
 def called(body: str) -> str:
-    """What messages call a body of a model in parts: body 'bar', node 'T.n1'."""
+    """The name in messages of a body of a model in parts: body 'bar', node 'T.n1'."""
     return f"node '{body}'" if is_node(body) else f"body '{body}'"
 
 
 def declared_at(body: str) -> str:
-    """Where it was declared: bodies.bar, trusses.T.nodes.n1."""
+    """The path of its declaration: bodies.bar, trusses.T.nodes.n1."""
     truss, dot, node = body.partition(".")
     return f"trusses.{truss}.nodes.{node}" if dot else f"bodies.{body}"

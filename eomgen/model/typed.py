@@ -1,4 +1,4 @@
-"""What a person types -> expressions in SI, and what was taken; the model that holds them.
+"""Typed values -> expressions in SI, the interpretation that is reported, and the model that holds them.
 
 On the command line and in [given] a plain number is in the unit that the file declares, and its rate in that unit per
 second; in Python it is in SI. `45 deg`, `(45, "deg")` and quantities of pint bring a unit of their own. With names in
@@ -26,10 +26,10 @@ from eomgen.symbolic.expression.units import Typed, Unit, is_plain, read_typed, 
 
 @dataclass(frozen=True)
 class Settled:
-    """What was made of something that was typed.
+    """The value of something that was typed.
 
     Args:
-        name: what it is the value of: "theta'", or one side of an equation.
+        name: of what it is the value: "theta'", or one side of an equation.
         value: in SI.
         unit: the one that is declared, else the one that was typed; None: neither is.
         dimension: of it, as far as it is known.
@@ -44,10 +44,10 @@ class Settled:
 
 @dataclass(frozen=True)
 class Typing:
-    """How what is typed is read for one model.
+    """Rules by which typed values are read for one model.
 
     Args:
-        declared: whether plain numbers are in the units that the file declares; else they are in SI.
+        declared: True if plain numbers are in the units that the file declares; else they are in SI.
     """
 
     model: Any
@@ -140,7 +140,7 @@ class Typing:
 
 
 def typing_of(model: Any, table: str) -> Typing:
-    """How equations of a table are read: in [given] and [outputs] as on the command line, else in SI."""
+    """Rules by which equations of a table are read: in [given] and [outputs] as on the command line, else in SI."""
     return Typing(model, declared=table in ("given", "outputs"))
 
 
@@ -152,12 +152,12 @@ def _refuse_unfit(of: Expression, unit: Unit, own: Unit | None, needed: Dimensio
 
 
 def shown(typed: Typed) -> str:
-    """What was typed, in a message."""
+    """A typed value as text, for a message."""
     return " ".join(map(str, typed)) if isinstance(typed, tuple) else str(typed)
 
 
 def _ambiguous(why: str, of: Expression, value: Expression, unit: Unit) -> ExpressionError:
-    """That a number may be meant in the unit of the file, or in SI."""
+    """The error of a number that may be meant in the unit of the file, or in SI."""
     number = float(value.evaluate({"pi": math.pi}))
     own = f"{float(unit.from_si(number, math.pi)):.10g}" if "pi" in value.names else value.text
     si = unit.si if unit.si != unit.text else "rad"

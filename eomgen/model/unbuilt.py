@@ -63,7 +63,7 @@ DWELL = Fraction(1, 1000)  # of what samples span: by so much a cubic leaves equ
 
 
 def warnings_of(model: Any) -> tuple[Diagnostic, ...]:
-    """What a user should look at again."""
+    """Warnings: what a user should look at again."""
     catalog = Catalog(model, ())
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
@@ -124,7 +124,7 @@ def _of_pi(degrees: float) -> str:
 
 
 def _signs(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """What drives apart, or gives energy, where it ought to hold or take it."""
+    """Diagnostics of values that drive apart or give energy, where they ought to hold or take it."""
     for leaf, expression in catalog.expressions:
         law = getattr(leaf.rule, "usually", "")
         number = value_of(expression, values) if law else None
@@ -247,7 +247,7 @@ def _unused(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def _written(value: Any) -> str:
-    """What names can stand in, as one text."""
+    """The texts of a value in which names can stand, joined."""
     if isinstance(value, (Expression, WrittenEquation)):
         return value.text
     return " ".join(map(_written, value)) if isinstance(value, tuple) else value if isinstance(value, str) else ""
@@ -258,7 +258,7 @@ def _body(leaf: Leaf) -> str:
 
 
 def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """Masses so far apart that doubles do not see the one beside the other."""
+    """Diagnostics of masses so far apart that doubles lose the smaller one."""
     found = []
     for leaf, expression in catalog.expressions:
         if (
@@ -280,7 +280,7 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
 
 
 def _symbols_twice(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Two things that formulas cannot tell apart, because one of them declares its symbol."""
+    """Two things with the same symbol in formulas, because one of them declares it."""
     declared = dict(_declared(catalog))
     looks = {symbol.tex: path for path, symbol in declared.items()}
     for table in SYMBOL_TABLES:

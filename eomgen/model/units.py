@@ -1,4 +1,4 @@
-"""What is in SI -> as its user writes it: 28.6 deg, 90 deg/s; the unit of every name and function."""
+"""Values in SI -> as a user writes them: 28.6 deg, 90 deg/s; the unit of every name and function."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def units_of_outputs(model: Model) -> dict[Output, Unit]:
 
 
 def _of_answer(known: Names, part: Output) -> Unit | None:
-    """Declared, or of the function that it asks for alone (N*m, not J), or by its dimension; None of a number."""
+    """The declared unit, or that of the function alone (N*m, not J), or by its dimension; None of a number."""
     if part.unit is not None:
         return part.unit
     calls = part.value.calls

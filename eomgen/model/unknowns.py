@@ -9,13 +9,13 @@ from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.formula import Expression
 
 REQUESTED = ("given", "outputs", "unknowns")
-"""Tables in which an unknown is asked for, or is one of the kinematics of an instant."""
+"""Tables in which an unknown is no load: its declaration, requested results, the kinematics of an instant."""
 EFFORTS = ("torque", "force")
 """Loads at a joint."""
 
 
 def uses(model: Model) -> Iterator[tuple[DocumentPath, str]]:
-    """(path, unknown) of every place in which an unknown stands, but where it is asked for."""
+    """(path, unknown) of every place in which an unknown stands, except in the tables REQUESTED."""
     if not model.unknowns:
         return
     for leaf in leaves_of(model, ()):

@@ -1,4 +1,4 @@
-"""Model -> numbers: the values of its parameters and where its coordinates start."""
+"""Model -> numbers: the values of its parameters and the start values of its coordinates."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -111,7 +111,7 @@ def _normed(e: list[float], body: str) -> list[float]:
 
 
 def no_orientation(body: str) -> ModelError:
-    """That a quaternion starts at 0."""
+    """The error of a quaternion that is 0 at the start."""
     return ModelError(
         f"the quaternion of body '{body}' starts at 0",
         f"bodies.{body}.joint.quaternion",
@@ -120,7 +120,7 @@ def no_orientation(body: str) -> ModelError:
 
 
 def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:
-    """Where the search for a dependent coordinate begins, of those that say so by `near`.
+    """Start of the search for each dependent coordinate that gives one by `near`.
 
     Raises:
         MissingValues: a guess needs parameters without values.
@@ -178,7 +178,7 @@ def _slope(motion: Expression, values: Mapping[str, Any], where: str) -> float:
 
 @dataclass(frozen=True)
 class Quaternion:
-    """How one body turns against its parent.
+    """Orientation of one body relative to its parent by a unit quaternion.
 
     Args:
         body: its name.
@@ -192,7 +192,7 @@ class Quaternion:
 
 
 def quaternions_of(model: Model) -> tuple[Quaternion, ...]:
-    """Of every joint that turns by one, in the model's order."""
+    """The quaternions of the joints that have one, in the model's order."""
     joints = ((name, body.joint) for name, body in model.bodies.items() if body.joint is not None)
     return tuple(
         Quaternion(name, tuple(e.text for e in joint.turns()), joint.spins) for name, joint in joints if joint.spins

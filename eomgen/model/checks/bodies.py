@@ -1,6 +1,6 @@
-"""Bodies, joints and masses: where mass comes from, which numbers a body can have, and that bodies hang in a tree.
+"""Bodies, joints and masses: the source of mass, the numbers that a body can have, and that bodies form a tree.
 
-Bodies and joints: where mass comes from, what a joint needs, and that the bodies hang in a tree.
+Bodies and joints: the source of mass, what a joint needs, and that the bodies form a tree.
 """
 
 import math
@@ -72,13 +72,13 @@ def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Diagnostic]:
 
 
 def _needs_inertia(body: Any) -> bool:
-    """Whether it has a mass, is no shape and not composed, and says nothing of its inertia."""
+    """True if it has a mass but no inertia, and is neither a shape nor composed of parts."""
     without = body.parts is None and body.shape is None and body.inertia is None
     return without and body.mass is not None and body.mass.literal != 0
 
 
 def _turns(catalog: Catalog, name: str) -> bool:
-    """Whether a body can turn against the ground: its joint or one below it turns with something."""
+    """True if a body can rotate relative to the ground: its joint, or one of its ancestors', has a variable angle."""
     seen: set[str] = set()
     constant = frozenset(["pi", *catalog.table("parameters"), *catalog.table("unknowns")])
     while name not in seen and catalog.table("bodies").get(name) is not None:
@@ -113,7 +113,7 @@ def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Diagnostic]:
 
 
 def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
-    """A body that hangs on itself, at once or by way of others (each ring told once, at its first body)."""
+    """A body that hangs on itself, at once or by way of others (each ring reported once, at its first body)."""
     table = catalog.table("bodies")
     parents = {n: body.joint.parent for n, body in table.items() if body is not None and body.joint is not None}
     done: set[str] = set()
@@ -140,7 +140,7 @@ def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnost
     """Shapes that cannot be, parts that weigh more than the whole, holes larger than what they are cut out of."""
     for name, body in catalog.table("bodies").items():
         if body is None or ("bodies", name) in catalog.broken or not _signed_right(body, values):
-            continue  # told already
+            continue  # reported already
         path: DocumentPath = ("bodies", name)
         shapes = [((*path, "shape"), f"the shape of body '{name}'", body.shape)] if body.shape is not None else []
         shapes += [
@@ -158,38 +158,38 @@ def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, 
         return None
     try:
         why = shape.impossible(lambda e: float(e.evaluate(values)))
-    except ExpressionError:  # told where the expression stands
+    except ExpressionError:  # reported where the expression stands
         return None
     return Diagnostic(path, f"{what} ({shape.kind}) cannot be: {why}") if why else None
 
 
 def _signed_right(body: Any, values: Mapping[str, AnyNumber]) -> bool:
-    """Whether every mass, length and radius of a body that is known has its sign."""
+    """True if every mass, length and radius of a body that is known has its sign."""
     signed = [leaf for leaf in leaves_of(body, ()) if getattr(leaf.rule, "sign", "")]
     known = [(leaf.rule.sign, value_of(leaf.value, values)) for leaf in signed if isinstance(leaf.value, Expression)]
     return all(x is None or x > 0 or (x == 0 and sign == "nonnegative") for sign, x in known)
 
 
 def _known(part: Any, values: Mapping[str, AnyNumber]) -> bool:
-    """Whether every expression in a part has names with values only."""
+    """True if every expression in a part has names with values only."""
     leaves = (leaf.value for leaf in leaves_of(part, ()))
     return all(e.names <= values.keys() for e in leaves if isinstance(e, Expression))
 
 
 def _complete(body: Any) -> bool:
-    """Whether the masses of all parts follow (else it is told where masses are checked)."""
+    """True if the masses of all parts follow (else it is reported where masses are checked)."""
     sharing = [piece for piece in body.parts if piece.shape.mass is None]
     return not sharing or (body.mass is not None and len({piece.shape.dimension for piece in sharing}) == 1)
 
 
 def _placed(piece: Any) -> bool:
-    """Whether no vector of a piece has more components than space (told where references are checked)."""
+    """True if no vector of a piece has more components than space (reported where references are checked)."""
     vectors = [leaf.value for leaf in leaves_of(piece, ()) if isinstance(leaf.rule, VectorRule)]
     return all(len(components) <= 3 for components in vectors)
 
 
 def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """Of a composite body all of whose numbers are known."""
+    """Diagnostics of a composite body all of whose numbers are known."""
     expressions = [body.mass] if body.mass is not None else []
     if not all(_known(piece, values) for piece in body.parts) or any(e.names - values.keys() for e in expressions):
         return
@@ -254,11 +254,11 @@ def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Di
 
 
 # -------- triangle --------------------------------------------------------------------------------------------
-# Whether a body can have an inertia: the triangle inequality, in any axes.
+# Existence of a body with a given inertia: the triangle inequality, in any axes.
 
 
 def possible(moments: list[float], size: float = 0.0) -> bool:
-    """J = tr(I)/2 - I has no negative eigenvalue (its principal minors are not negative).
+    """True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors).
 
     Args:
         moments: xx, yy, zz and then, where there are any, xy, yz, zx.
@@ -278,7 +278,7 @@ def possible(moments: list[float], size: float = 0.0) -> bool:
 
 
 def numbers(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Wherever an expression is worth a number (by literals and parameters with values), that number is possible."""
+    """Impossible numbers, wherever an expression has a value (by literals and parameters with values)."""
     values: dict[str, AnyNumber] = {"pi": math.pi}
     for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
         yield from _parameter(catalog, name, values)
@@ -295,7 +295,7 @@ def numbers(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """Adds the value of a parameter to the values, or tells why it has none."""
+    """Adds the value of a parameter to the values, or reports why it has none."""
     part = catalog.table("parameters")[name]
     if part is None or part.value is None or not part.value.names <= values.keys():
         return
@@ -307,7 +307,7 @@ def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Ite
 
 
 def _value(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """An expression of parameters that has no value, such as asin(2); a parameter's own is told above."""
+    """An expression of parameters that has no value, such as asin(2); a parameter's own is reported above."""
     elsewhere = leaf.path[0] == "parameters" or leaf.value is not expression or expression.calls
     if elsewhere or not expression.names <= values.keys():
         return
@@ -329,7 +329,7 @@ def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Diagnosti
 
 
 def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """A direction that its parameters make zero (one of literal zeros is told where vectors are checked)."""
+    """A direction that its parameters make zero (one of literal zeros is reported where vectors are checked)."""
     for leaf in catalog.leaves:
         if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
             continue

@@ -1,6 +1,6 @@
 """Outputs, constraints and forces: what goes together, and all checks in their order.
 
-All checks, in the order in which they are told of one place.
+All checks, in the order in which they are reported for one place.
 """
 
 import re
@@ -21,11 +21,11 @@ from eomgen.symbolic.expression.formula import NAMES, Call, Expression, Referenc
 from eomgen.symbolic.expression.text import parse, rate_of_call
 
 # -------- outputs ---------------------------------------------------------------------------------------------
-# Outputs: the functions of the motion that they call, and what each can be asked of.
+# Outputs: the functions of the motion that they call, and the arguments of each.
 
 
 def outputs(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Functions that are unknown, take another number of arguments, or are asked of what was never declared."""
+    """Functions that are unknown, take another number of arguments, or have arguments that were never declared."""
     for leaf, expression in catalog.expressions:
         for call in _calls_in(expression):
             yield from _call(catalog, leaf, call)
@@ -69,7 +69,7 @@ def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
 
 
 def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int, int] | None:
-    """What is wrong with an argument: message, fix, column, length; None when it is right."""
+    """The error of an argument: message, fix, column, length; None if it is right."""
     if kind == "any":
         return None
     if isinstance(argument, Expression):
@@ -143,7 +143,7 @@ def _reaction(catalog: Catalog, argument: Reference) -> tuple[str, str, int, int
 
 
 def _moves_as_given(catalog: Catalog, body: str, joint: Any) -> bool:
-    """Whether time or a driven coordinate stands in where a body is placed: what moves it as given holds it too."""
+    """True if the position of a body depends on time or a driven coordinate: its joint then has a reaction."""
     clocks = {"t", *(name for name, part in catalog.table("coordinates").items() if part is not None and part.driven)}
     clocks |= {constraint.drives() for constraint in catalog.table("constraints").values() if constraint is not None}
     seats = {("bodies", body, "joint"), ("points", joint.at, "at"), ("points", joint.at)}

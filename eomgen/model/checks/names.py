@@ -102,7 +102,7 @@ def references(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def missing_point(catalog: Catalog, point: str) -> tuple[str, str, int, int] | None:
-    """What is wrong with a point's name: message, fix, column and length of the culprit; None when it is declared."""
+    """The error of a point's name: message, fix, column and length of the culprit; None if it is declared."""
     owner, dot, name = point.partition(".")
     if not dot:
         if point in catalog.table("points"):

@@ -1,6 +1,6 @@
-"""What every constraint is, what touches what in it, and the rows that its law gives.
+"""Base class of constraints, the declared contacts of each, and the rows that its law gives.
 
-What every constraint is: fields that say what touches what.
+A constraint is declared by fields that say what touches what.
 """
 
 from abc import ABC, abstractmethod
@@ -74,7 +74,7 @@ class RoundSurface:
 
 @dataclass(frozen=True)
 class Groove:
-    """What the edge of a skate cuts, along `along` of the body `on`, in ice of a normal (ground axes; None: z)."""
+    """The groove that a skate's edge cuts along `along` of the body `on`, in ice of a normal (ground axes; None: z)."""
 
     on: str | None
     along: Any
@@ -90,7 +90,7 @@ class BodyLine:
 
 @dataclass(frozen=True)
 class Thread:
-    """What is straight from stop to stop: a string or a link.
+    """A thread, straight from stop to stop: a string or a link.
 
     Args:
         stops: points by name, and wraps as a string has them.
@@ -123,7 +123,7 @@ class Constraint(Part, ABC):
     checked and not derived yet.
 
     Args:
-        symbol: what its reactions are called in formulas, in LaTeX.
+        symbol: letter of its reactions in formulas, in LaTeX.
     """
 
     kind: ClassVar[str]
@@ -137,16 +137,16 @@ class Constraint(Part, ABC):
     symbol: ReactionSymbolsField | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """What is wrong with its fields together; one alone its rule has looked at."""
+        """Diagnostics of fields that do not fit together; each field alone is checked by its rule."""
         yield from ()
 
     @classmethod
     def works_in(cls, space: str) -> bool:
-        """Whether this version derives the constraint in this space."""
+        """True if this version derives the constraint in this space."""
         return space in cls.spaces
 
     def strand_rows(self) -> tuple[int, ...]:
-        """Of each strand of a string the row that holds its tension, from 1; () where it is no string."""
+        """Row, from 1, with the tension of each strand of a string; () where it is no string."""
         return ()
 
     def strands_at(self, scene: LoadContext) -> tuple[Strand, ...]:
@@ -159,28 +159,27 @@ class Constraint(Part, ABC):
         yield from ()
 
     def misplaced(self, scene: LoadContext) -> tuple[str, str]:
-        """(where the start lies that hardly was meant, what says so otherwise), ("", "") as it should be."""
+        """(what is unlikely about the start, how to confirm it); ("", "") if nothing is."""
         return "", ""
 
     def leans_on_ground(self) -> bool:
-        """Whether the ground guides what the constraint holds, though it pushes on no place of the ground."""
+        """True if the ground guides the constrained body, though no force acts at a point of the ground."""
         return False
 
     def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
-        """What must not vanish, else nobody can say where the constraint holds its bodies; () where there is no such
-        thing."""
+        """Quantities that must not vanish, or else the point of contact is undefined; () where there are none."""
         return ()
 
     def limits(self, scene: LoadContext) -> tuple[Edge, ...]:
-        """What is positive at the start, and has to be for its rows to be what it says; () where they always are."""
+        """Quantities that are positive at the start and must remain so for the rows to hold; () where there is none."""
         return ()
 
     def meeting(self) -> Meeting | None:
-        """What touches what, as it is declared; None where nothing does, or where it is not told."""
+        """The declared contact: what touches what; None where nothing does, or where it is not declared."""
         return None
 
     def thread(self) -> Thread | None:
-        """How it runs, as it is declared, where it is straight from point to point."""
+        """The declared thread, where it is straight from point to point; None for anything else."""
         return None
 
     def drives(self) -> str:
@@ -188,7 +187,7 @@ class Constraint(Part, ABC):
         return ""
 
     def stays(self, component: str) -> bool:
-        """Whether this row keeps something as it is at the start, and so is closed there, wherever that is."""
+        """True if this row keeps a quantity at its start value, and so is satisfied at any start."""
         return False
 
     @property
@@ -197,12 +196,12 @@ class Constraint(Part, ABC):
         return False
 
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
-        """What is 1 where directions of two bodies agree, -1 where one is turned over, which the rows allow too."""
+        """Quantities that are 1 where directions of two bodies agree, -1 where one is reversed (rows allow both)."""
         return ()
 
     @abstractmethod
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
-        """The rows of the constraint, asked only where it works.
+        """The rows of the constraint; called only in a space in which it is derived.
 
         Raises:
             ModelError: it cannot hold as it is said.

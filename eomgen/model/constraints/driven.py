@@ -17,7 +17,7 @@ from eomgen.symbolic.expression.text import as_expression
 
 @dataclass(frozen=True, kw_only=True)
 class Gear(Constraint):
-    """Two wheels that turn each other: omega of the first = ratio * omega of the second.
+    """Two gear wheels: omega of the first = ratio * omega of the second.
 
     In the plane the angles are those against the ground's axes; in space those of the bodies' own joints, which turn
     them about one axis each (revolute, cylindrical, screw): the axes may have any directions, as of bevel gears.
@@ -70,8 +70,8 @@ class Motion(Constraint):
     One row: the driving force along the coordinate, a generalized force.
 
     Args:
-        coordinate: what is driven.
-        value: where it is at each instant.
+        coordinate: the driven coordinate.
+        value: its value at each instant.
     """
 
     kind: ClassVar[str] = "motion"

@@ -17,7 +17,7 @@ from eomgen.symbolic.expression.formula import Call, Reference
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
 
 # -------- measured --------------------------------------------------------------------------------------------
-# Functions of points and bodies in an equation: what each is worth, and what pushes along it.
+# Functions of points and bodies in an equation: the value of each, and the forces along it.
 #
 # x(P), x(P, B)         e . p_P,  e . (p_P - p_B):  a force along e on P, its opposite at the same place on B
 # angle(A), angle(A, B)    a couple about z on A, its opposite on B vx(P, B), omega_x(A, B)  the same pushes; e is an
@@ -44,7 +44,7 @@ class Measured:
 
     @property
     def value(self) -> AnyScalar:
-        """Of a place or an angle."""
+        """Value of a place or an angle."""
         if self.call.name == "angle":
             return angle_of(self.scene, self._body) - angle_of(self.scene, self._frame)
         return dot(self._axis, self._arm)
@@ -78,7 +78,7 @@ class Measured:
 
     @property
     def _arm(self) -> Vector:
-        """From the origin of the body from which it is seen to the point."""
+        """Vector to the point from the origin of the body from which it is seen."""
         position = self.scene.position(self._place)
         return position if self._frame is None else minus(position, self.scene.position((self._frame, ZERO)))
 
@@ -136,14 +136,14 @@ class Equation(Constraint):
         return (_row(gap, scene.held_rate(law, values) if pushes else None, pushes),)
 
     def leans_on_ground(self) -> bool:
-        """Whether a place or velocity stands in it as the ground sees it."""
+        """True if a place or velocity in it is relative to the ground."""
         law = self.rate if self.gap is None else self.gap
         return law is not None and any(len(call.args) < 2 or str(call.args[1]) == "ground" for call in law.calls)
 
 
 @dataclass(frozen=True, kw_only=True)
 class NodeBalance(Equation):
-    """That what pushes a node without mass is in balance: nobody declares it, and its multiplier is 0."""
+    """Equilibrium of a node without mass: nobody declares it, and its multiplier is 0."""
 
 
 def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, AnyScalar]) -> tuple[Push, ...]:

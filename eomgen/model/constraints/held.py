@@ -26,7 +26,7 @@ from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, d
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp(Constraint):
-    """The point is built into the ground as it stands, or the bodies of the points are welded together.
+    """A clamp: the point is built into the ground as it stands, or the bodies of the points are welded together.
 
     Rows: those of a pin, and a couple (in space three): no turning against the start. The couple is the one about the
     point.
@@ -55,7 +55,7 @@ class Clamp(Constraint):
         return tuple(rows)
 
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
-        """In space e_i . e_i of the axes in either body."""
+        """The products e_i . e_i of the axes in either body, in space; () in the plane."""
         if scene.plane:
             return ()
         first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
@@ -68,12 +68,12 @@ class Clamp(Constraint):
 
 @dataclass(frozen=True, kw_only=True)
 class Guide(Constraint):
-    """The point moves along `along` (ground axes), and its body does not turn.
+    """A guide: the point moves along `along` (ground axes), and its body does not rotate.
 
     Rows: the force along the left normal of `along`; the couple. In space two forces across `along` and three couples.
 
     Args:
-        point: what is guided.
+        point: the guided point.
         along: direction of the guide, ground axes.
     """
 
@@ -99,7 +99,7 @@ class Guide(Constraint):
         return (*rows, *turns)
 
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
-        """In space e_i . e_i of the ground's axes and those that the body carries."""
+        """The products e_i . e_i of the ground's axes and those that the body carries, in space; () in the plane."""
         body = scene.place(self.point)[0]
         return () if scene.plane else tuple(alike(scene, (body, None), e) for e in IDENTITY)
 
@@ -110,14 +110,14 @@ class Guide(Constraint):
 
 @dataclass(frozen=True, kw_only=True)
 class Slider(Constraint):
-    """The point stays on the line (`line = ["A", "B"]`) of body `on`.
+    """A slider: the point stays on the line (`line = ["A", "B"]`) of body `on`.
 
     One row: the force along the left normal of the line from A to B, on the point; where the point is one of the
     ground, on the body. In space two forces across the line; it holds on all sides, so that it is not `unilateral`
     there.
 
     Args:
-        point: what slides.
+        point: the sliding point.
         on: the body whose line it is.
         unilateral: it can only push (in the plane).
         friction: in the contact.
@@ -181,12 +181,12 @@ def _lacks_line(catalog: Catalog, body: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Support(Constraint):
-    """The point stays on the line (in space a plane) across `normal` through `at`, or through where it stands.
+    """A support: the point stays on the line (in space a plane) across `normal` through `at`, or its start position.
 
     One row: n . (p - p_0) = 0, n = `normal` made a unit vector: the normal force, along n.
 
     Args:
-        point: what is supported.
+        point: the supported point.
         normal: ground axes, 2 or 3.
         at: a place on the line, or a ground point's name (None: where the point stands).
         unilateral: it can only push.

@@ -111,7 +111,7 @@ class Members(Constraint):
         return True
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
-        """Of each member the row of a link."""
+        """The row of a link, for each member."""
         return tuple(self._row(scene, member) for member in self.members)
 
     def _row(self, scene: LoadContext, member: str) -> ConstraintRow:
@@ -146,5 +146,5 @@ def _direction(scene: LoadContext, r: Vector) -> tuple[AnyScalar, ...]:
 
 
 def _has_root_of_sum(x: AnyScalar) -> bool:
-    """Whether a root of something else than a number stands in a length."""
+    """True if a length contains a root of something other than a number."""
     return type(x) is Node and any(y.op == "sqrt" and type(y.args[0]) is Node for y in order((x,)))

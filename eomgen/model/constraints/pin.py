@@ -19,7 +19,7 @@ from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, d
 
 @dataclass(frozen=True, kw_only=True)
 class Pin(Constraint):
-    """A hinge: one point is held to the ground where it stands at the start; two or more are one hinge of them all.
+    """A hinge: one point is fixed to the ground where it stands at the start; two or more are hinged together.
 
     Rows, for each point after the first: e . (p_first - p_other) = 0 along x and y (in space also z): forces along
     these axes. In space `axis` makes it a hinge, the axis carried along by both bodies, with two rows more, couples;
@@ -64,7 +64,7 @@ class Pin(Constraint):
         return len(self.points) == 1
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
-        """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start.
+        """The rows e . (p_first - p_P) = 0 along each axis, for each further point P; a single point's, to its start.
 
         With an axis in space also n_P . e = 0 for the two directions e of the first body across the axis.
         """
@@ -79,7 +79,7 @@ class Pin(Constraint):
         return tuple(rows)
 
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
-        """Of a hinge in space n_first . n_P, for each further point P."""
+        """The product n_first . n_P for each further point P, of a hinge in space; () of others."""
         if self.axis is None or scene.plane:
             return ()
         first, *_ = named = [scene.place(point) for point in self.points]
@@ -87,8 +87,8 @@ class Pin(Constraint):
         return tuple(alike(scene, (first[0], other[0]), n) for other in others_of(scene, named))
 
     def _axis_at_start(self, scene: LoadContext) -> Vector:
-        """In ground axes."""
-        assert self.axis is not None, "asked of a hinge"
+        """The axis at the start, in ground axes."""
+        assert self.axis is not None, "only a hinge has an axis"
         n = scene.vector(self.axis)
         if self.axes == "ground":
             return n

@@ -37,9 +37,9 @@ def same_turn(scene: LoadContext, first: str | None, second: str | None, ratio: 
 
 @dataclass(frozen=True)
 class Touch:
-    """Where a force acts on a body: at `arm` (ground axes) from a place of it that does not move in it.
+    """Point of application of a force on a body: at `arm` (ground axes) from a place that is fixed in the body.
 
-    The place of contact wanders in a round body; its centre stays, and the moment arm x F goes beside the force.
+    The place of contact wanders in a round body; its centre stays, and the moment arm x F is added to the force.
     """
 
     place: BodyPoint

@@ -51,7 +51,7 @@ from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
 
 # -------- round bodies ----------------------------------------------------------------------------------------
-# Round bodies in space: where each of them comes nearest to a plane.
+# Round bodies in space: the point of each that comes nearest to a plane.
 #
 # The place nearest to a plane is the one farthest against its normal n. From the centre it is `reach` away, and the
 # centre then is `height` = - n . reach above the plane:
@@ -117,7 +117,7 @@ class Wheel:
         return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
 
     def nearest_to_ball(self, scene: LoadContext, out: Vector, side: int) -> Vector:
-        """From the wheel's centre to the place of its centre line nearest to a ball's centre; from inside the farthest.
+        """Vector from the wheel's centre to the point of its centre line nearest to a ball's centre; inside: farthest.
 
         -+ R h / |h|,  h = d - (d . a) a,  d from the ball's centre to the wheel's.
 
@@ -240,7 +240,7 @@ def _sense(scene: LoadContext, x: AnyScalar) -> int:
 
 
 def _value(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
-    """What x is at the start with the model's values."""
+    """The value of x at the start with the model's values."""
     found = scene.worth(x)
     return unknown if found is None else found
 
@@ -250,7 +250,7 @@ def _plain(x: AnyScalar) -> bool:
 
 
 # -------- tracks ----------------------------------------------------------------------------------------------
-# What a round body rolls on: a plane (in the plane a line), a ball or pipe (in the plane a circle).
+# Tracks on which a round body rolls: a plane (in the plane a line), a ball or pipe (in the plane a circle).
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -371,7 +371,7 @@ def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:
 
 
 def _apart(scene: LoadContext, track: Curved, R: AnyScalar) -> AnyScalar:
-    """How far the centre of a ball is from that of its track where they touch [m]."""
+    """Distance of a ball's centre from that of its track where they touch [m]."""
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
     if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
@@ -407,19 +407,19 @@ CircleField = Annotated[Circle, PartRule(Circle)]
 
 TRACKS = ("line", "plane", "circle")
 ALONG = ("t", "s")
-"""What the components along a contact are called."""
+"""Names of the components along a contact."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling(Constraint):
-    """A round body touches a line (in space a plane), a circle or another round body, and does not slip.
+    """Rolling: a round body touches a line (in space a plane), a circle or another round body, and does not slip.
 
     Rows: the normal force n, which pushes `body` off its track; without `slip` also the friction t along n turned
     clockwise (along x where n is y), a row of velocities alone; in space two, t and s, with n a right-handed frame.
 
     Args:
-        body: what rolls.
-        line, plane, circle: on which it rolls, in the ground, or with `on` in that body's axes.
+        body: the rolling body.
+        line, plane, circle: the track, in the ground, or with `on` in that body's axes.
         on: the other body (alone: a round one).
         slip: True leaves the contact row only.
         unilateral: it can only push.
@@ -489,7 +489,7 @@ class Rolling(Constraint):
             )
 
     def _of_other_space(self, path: DocumentPath, catalog: Catalog, curved: bool) -> Iterator[Diagnostic]:
-        """In the plane no fields of space; in space a plane for a line; wheels on planes and balls, eggs on planes."""
+        """Diagnostics of fields for the other space, and of tracks on which a wheel or an ellipsoid cannot roll."""
         if catalog.model.space == "plane":
             if self.plane is not None:
                 fix = "in the plane a body rolls on a 'line'"
@@ -591,7 +591,7 @@ class Rolling(Constraint):
         return Curved(scene.own_place(self.on, None), scene.radius(self.on))
 
     def _round(self, scene: LoadContext) -> Round:
-        """What touches: a ball (in the plane a disc), a wheel, an ellipsoid; sizes left out are those of the shape."""
+        """The touching body: ball (in the plane a disc), wheel or ellipsoid; missing sizes are those of the shape."""
         shape = scene.shape(self.body)
         semiaxes = self.ellipsoid or (getattr(shape, "semiaxes", None) if self._plain else None)
         if semiaxes is not None:
@@ -605,7 +605,7 @@ class Rolling(Constraint):
 
     @property
     def _plain(self) -> bool:
-        """Whether nothing is said of the body's form."""
+        """True if neither radius nor axis is given for the body."""
         return self.radius is None and self.axis is None
 
     def _radius(self, scene: LoadContext) -> AnyScalar:

@@ -1,4 +1,4 @@
-"""What the law of a constraint gives: rows."""
+"""Rows of constraints."""
 
 from __future__ import annotations
 
@@ -15,9 +15,9 @@ class ConstraintRow:
     Args:
         pushes: forces and couples on the bodies for a unit of the row's multiplier; empty for an equation.
         gap: phi(q, t), 0 when the constraint holds; None where only the velocity row is given.
-        rate: the row of an equation given in rates, 0 when it holds; beside pushes, what it holds besides their dual.
+        rate: the row of an equation given in rates, 0 when it holds; with pushes, what it holds besides their dual.
             None elsewhere.
-        component: what the multiplier is called: "x", "y", "z", "n" (normal), "t" (along the contact), "couple",
+        component: name of the multiplier: "x", "y", "z", "n" (normal), "t" (along the contact), "couple",
             "tension", "wrench" (of an equation between points); "" for an equation of coordinates.
         material: the row sees the velocities of the bodies' material points, not of points that wander in them
             (rolling contacts, strings that leave a pulley).

@@ -48,7 +48,7 @@ class Stop:
 
     @property
     def winds(self) -> bool:
-        """Whether a turn of the body that no single angle tells gives out string."""
+        """True if rotation of the body, which has no single angle in space, pays out string."""
         return self.round and self.body is not None and not self.scene.plane
 
     @property
@@ -61,7 +61,7 @@ class Stop:
         return left(d) if self.scene.plane else cross(self.axis, d)
 
     def touched(self, d: Vector) -> Vector:
-        """Where a strand of direction d touches, ground axes."""
+        """Point at which a strand of direction d touches, ground axes."""
         return plus(self.center, times(self.offset, self.left(d))) if self.round else self.center
 
     def pulled(self, d: Vector, sense: int) -> tuple[Push, ...]:
@@ -88,7 +88,7 @@ class Strand:
 
     @property
     def ends(self) -> tuple[Vector, Vector]:
-        """Where it leaves the one stop and reaches the other: centre + a left(d)."""
+        """Points at which it leaves the one stop and reaches the other: centre + a left(d)."""
         return self.first.touched(self.d), self.second.touched(self.d)
 
     @property
@@ -157,7 +157,7 @@ def _straight(
 def _off(
     scene: LoadContext, d: Vector, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
 ) -> tuple[AnyScalar, ...]:
-    """What keeps D from being along d and h to its left."""
+    """Quantities that vanish if D is along d and h to its left."""
     if scene.plane:
         return (dot(side(d), D) - h,)
     return cross(d, D) if _zero(h) else (dot(side(d), D) - h,)
@@ -185,7 +185,11 @@ def _along(first: Stop, second: Stop) -> int:
 
 
 def _refuse_out_of_plane(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> None:
-    """In space a strand lies in the plane of what it touches: n . d = 0."""
+    """Refuses a strand in space that is not in the plane of what it touches: n . d = 0.
+
+    Raises:
+        ModelError: it is not.
+    """
     for stop in (first, second):
         if not scene.plane and stop.round and not scene.vanishes(dot(stop.axis, d)):
             what = f"the strand between {_names(first, second)} is not in the plane of the wrap, across its axis"
@@ -219,7 +223,7 @@ def side_rows(scene: LoadContext, strand: Strand) -> list[ConstraintRow]:
     In the plane n = left(d). Those that hold by themselves are left out.
 
     Raises:
-        ModelError: the ends stand beside one another, and nothing moves that.
+        ModelError: the ends are offset across the strand, and nothing moves that.
     """
     first, second = strand.first, strand.second
     rows = []

@@ -68,7 +68,7 @@ class String(Constraint):
     unilateral: Flag = False
 
     def strand_rows(self) -> tuple[int, ...]:
-        """Of each strand the row that holds its tension, from 1: strands joined by what slips have one row.
+        """Row, from 1, with the tension of each strand: strands joined by what slips have one row.
 
         In the middle a point is a smooth eyelet; a wrap lets the string through where it says `slip`.
         """
@@ -82,7 +82,7 @@ class String(Constraint):
         return Thread(self.path, self.strands)
 
     def strands_at(self, scene: LoadContext) -> tuple[Strand, ...]:
-        """From stop to stop, along given directions or common tangents."""
+        """The strands from stop to stop, along given directions or common tangents."""
         pairs = pairwise([_stop(scene, item) for item in self.path])
         if self.strands is None:
             return tuple(common_tangent(scene, *pair) for pair in pairs)

@@ -1,6 +1,6 @@
-"""What every force is, as it is declared: where it acts and by which law.
+"""Base class of forces, and what each declares: where it acts and by which law.
 
-What every force is: fields that say where it acts and by which law.
+A force is declared by fields that say where it acts and by which law.
 """
 
 from collections.abc import Iterator
@@ -16,21 +16,21 @@ from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 # -------- element ---------------------------------------------------------------------------------------------
-# What a force is, as it is declared: fields and names alone, no formulas and no loads.
+# Actions of forces, as they are declared: fields and names alone, no formulas and no loads.
 #
 # Proofs look at it, and at nothing else of a force.
 
 
 @dataclass(frozen=True)
 class Element:
-    """What acts between two points, or turns two bodies against one another.
+    """Action between two points, or a couple that turns two bodies relative to one another.
 
     Args:
         points: its ends; () for what turns bodies.
         bodies: the first and the second; None: the ground.
         along: a fixed direction along which its length is measured; None: from end to end.
         stiffness, damping: of length and its rate, of angle and its rate; None: 0.
-        slack: the length, or angle, at which a spring pulls nothing, or "start"; None: 0.
+        slack: the length, or angle, at which a spring is slack, or "start"; None: 0.
         pull: a law of the length `r` and its rate `r'`; None: 0.
     """
 
@@ -80,7 +80,7 @@ class PushOfMass:
 
 @dataclass(frozen=True)
 class PushOnCoordinate:
-    """What does work on a coordinate, at no place [N or N m]."""
+    """A generalized force on a coordinate, without a point of application [N or N m]."""
 
     coordinate: str
     value: Expression
@@ -88,7 +88,7 @@ class PushOnCoordinate:
 
 @dataclass(frozen=True)
 class GivenEnergy:
-    """A potential energy, or a kinetic one, at no place [J]."""
+    """A potential energy, or a kinetic one, without a point of application [J]."""
 
     potential: Expression | None = None
     kinetic: Expression | None = None
@@ -102,7 +102,7 @@ Act = Element | PushAt | CoupleOn | PushAlongLine | PushOfMass | PushOnCoordinat
 
 @dataclass(frozen=True, kw_only=True)
 class Force(Part):
-    """Something applied to the system; `by_mass` is what acts on every particle of a body as its mass is spread.
+    """Something applied to the system; `by_mass` marks what acts on every particle of a body as its mass is spread.
 
     A law gives `loads`, whether or not it has a `potential`: the two ways to its generalized forces.
     `works` is False for a kind that is read and checked but not derived yet.
@@ -113,25 +113,25 @@ class Force(Part):
     by_mass: ClassVar[bool] = False
     one_of: ClassVar[tuple[str, ...]] = ()  # of these fields exactly one is given
     elastic: ClassVar[bool] = False  # a spring
-    placeless: ClassVar[bool] = False  # an energy of coordinates, which acts at no place
+    placeless: ClassVar[bool] = False  # an energy of coordinates, without a point of application
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """What is wrong with its fields together; one alone its rule has looked at."""
+        """Diagnostics of fields that do not fit together; each field alone is checked by its rule."""
         yield from ()
 
     @property
     def element(self) -> Element | None:
-        """What it is between two points or two bodies; None for what acts otherwise."""
+        """The action between two points or two bodies; None for what acts otherwise."""
         return None
 
     @property
     def of_the_start(self) -> bool:
-        """Whether it is slack at the length that it has where the motion starts."""
+        """True if it is slack at the length that it has where the motion starts."""
         return self.element is not None and self.element.slack == "start"
 
     @property
     def acts(self) -> tuple[Act, ...]:
-        """What it does, as it is declared: the proof's way, beside `loads`."""
+        """The declared actions of the force, which the proof uses instead of `loads`."""
         return () if self.element is None else (self.element,)
 
     @property
@@ -140,7 +140,7 @@ class Force(Part):
         return None
 
     def effort(self, scene: LoadContext) -> AnyScalar | None:
-        """What draws its two points together [N], or turns its (second) body [N m]; None of others."""
+        """Attraction of its two points [N], or couple on its (second) body [N m]; None of others."""
         return None
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
@@ -148,7 +148,7 @@ class Force(Part):
         return ()
 
     def spread(self, scene: LoadContext) -> tuple[SpreadLoad, ...]:
-        """What is spread along lines, of which `loads` gives the resultants."""
+        """Loads distributed along lines, of which `loads` gives the resultants."""
         return ()
 
     def potential(self, scene: LoadContext) -> AnyScalar | None:

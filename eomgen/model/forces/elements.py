@@ -68,7 +68,7 @@ def reach(scene: LoadContext, points: tuple[str, ...], along: tuple[Expression, 
 
 
 # -------- straight --------------------------------------------------------------------------------------------
-# What draws two points together by a law of the line between them: springs, dampers, pulls.
+# Attraction of two points by a law of the line between them: springs, dampers, pulls.
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -96,7 +96,7 @@ class Straight(Force):
         return line.pulled(self.law(scene, line)) if k is None else line.pulled_by_length(k)
 
     def line(self, scene: LoadContext) -> Reach:
-        """Between the points."""
+        """The line between the points."""
         assert self.element is not None, "a law of this kind acts between two points"
         return reach(scene, self.points, self.element.along)
 

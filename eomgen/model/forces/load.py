@@ -1,4 +1,4 @@
-"""What a force law gives: forces at points, couples on bodies, and forces without a place."""
+"""Loads that force laws give: forces at points, couples on bodies, and generalized forces."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ BodyPoint = tuple["str | None", Vector]
 class PointForce:
     """A force on a body at a place of it; `axes` names the body in whose axes it is written, None the ground's [N].
 
-    What touches beyond the place, by `beyond` in ground axes, has its moment as a couple beside it that names the same.
+    What touches beyond the place, by `beyond` in ground axes, has its moment as a separate couple of the same `beyond`.
     """
 
     place: BodyPoint
@@ -29,8 +29,8 @@ class PointForce:
 class Couple:
     """A couple on a body; `axes` names the body in whose axes it is written, None the ground's [N m].
 
-    Where it acts matters inside the body alone: `place` is None where nobody said it. One that is the moment of a force
-    beside it, which acts beyond its place, says by how much.
+    The place matters inside the body alone: `place` is None where nobody said it. One that is the moment of a force
+    that acts beyond its place says by how much.
     """
 
     body: str
@@ -42,7 +42,7 @@ class Couple:
 
 @dataclass(frozen=True)
 class GeneralizedForce:
-    """A force along a coordinate, at no place."""
+    """A generalized force along a coordinate."""
 
     coordinate: str
     value: AnyScalar
@@ -70,7 +70,7 @@ Load = PointForce | Couple | GeneralizedForce | UniformField
 
 
 class LoadContext(Protocol):
-    """What a force law may ask of the system, over any scalar."""
+    """Quantities of the system that a force law may use, over any scalar."""
 
     def value(self, expression: Any) -> AnyScalar: ...
     def value_at(self, expression: Any, also: dict[str, AnyScalar]) -> AnyScalar: ...

@@ -11,7 +11,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 # -------- turning ---------------------------------------------------------------------------------------------
-# What turns one body against another, or against the ground: torsion springs and dampers.
+# Couples between two bodies, or a body and the ground: torsion springs and dampers.
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,4 +1,4 @@
-"""Joints: the seam of how a body hangs on its parent.
+"""Joints: the seam of the connections of bodies to their parents.
 
 Adding one is one class, beside its kin or in a file of its own, and one name here.
 """

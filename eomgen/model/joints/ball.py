@@ -70,7 +70,7 @@ def other_space(joint: Any, keys: Iterable[str], path: DocumentPath, space: str)
 
 
 def turning_diagnostics(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-    """Of a joint that turns in space: no fields of it in the plane; in space those that its orientation needs."""
+    """Diagnostics of a joint that turns in space: fields of it in the plane; in space, an incomplete orientation."""
     if catalog.model.space == "plane":
         yield from other_space(joint, TURNING, path, "plane")
     else:
@@ -234,7 +234,7 @@ TwoAngles = Annotated[tuple[Expression, ...], ListRule(FormulaRule("rad", "", CO
 
 @dataclass(frozen=True, kw_only=True)
 class Universal(Joint):
-    """Two turns: about an axis of the parent, then about one of the child; the two must not be parallel.
+    """Two rotations: about an axis of the parent, then about one of the child; the two must not be parallel.
 
     s = (a, b), R = Rot(n1, a) Rot(n2, b); S = (Rot(n2, b)^T n1, 0), (n2, 0); W: all forces, one torque.
 

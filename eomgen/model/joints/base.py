@@ -1,6 +1,6 @@
-"""What every joint is: its moves, its pose X(s), its subspace S and the complement.
+"""Base class of joints: declared moves, pose X(s), subspace S and its complement.
 
-What every joint gives: its variables s, the pose X(s), the subspace S and its complement W, over any scalar.
+A joint gives its variables s, the pose X(s), the subspace S and its complement W, over any scalar.
 
 The joint sits at a point of the parent (`on`, `at`), in axes that may be turned by a fixed rotation (`turned`), and at
 a point of the child (`point`). Everything here is from the (turned) parent's joint frame to the child's joint frame.
@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
 
 # -------- moves -----------------------------------------------------------------------------------------------
-# What a joint does, as it is declared: moves one after another, each in the axes that those before left.
+# Moves of a joint, as they are declared: one after another, each in the axes that those before left.
 #
 # Fields and names alone, no formulas. Proofs look at them.
 
@@ -78,7 +78,7 @@ Move = SlideAlong | TurnAbout | QuaternionTurn | WayAlongPieces
 
 @dataclass(frozen=True)
 class PushAlong:
-    """What acts along a way or an angle that a joint makes, on the child and opposite on the parent; None: nothing.
+    """Action along a displacement or an angle of a joint, on the child and opposite on the parent; None: nothing.
 
     push - stiffness (way - rest) - damping way', and armature way'^2 / 2 of kinetic energy.
     """
@@ -121,7 +121,7 @@ Turns = Annotated[tuple[Turned, ...], ListRule(PartRule(Turned), single=True)]
 
 @dataclass(frozen=True)
 class Effort:
-    """What acts along one variable s of a joint, on the child and opposite on the parent (None: nothing).
+    """Action along one variable s of a joint, on the child and opposite on the parent (None: nothing).
 
     drive - stiffness (s - rest) - damping s', and armature s'^2 / 2 more of kinetic energy.
     """
@@ -135,14 +135,14 @@ class Effort:
 
 @dataclass(frozen=True, kw_only=True)
 class Joint(Part):
-    """How a body hangs on its parent.
+    """Connection of a body to its parent.
 
     Args:
         on: the parent, or a point of it (`arm.end`, then without `at`); None: the ground.
         at: where the joint sits, parent's axes (None: its origin) [m]; on the ground also a point's name.
         point: the point of this body that sits there; None: its origin.
         turned: fixed rotations before the joint, each about the axes that the one before left.
-        symbol: what its reactions are called in formulas, in LaTeX: A gives A_x, A_y, M_A.
+        symbol: letter of its reactions in formulas, in LaTeX: A gives A_x, A_y, M_A.
     """
 
     kind: ClassVar[str]
@@ -168,19 +168,19 @@ class Joint(Part):
 
     @property
     def spins(self) -> tuple[str, ...]:
-        """Of a joint whose last four variables are a quaternion: the speeds that S takes in place of their rates."""
+        """Speeds that S takes in place of the rates of a quaternion, the last four variables; () of other joints."""
         return ()
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """What is wrong with its fields together; one alone its rule has looked at."""
+        """Diagnostics of fields that do not fit together; each field alone is checked by its rule."""
         yield from ()
 
     def works_in(self, space: str) -> bool:
-        """Whether this version derives the joint in this space."""
+        """True if this version derives the joint in this space."""
         return space == "space" or not self.only_space
 
     def moves(self) -> tuple[Move, ...]:
-        """What it does, as it is declared, from the (turned) parent's joint frame to the child's."""
+        """The declared moves of the joint, from the (turned) parent's joint frame to the child's."""
         raise self._not_yet()
 
     def variables(self, space: str) -> tuple[Expression, ...]:
@@ -192,7 +192,7 @@ class Joint(Part):
         raise self._not_yet()
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:
-        """In the plane: the angle of the child against the parent [rad]."""
+        """Angle of the child relative to the parent in the plane [rad]."""
         return 0
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
@@ -212,7 +212,7 @@ class Joint(Part):
         return ()
 
     def pushes(self) -> tuple[PushAlong, ...]:
-        """What acts along its variables, as it is declared: the proof's way, beside `efforts`."""
+        """The declared actions along its variables, which the proof uses instead of `efforts`."""
         return ()
 
     def _not_yet(self) -> NotYet:

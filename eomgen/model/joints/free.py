@@ -1,6 +1,6 @@
-"""Joints that hold nothing, everything, or a body in a plane.
+"""Joints without constraint, welds, and motion in a plane.
 
-Free: nothing holds the child.
+Free: the joint does not constrain the child.
 """
 
 from collections.abc import Iterator
@@ -50,7 +50,7 @@ IN_PLANE = ("x", "y", "angle")
 
 @dataclass(frozen=True, kw_only=True)
 class Free(Joint):
-    """A body that nothing holds: `x`, `y`, `angle`; in space `position` and an orientation.
+    """A free joint, which constrains nothing: `x`, `y`, `angle`; in space `position` and an orientation.
 
     In the plane s = (x, y, angle), as `planar` but with no wrench left in it.
 
@@ -142,7 +142,7 @@ def _is_point(path: DocumentPath, catalog: Catalog) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Fixed(Joint):
-    """A weld: no motion.
+    """A weld: no relative motion.
 
     f = 0, W = 1.
 

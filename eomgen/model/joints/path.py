@@ -102,7 +102,7 @@ PathPieces = Annotated[tuple[PathPiece, ...], ListRule(PartRule(PathPiece))]
 
 @dataclass(frozen=True, kw_only=True)
 class Path(Joint):
-    """A point on lines and arcs: `along` is the way from the first one's beginning at `at`; its axes do not turn.
+    """A point on a path of lines and arcs: `along` is the arc length from its start at `at`; its axes do not turn.
 
     X = (p(s), 1), S = (0, t), t the direction of travel; W: the force along its left normal, every torque and the force
     out of the plane, in space that of x and y of the joint's seat. Before its beginning and after its end the first and
@@ -206,7 +206,7 @@ class Path(Joint):
         return x, y, z
 
     def of_its_piece(self, s: Any, value: ValueOf, values: Sequence[Any]) -> Any:
-        """Of the values that the pieces have, that of the piece on which s is."""
+        """The value, out of one for each piece, of the piece on which s is."""
         *before, here = values
         for stretch, there in zip(reversed(self.stretches(value)[:-1]), reversed(before), strict=True):
             here = selected(s, stretch.end, there, here)

@@ -1,4 +1,4 @@
-"""Placed: where the child stands is given as expressions. Geometry, which carries no reaction."""
+"""Placed: the position of the child is given as expressions. Geometry, which carries no reaction."""
 
 from collections.abc import Iterator
 from typing import Any, ClassVar
@@ -41,7 +41,7 @@ from eomgen.symbolic.expression.text import as_expression
 
 @dataclass(frozen=True, kw_only=True)
 class Placed(Joint):
-    """A place as expressions say: `at` is that of `point`, along the turned axes, beside it the orientation.
+    """A position given by expressions: `at` is that of `point`, along the turned axes, with the orientation.
 
     s = (at, angle | angles | quaternion), S as of a free body.
 

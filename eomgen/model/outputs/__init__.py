@@ -1,4 +1,4 @@
-"""Output functions: the seam of what outputs may ask.
+"""Output functions: the seam of the functions of the motion that outputs may call.
 
 Adding one is one class, beside its kin or in a file of its own, and one name here.
 """

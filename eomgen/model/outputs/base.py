@@ -1,6 +1,6 @@
-"""What an output function says of itself, and what it may ask of a system.
+"""Base class of output functions, and the quantities of a system that they may use.
 
-What an output function says of itself: its names, arguments, unit, its value, and a second way to it.
+A function has names, arguments, a unit, its value, and a second way to it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
 # -------- context ---------------------------------------------------------------------------------------------
-# What an output function may ask: of a system over the graph, and of the same system in numbers by a second way.
+# Interfaces for output functions: a system over the graph, and the same system in numbers for the second way.
 
 
 GROUND = "ground"
@@ -113,19 +113,19 @@ class OutputContext(Protocol):
 
 
 class Trial(Protocol):
-    """The system at a state, in numbers of 50 digits: what a second definition is written in.
+    """The system at a state, in numbers of 50 digits, for the second way to an output's value.
 
-    It knows poses and masses; how these change it finds by central differences along the motion, and by nothing else.
+    It uses poses and masses; their rates come from central differences along the motionalone.
     """
 
     @property
     def scene(self) -> OutputContext: ...
     @property
     def step(self) -> Any:
-        """How long a moment is [s]."""
+        """Time step of the differences [s]."""
 
     def along(self, scalars: Sequence[AnyScalar]) -> tuple[list[Any], list[Any], list[Any]]:
-        """What functions of q and t are worth, and their first and second rates."""
+        """Values of functions of q and t, and their first and second rates."""
 
     def around(self, place: Vector) -> tuple[Numbers, Numbers, Numbers]:
         """A place a moment before, now, and a moment later."""
@@ -146,14 +146,14 @@ class Trial(Protocol):
         """Power of everything applied, or of what is applied to one body: forces and couples on differences of poses.
 
         Raises:
-            NoValue: something acts at no place.
+            NoValue: something has no point of application.
         """
 
     def acting(self, force: str) -> Any:
         """k (l - l_0) + c l' + f(l, l') of what is declared between two points, the same of an angle between bodies."""
 
     def demanded(self, coordinate: str) -> Any:
-        """What the free bodies, each by Newton and Euler, ask for along a driven coordinate when nothing drives it.
+        """Force along a driven coordinate that the motion requires, by Newton and Euler for each free body.
 
         Raises:
             NoValue: a constraint drives it; there is friction.
@@ -175,10 +175,10 @@ class Trial(Protocol):
         """
 
     def root(self, x: Any) -> Any:
-        """Of a number."""
+        """Square root of a number."""
 
     def eigenvalues(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
-        """Of a symmetric matrix, ascending."""
+        """Eigenvalues of a symmetric matrix, ascending."""
 
 
 # -------- base ------------------------------------------------------------------------------------------------
@@ -214,12 +214,12 @@ class OutputFunction:
         like: the argument whose unit it has.
         gives: what, in docs/reference/outputs.md.
         value: in q, u, a, lam, t and the parameters.
-        second: what it is worth in numbers, by a way that shares only poses and masses with `value`; None: there is
-            none here, and what proves it is said where `source` is asked.
-        source: what it is found from: STATE, BALANCE, MASSES, SMALL_MOTIONS or OF_A_RUN.
-        moves: whether velocities or accelerations stand in it.
+        second: its value in numbers, by a way that shares only poses and masses with `value`; None: there is none here,
+            and `source` says what proves it.
+        source: the data that it is found from: STATE, BALANCE, MASSES, SMALL_MOTIONS or OF_A_RUN.
+        moves: True if velocities or accelerations stand in it.
         shown: its arguments as docs/reference/outputs.md writes them, where the kinds do not say it.
-        findings: what else is wrong with a call of it.
+        diagnostics: what else is wrong with a call of it.
     """
 
     names: tuple[str, ...]
@@ -250,7 +250,7 @@ class OutputFunction:
 
     @property
     def is_along_degrees_of_freedom(self) -> bool:
-        """Whether it depends on which coordinates are free: dT/dq' is another one where fewer are."""
+        """True if it depends on which coordinates are free: dT/dq' changes where fewer are."""
         return any(kind.startswith("coordinate") for kind in self.kinds)
 
     @property
@@ -267,7 +267,7 @@ class OutputFunction:
 
     @property
     def dimension(self) -> Unit:
-        """That of its unit; of what is `per` an argument without that argument's share."""
+        """Dimension of its unit; of what is `per` an argument without that argument's share."""
         return parse_unit(self.unit)
 
 
@@ -277,7 +277,7 @@ def along(*names: str) -> tuple[str, ...]:
 
 
 def component(call: Call) -> int:
-    """Which component a name ends in: 0 of vx, 2 of omega_z."""
+    """Component in which a name ends: 0 of vx, 2 of omega_z."""
     return AXES[call.name[-1]]
 
 

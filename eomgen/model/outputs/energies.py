@@ -2,7 +2,7 @@
 
 kinetic_energy, potential_energy, power: of the whole, of one body, or of one force.
 
-By the second way T = sum m v.v/2 over particles, what the file gives as an energy beside it, and the power of a force
+By the second way T = sum m v.v/2 over particles, with the energies that the file gives, and the power of a force
 whose potential does not see time is -dV/dt.
 """
 
@@ -89,7 +89,7 @@ def _slope_of_energy(trial: Trial, name: str) -> Any:
 
 
 def _faster(trial: Trial, name: str, by: float) -> list[Trial]:
-    """With the speed larger, and smaller, by that much."""
+    """The trials with the speed larger, and smaller, by that much."""
     try:
         return [trial.faster(f"{name}'", sign * by) for sign in (1, -1)]
     except NoValue:

@@ -47,7 +47,7 @@ def _couple(scene: OutputContext, call: Call) -> AnyScalar:
 
 
 def _one_couple(scene: OutputContext, call: Call) -> AnyScalar:
-    """In space along the axle of the gear's first body; other couples have no one direction there."""
+    """Couple of a constraint; in space along the axle of the gear's first body, as others have no one direction."""
     if scene.is_plane:
         return scene.reactions.component("couple", AXES["z"], *_placed(call))
     owner, _, _ = _placed(call)
@@ -175,7 +175,7 @@ def _tension(scene: OutputContext, call: Call) -> AnyScalar:
 
 
 def _ends(call: Call) -> tuple[str, str]:
-    """The nodes of the member that an output asks for."""
+    """The nodes of the member that an output names."""
     ends = ends_requested(call)
     if ends is None:
         raise DerivationError(f"'{call}' names no member of a truss", fix=f"write tension({call.args[0]}, n1-n2)")
@@ -183,7 +183,7 @@ def _ends(call: Call) -> tuple[str, str]:
 
 
 def _diagnostics(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
-    """Of a truss the tension of one of its members can be asked."""
+    """Diagnostics of a truss's tension: it must name one of its members."""
     owner = call.args[0]
     if not isinstance(owner, Reference):
         return

@@ -37,7 +37,7 @@ from eomgen.symbolic.expression.spatial import (
 )
 
 # -------- bodies meant ----------------------------------------------------------------------------------------
-# Which bodies a function of masses is asked of, and whether enough is known of them.
+# Bodies to which a function of masses applies, and whether enough is known of them.
 
 
 def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]:
@@ -51,7 +51,7 @@ def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]
 
 
 def refuse_unknown(scene: OutputContext, call: Call, bodies: Sequence[str], *, about_z: bool) -> None:
-    """What is asked must be known of the bodies.
+    """Refuses a function of which the bodies' masses or moments are not known.
 
     Args:
         about_z: the moments about z are enough.
@@ -139,7 +139,7 @@ def _axis_at(call: Call, k: int) -> int:
 
 
 def _direction(scene: OutputContext, call: Call) -> Vector:
-    """Along x, y or z, or from the point to another one."""
+    """Direction along x, y or z, or from the point to another one."""
     name = name_at(call, 1)
     if name in AXES:
         return IDENTITY[AXES[name]]

@@ -69,7 +69,7 @@ def seen_from(scene: OutputContext, point: str, frame: str = GROUND) -> Vector:
 
 
 def turned(scene: OutputContext, seen: Vector, frame: str, axes: str) -> Vector:
-    """From the axes of one body into those of another; "": they stay."""
+    """The vector turned from the axes of one body into those of another; "": unchanged."""
     if axes in ("", frame):
         return seen
     return apply(transposed(scene.axes(axes)), apply(scene.axes(frame), seen))
@@ -261,7 +261,7 @@ def _rate_of_speed(trial: Trial, call: Call) -> Any:
 
 
 def _curvature(trial: Trial, call: Call) -> Any:
-    """Of the circle through three places: twice the sine of an angle of their triangle over the side across it."""
+    """Curvature of the circle through three places: 2 sin(angle) of their triangle over the side across it."""
     before, now, after = trial.around(seen_from(trial.scene, *names_of(call)))
     first, last, chord = minus(now, before), minus(after, now), minus(after, before)
     return 2 * length(trial, cross(first, last)) / (length(trial, first) * length(trial, last) * length(trial, chord))

@@ -1,4 +1,4 @@
-"""What is asked of a whole run, and of the linearized system."""
+"""Quantities of a whole run, and of the linearized system."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from eomgen.symbolic.expression.formula import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 # -------- of a run --------------------------------------------------------------------------------------------
-# max, min, mean, rms, last, period, ...: what a formula does along a run, which none of its states tells.
+# max, min, mean, rms, last, period, ...: what a formula does along a run, which no single state gives.
 #
 # They are found by `simulate`; their second way is the run itself, of which no state may be above its maximum.
 

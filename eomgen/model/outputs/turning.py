@@ -1,6 +1,6 @@
-"""How bodies turn, about which points, and motions of points on moving bodies.
+"""Orientation and rotation of bodies, centres of rotation, and motion of points relative to moving bodies.
 
-angle, omega, epsilon: how a body is turned and turns, against the ground or another body.
+angle, omega, epsilon: orientation and rotation of a body, relative to the ground or another body.
 
 By the second way from the rotation alone: with R from the body's axes to those of `frame`, omega~ = R' R^T and
 epsilon~ = R'' R^T + R' R'^T, R' and R'' by differences.
@@ -68,7 +68,7 @@ def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> AnyScalar:
 
 
 def _angle_of_axes(trial: Trial, body: str, frame: str = GROUND) -> Any:
-    """That between the x axes of both, and as many whole turns as coordinates count."""
+    """The angle between the x axes of both, with as many whole turns as coordinates count."""
     scene, x, y = trial.scene, 0, 1
     own, sides = (transposed(axes_at(trial, name)) if name in scene.bodies else IDENTITY for name in (body, frame))
     sine, cosine = dot(own[x], sides[y]), dot(own[x], sides[x])
@@ -105,7 +105,7 @@ def _own_axis(call: Call) -> int:
 
 
 def _one(name: str, unit: str, gives: str, order: int) -> OutputFunction:
-    """In the plane counter-clockwise positive; in space the magnitude."""
+    """The output function of a rate of rotation: in the plane counter-clockwise positive; in space the magnitude."""
 
     def value(scene: OutputContext, call: Call) -> AnyScalar:
         w = _spin(scene, *names_of(call), order=order)
@@ -194,7 +194,7 @@ def _pole(scene: OutputContext, body: str) -> Vector:
 
 
 def _still_point(trial: Trial, order: int, body: str, other: str = GROUND) -> Numbers:
-    """Where the rate of a place in the other body's frame vanishes, ground axes."""
+    """Place at which the rate of a place in the other body's frame vanishes, ground axes."""
     scene = trial.scene
     places: list[Any] = []
     rates: list[Any] = []
@@ -386,4 +386,4 @@ PARTS_OF_MOTION = (
         _centripetal,
     ),
 )
-"""What a point would have if it stayed in the body, and what is added by its moving there."""
+"""Motion of a point as if it stayed in the body, and what is added by its motion relative to the body."""

@@ -1,4 +1,4 @@
-"""What every shape gives: its points and its mass properties, over any scalar."""
+"""Base class of shapes: named points and mass properties, over any scalar."""
 
 import math
 from abc import ABC, abstractmethod
@@ -42,7 +42,7 @@ class Shape(Part, ABC):
 
     @property
     def is_point(self) -> bool:
-        """Whether its mass has no extent."""
+        """True if its mass has no extent."""
         return self.dimension == 0
 
     def points(self, value: ValueOf) -> dict[str, Vector]:
@@ -73,11 +73,11 @@ class Shape(Part, ABC):
         return self.of_mass(self.mass_of(value), value)
 
     def impossible(self, value: ValueOf) -> str:
-        """Why no such body exists, "" where one does; the values are numbers."""
+        """The reason why no such body exists, "" where one does; the values are numbers."""
         return ""
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
-        """What a picture shows of it, body axes."""
+        """Forms that a picture shows of it, body axes."""
         return ()
 
     def mass_of(self, value: ValueOf) -> Any:
@@ -115,7 +115,7 @@ def on_ball(radius: Any, fall: Any, turn: Any) -> Vector:
 
 
 def between(start: Any, end: Any, part: Any) -> Any:
-    """What is a part of the way from the one to the other."""
+    """The value at `part` of the way from the one to the other."""
     return start + part * (end - start)
 
 
@@ -124,10 +124,10 @@ def part_of_turn(angle: Any) -> Any:
 
 
 def not_inside(inner: Any, outer: Any) -> str:
-    """What is wrong with a hollow body's inner radius."""
+    """The error of a hollow body's inner radius; "" if there is none."""
     return "" if inner < outer else "'inner' is not smaller than 'radius'"
 
 
 def more_than_a_turn(opening: float) -> str:
-    """What is wrong with the angle of a sector or an arc."""
+    """The error of the angle of a sector or an arc; "" if there is none."""
     return "" if opening <= 2 * math.pi * (1 + SOLVED) else "'opening' is more than a whole turn"

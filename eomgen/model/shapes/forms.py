@@ -1,4 +1,4 @@
-"""What a picture shows of a shape: lines, polygons, arcs and solids, over any scalar.
+"""Forms that a picture shows of a shape: lines, polygons, arcs and solids, over any scalar.
 
 A form is geometry alone, in the axes of what it belongs to; who draws it knows its `kind`.
 """
@@ -29,7 +29,7 @@ class Form:
     spots: ClassVar[tuple[str, ...]] = ()
 
     def flat(self) -> tuple[Form, ...]:
-        """What the plane shows of it, seen along z."""
+        """Forms of it in the plane, seen along z."""
         return (self,)
 
 
@@ -103,7 +103,7 @@ class EllipsoidForm(Form):
 
 @dataclass(frozen=True)
 class RevolutionForm(Form):
-    """What a profile of (r, z) sweeps about the axis z.
+    """A body of revolution: the profile (r, z) swept about the axis z.
 
     Args:
         rims: the radii seen along the axis, the outer one first; the second one is that of a hole.

@@ -1,6 +1,6 @@
 """Hollow bodies and thin shells.
 
-What lies between two concentric round surfaces.
+Bodies between two concentric round surfaces.
 """
 
 from abc import ABC

@@ -204,13 +204,13 @@ def _edge_sums(corners: list[tuple[Any, Any]]) -> tuple[Any, ...]:
 
 
 def crossing(corners: list[tuple[Any, Any]]) -> bool:
-    """Whether two edges cross; that they touch, as along a cut to a hole, does no harm. The corners are numbers."""
+    """True if two edges cross; edges that only touch, as along a cut to a hole, do not. The corners are numbers."""
     edges = list(zip(corners, corners[1:] + corners[:1], strict=True))
     return any(_cross(*a, *b) for i, a in enumerate(edges) for b in edges[i + 1 :])
 
 
 def _cross(a: Any, b: Any, c: Any, d: Any) -> bool:
-    """Whether the segments a b and c d cross inside both."""
+    """True if the segments a b and c d cross inside both."""
     return bool(_turn(a, b, c) * _turn(a, b, d) < 0 and _turn(c, d, a) * _turn(c, d, b) < 0)
 
 

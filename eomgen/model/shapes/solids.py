@@ -286,7 +286,7 @@ class Prism(Shape):
 
 
 def _raised(cell: Cell, length: Any) -> Cell:
-    """What stands on a cell of the section, from -l/2 to l/2."""
+    """Prism on a cell of the section, from -l/2 to l/2."""
     return lambda s: (*cell(s)[:2], length * (s[2] - HALF))
 
 

@@ -56,13 +56,13 @@ class ExactState:
 
 @dataclass(frozen=True)
 class Equality:
-    """Whether all pairs are equal.
+    """Result of a comparison of pairs of expressions.
 
     Args:
-        equal: yes or no.
+        equal: True if all pairs are equal.
         arithmetic: "prime field" (exact) or "50 digits".
         culprit: index of the first pair that differs, or None.
-        states: at how many the pairs were found equal.
+        states: number of states at which the pairs were found equal.
     """
 
     equal: bool
@@ -72,9 +72,10 @@ class Equality:
 
 
 def equal_at_random_states(pairs: Iterable[Pair], *, seed: int = 1, states: int = 2) -> Equality:
-    """Whether the two of each pair are the same function of the symbols.
+    """Decides if the two of each pair are the same function of the symbols.
 
-    In a prime field; where functions have no meaning there and the field cannot tell, at real states with 50 digits.
+    The pairs are compared in a prime field; where functions have no meaning there or the field cannot decide, at real
+    states with 50 digits.
 
     Args:
         pairs: scalars of one graph.
@@ -89,9 +90,9 @@ def equal_at_random_states(pairs: Iterable[Pair], *, seed: int = 1, states: int 
 
 
 def equal_in_field(groups: Sequence[Sequence[Pair]], *, seed: int = 1, states: int = 2) -> list[Equality | None]:
-    """Of every group whether its pairs are equal in a prime field; None: the field cannot tell.
+    """Equality of each group's pairs, decided in a prime field; None for a group that the field cannot decide.
 
-    All groups are evaluated at once: what they share is found once.
+    All groups are evaluated at once: their common parts are evaluated once.
     """
     rng, flat = Random(seed), [x for pairs in groups for pair in pairs for x in pair]
     _, flat = united(flat)
@@ -146,7 +147,7 @@ def equal_at_real_states(
 
 
 def rounding_decides(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> bool:
-    """Whether scalars are others at a state 1e-30 away: 0/0 or 1/0 there, where rounding stands for the zeros."""
+    """True if scalars change at a state 1e-30 away, as with 0/0 or 1/0: their values here are only rounding errors."""
     digits = fifty_digits()
     beside = {x: value + digits.number(Fraction(1, 10**30)) for x, value in state.items()}
     here, there = (_values_at(scalars, at, digits) for at in (state, beside))

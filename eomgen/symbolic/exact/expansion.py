@@ -169,12 +169,15 @@ class Expansion:
         return self.sign_of_constant(self.atoms.node(f))
 
     def _is_never_negative(self, f: Terms) -> bool:
-        """Whether every monomial is positive and its number outweighs its waves: 1 + cos(2 x) >= 0."""
+        """True if the sum is never negative: no monomial is, and its number outweighs its waves, 1 + cos(2 x) >= 0."""
         least = self._least(f)
         return least is not None and all(number >= 0 for number in least.values())
 
     def is_positive(self, f: Terms) -> bool:
-        """Whether that is so, and a product of positive symbols outweighs its waves: M + m sin(alpha)^2 > 0."""
+        """True if the sum is positive: never negative, and some product of positive symbols exceeds its waves.
+
+        M + m sin(alpha)^2 > 0
+        """
         least = self._least(f)
         if least is None or not all(number >= 0 for number in least.values()):
             return False
@@ -184,7 +187,7 @@ class Expansion:
         return atom < 0 or self._is_positive(atom)
 
     def _least(self, f: Terms) -> dict[Monomial, Number] | None:
-        """What each monomial is multiplied by at least; None where one of them may be negative."""
+        """{monomial: lower bound of its coefficient}; None where a monomial may be negative."""
         least: dict[Monomial, Number] = {}
         for (monomial, w), c in f.items():
             if not self.all_positive({(monomial, ()): 1}):
@@ -203,7 +206,7 @@ class Expansion:
         return (1 if value > 0 else -1) if abs(value) > CERTAIN_AT_50 else None
 
     def _odd(self, atom: int, e: int) -> int:
-        """What of x^e has a sign: 0 where x has none, or e is even; else 1 or -1."""
+        """Exponent of the factor of x^e that has a sign: 0 where x has no sign or e is even; else 1 or -1."""
         return 0 if e % 2 == 0 or self._has_no_sign(atom) else 1 if e > 0 else -1
 
     def _without(self, f: Terms, powers: Monomial) -> Terms:
@@ -320,7 +323,7 @@ class Expansion:
         return atom == self.graph.pi.index or atom in self.positive
 
     def all_positive(self, f: Terms) -> bool:
-        """Whether every term is positive."""
+        """True if every term is positive."""
         return all(
             c > 0 and w == () and all(a < 0 or e % 2 == 0 or self._has_no_sign(a) for a, e in monomial)
             for (monomial, w), c in f.items()
@@ -363,7 +366,7 @@ class Expansion:
         return self.product(result, {(inverted, ()): tidy(1 / factor)})
 
     def _invertible(self, atom: int) -> bool:
-        """Whether negative and positive powers of the atom are both atoms: not so for sqrt(f) and for sums."""
+        """True if negative and positive powers of the atom are both atoms: not so for sqrt(f) and for sums."""
         return not self.atoms.is_a(atom, "sqrt") and not self.atoms.is_a(atom, "sum")
 
     def _inverted_sum(self, f: Terms) -> Terms:

@@ -77,10 +77,10 @@ def normal_form(x: Scalar, limit: int = Work.ANSWER) -> NormalForm:
 
 
 def equal(a: Scalar, b: Scalar, limit: int = Work.ANSWER) -> bool:
-    """Whether a and b are the same function.
+    """True if a and b are the same function.
 
-    Decided by the normal form for rational functions of sines, cosines and symbols. Where roots or other functions are
-    left over, or the form is too large, at random states (exact in a prime field where that is possible).
+    This is decided by the normal form for rational functions of sines, cosines and symbols. Where roots or other
+    functions are left over, or the form is too large, at random states (exact in a prime field where that is possible).
     """
     difference = a - b
     if type(difference) is not Node:
@@ -96,7 +96,7 @@ def equal(a: Scalar, b: Scalar, limit: int = Work.ANSWER) -> bool:
 
 
 def _has_relations(expansion: Expansion) -> bool:
-    """Whether atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
+    """True if atoms may depend on one another in a way that the form does not know: exp(2 x) = exp(x)^2."""
     nodes, pi = expansion.atoms.nodes, expansion.graph.pi.index
     if any(sphere[0] in nodes for sphere in expansion.unit_quaternions):  # a power of e0 below a line
         return True
@@ -361,7 +361,7 @@ def _forms_of(
 
 
 def _length(x: Scalar) -> float:
-    """Of the text; a quotient within a quotient counts as half as long again."""
+    """Length of the text of x; one with a quotient within a quotient counts as half as long again."""
     return text_size(x) * (1.5 if has_nested_quotient(x) else 1)
 
 

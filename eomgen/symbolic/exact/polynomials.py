@@ -183,7 +183,7 @@ def _polynomial(f: Terms) -> tuple[Polynomials, RationalPolynomial] | None:
 
 
 LARGEST_MULTIPLE = 12  # of a wave to be written in powers
-KEPT = 20_000  # waves and sets of angles of which the form is remembered
+KEPT = 20_000  # waves and sets of angles of which the form is cached
 
 
 def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> PowerSum | None:
@@ -287,6 +287,6 @@ def _joined(*products: tuple[PowerSum, PowerSum, int]) -> PowerSum:
 
 
 def eliminated(polynomial: PowerSum, axis: int, keep: str) -> PowerSum:
-    """With s^2 = 1 - c^2 (keep "cos") or c^2 = 1 - s^2 (keep "sin") used up for one axis."""
+    """The polynomial with s^2 = 1 - c^2 (keep "cos") or c^2 = 1 - s^2 (keep "sin") substituted for one axis."""
     pair = (2 * axis, 2 * axis + 1)
     return with_square_replaced(polynomial, pair[keep == "cos"], pair)

@@ -291,7 +291,9 @@ def by_parameters(
     written: Callable[[Terms], Scalar],
     added: Callable[[Sequence[Scalar]], Scalar],
 ) -> Scalar | None:
-    """What moves and is common * sum of parameter * quotient; None where fewer than two parameters part the terms.
+    """The sum as common * sum of parameter * quotient; None where there is one group alone.
+
+    The common factor is the product of the moving atoms that all terms have.
 
     Args:
         terms: a sum with denominators.
@@ -329,7 +331,7 @@ def _linear(expansion: Expansion, terms: Terms) -> set[int]:
 
 
 def _atoms_in(expansion: Expansion, atom: int) -> set[int]:
-    """Those of a denominator or a root."""
+    """The atoms within a denominator or a root."""
     opaque = expansion.atoms.opaque.get(atom)
     sums = () if opaque is None else opaque.arguments
     return {other for terms in sums for monomial, _ in terms for other, _ in monomial}

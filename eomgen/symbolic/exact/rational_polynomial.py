@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.rational import Fraction
 
 LARGEST_IMAGE = 10_000_000  # product of the degrees up to which sympy finds a common divisor in a second or two
 PLACES = 10  # at which a polynomial is tried before its factors are lifted
-KEPT = 2_000  # polynomials of which the factors are remembered, as formulas recur
+KEPT = 2_000  # polynomials of which the factors are cached, as formulas recur
 
 Exponents = tuple[int, ...]  # one for each generator
 PowerSum = Mapping[Exponents, Number]
@@ -120,7 +120,7 @@ def _canonical(f: RationalPolynomial, parts: Iterable[tuple[Element, int]]) -> t
 
 
 def _primitive(f: RationalPolynomial) -> RationalPolynomial:
-    """In whole numbers without common divisor, the leading one positive."""
+    """The polynomial scaled to whole coefficients without common divisor, the leading one positive."""
     common = common_number(c for _, c in f.terms)
     return f.scaled(1 / common if f.leading > 0 else -1 / common)
 
@@ -146,7 +146,7 @@ def _image(f: RationalPolynomial, g: RationalPolynomial) -> int:
 
 @dataclass(frozen=True)
 class _Library:
-    """What the elements of two libraries do not have in common.
+    """Operations in which the two polynomial libraries differ.
 
     Args:
         made: {exponents: coefficient}, number of generators -> an element.

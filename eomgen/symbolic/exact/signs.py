@@ -26,7 +26,7 @@ def sign_of_terms(x: Scalar, positive: Collection[Node]) -> int | None:
 
 
 def never_vanishes(x: Node) -> bool:
-    """Whether x is positive wherever it has a value, if all its constants are: M + m*sin(alpha)^2, 2*l^2 + r^2."""
+    """True if x is positive, or negative, wherever it has a value, for positive constants: M + m*sin(alpha)^2."""
     constants = tuple(node for node in order((x,)) if node.op == "symbol" and node.graph.is_constant(node))
     try:
         expansion, (terms,) = expanded((x,), Work.ENTRY, constants)

@@ -55,7 +55,7 @@ def doubled(c: Number, powers: Powers) -> SumPart | None:
 
 
 def is_negative(parts: SumParts) -> bool:
-    """Whether every part has a minus."""
+    """True if every part has a minus."""
     return all(c < 0 for c, _ in parts)
 
 
@@ -137,7 +137,7 @@ _Form = TypeVar("_Form")
 
 
 def _once(form: Callable[[CollectedSums, SumParts], _Form]) -> Callable[[CollectedSums, SumParts], _Form]:
-    """What one form of a sum is, found once for each sum."""
+    """Caches a form of a sum, so that it is computed once for each sum."""
 
     def found(book: CollectedSums, parts: SumParts) -> _Form:
         key = (form, *parts)
@@ -174,7 +174,10 @@ class CollectedSums:
         return whole if length_of(whole) + deeper <= length_of(apart) + free else apart
 
     def coordinates_first(self, parts: SumParts) -> SumParts:
-        """As places are read, X + s*cos(alpha) + R*sin(alpha); the same order where all terms share something."""
+        """The parts with the coordinates first, X + s*cos(alpha) + R*sin(alpha).
+
+        The order is unchanged where all terms have a common factor.
+        """
         if without_common(parts)[1]:
             return parts
         return sorted(
@@ -416,7 +419,7 @@ class CollectedSums:
 
 
 def _depth(x: Scalar) -> int:
-    """How many parentheses stand within one another, those of functions not counted."""
+    """Nesting depth of parentheses, those of functions not counted."""
     if type(x) is not Node:
         return 0
     depths: dict[Node, int] = x.graph.found(_depth)

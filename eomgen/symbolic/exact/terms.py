@@ -211,7 +211,7 @@ class Atoms:
     places: dict[Monomial, SortKey] = field(default_factory=dict, repr=False)
 
     def is_a(self, atom: int, op: str) -> bool:
-        """Whether the atom is an opaque one of this op."""
+        """True if the atom is an opaque one of this operation."""
         return atom in self.opaque and self.opaque[atom].op == op
 
     def node(self, terms: Terms) -> Scalar:

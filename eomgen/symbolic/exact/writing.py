@@ -95,7 +95,7 @@ class Writer:
         return common_number(c for terms in sums for c, _, _ in self.written(terms))
 
     def leads_with_minus(self, terms: Terms) -> bool:
-        """Whether the first term as written has a minus sign."""
+        """True if the first term as written has a minus sign."""
         return bool(terms) and self.written(terms)[0][0] < 0
 
     def _divisor(self, below: Monomial) -> Scalar:
@@ -168,7 +168,7 @@ class Writer:
         return rest, self._root(tuple(found))
 
     def _may_divide_root(self, atom: int) -> bool:
-        """Whether sqrt(f)/f may be written 1/sqrt(f): f is a positive symbol, or a sum."""
+        """True if sqrt(f)/f may be written 1/sqrt(f): f is a positive symbol, or a sum."""
         return atom in self.positive or self.atoms.is_a(atom, "sum")
 
     def _root(self, found: tuple[Terms, ...]) -> Scalar:
@@ -279,7 +279,7 @@ MOST_WAVES = 500  # of a sum that is shortened: more are too long to be read eit
 MOST_AXES = 6
 MOST_PAIRED = 60  # waves among which pairs are sought
 MOST_CHOICES = 64  # of forms along the directions, tried all
-KEPT = 4096  # sums of which the shortest form is remembered
+KEPT = 4096  # sums of which the shortest form is cached
 
 
 def shortest(waves: Waves) -> Sum:
@@ -387,7 +387,7 @@ def _forms(rays: Waves) -> list[Form]:
 
 
 def _is_one_axis(angles: set[AngleSum]) -> bool:
-    """Whether all is of one angle, which is no multiple of another."""
+    """True if all angles are a single one, which is no whole multiple of a shorter one."""
     return len(angles) == 1 and gcd(*(c.numerator for k in angles for _, c in k)) == 1
 
 

@@ -1,1 +1,1 @@
-"""What formulas are made of: exact numbers, nodes of the graph, the grammar of the model file, units, vectors."""
+"""Elements of formulas: exact numbers, nodes of the graph, the grammar of the model file, units, vectors."""

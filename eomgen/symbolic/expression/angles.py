@@ -112,7 +112,7 @@ def _signed_square(a: Scalar) -> tuple[int, Number] | None:
 
 
 def _unfolds(graph: Owner, atom: Node | None, c: Number) -> bool:
-    """Whether the sine of c times the atom is known without the atom: c asin(x), with a whole c."""
+    """True if the sine of c times the atom has a form without the atom: c asin(x), with a whole c."""
     if atom is None or type(c) is not int or abs(c) > LARGEST_MULTIPLE:
         return False
     if atom.op == "atan2":  # one of what moves has a value at (0, 0) too, where there is no direction

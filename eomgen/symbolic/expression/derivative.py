@@ -18,7 +18,7 @@ LONG, FEWER = 10_000, 3  # nodes that sweeps meet; how many times fewer change t
 
 
 def _found_once(find: Callable[..., Any], outputs: Sequence[Scalar], *how: Any) -> Any:
-    """find(outputs, *how); the graph keeps it: of T by the rates, of the momenta in time, which every route takes."""
+    """find(outputs, *how); cached by the graph, as every route needs the derivatives of T and of the momenta."""
     graph = next((x.graph for x in outputs if type(x) is Node), None)
     if graph is None:
         return find(outputs, *how)
@@ -120,7 +120,7 @@ def _jacobian(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple
 
 
 def substituted(outputs: Sequence[Scalar], replacements: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
-    """The outputs with nodes replaced by scalars of the same graph, all at once; what holds none of them is kept."""
+    """The outputs with nodes replaced by scalars of the same graph, all at once; other outputs are unchanged."""
     known: dict[Node, Scalar] = dict(replacements)
     for x in order(outputs, replacements):
         if x in known or x.op == "symbol":
@@ -176,7 +176,7 @@ def depends_on(x: Scalar, symbols: Collection[Node]) -> bool:
 
 
 def _dependents(nodes: Sequence[Node], symbols: frozenset[Node]) -> list[Node]:
-    """Those of the nodes (in evaluation order) that depend on the symbols."""
+    """The nodes, out of those in evaluation order, that depend on the symbols."""
     found: list[Node] = []
     active: set[Scalar] = set(symbols)
     for x in nodes:
@@ -187,7 +187,7 @@ def _dependents(nodes: Sequence[Node], symbols: frozenset[Node]) -> list[Node]:
 
 
 def _followers(nodes: Sequence[Node], symbols: Sequence[Node]) -> list[list[Node]]:
-    """For each symbol those of the nodes (in evaluation order) that depend on it."""
+    """The nodes that depend on each symbol, out of those in evaluation order; one list for each symbol."""
     found: list[list[Node]] = [[] for _ in symbols]
     on: dict[Scalar, int] = {}  # bit k: depends on symbol k
     for k, symbol in enumerate(symbols):
@@ -206,9 +206,10 @@ def _followers(nodes: Sequence[Node], symbols: Sequence[Node]) -> list[list[Node
 
 
 def _is_shorter_backward(outputs: Sequence[Scalar], nodes: Sequence[Node], followers: Sequence[Sequence[Node]]) -> bool:
-    """Whether of long matrices the sweeps from each output back meet far fewer nodes than those from each symbol.
+    """True if reverse sweeps, one for each output, meet far fewer nodes than forward ones, one for each symbol.
 
-    So it is of sums in which every symbol stands in most of what follows: the angles along a chain.
+    Only long matrices are counted. It is so for sums in which every symbol occurs in most of what follows: the angles
+    along a chain.
     """
     forward = sum(map(len, followers))
     if forward < LONG:
@@ -257,7 +258,7 @@ def _rate(x: Node, rates: Sequence[Scalar]) -> Scalar:
 
 
 def _shares(x: Node, w: Scalar) -> list[tuple[Scalar, Scalar]]:
-    """What each argument a of x gets of x's adjoint w: (a, w dx/da)."""
+    """(argument a of x, its part w dx/da of x's adjoint w), for each argument."""
     op, graph = x.op, x.graph
     if op == "mul":
         a, b = argument(x, 0), argument(x, 1)

@@ -54,7 +54,7 @@ class Dimension(dict[Any, Fraction]):
         return [base for base in self if base not in BASE]
 
     def __str__(self) -> str:
-        """As a unit: N*m, kg/s^2; 1 of a number; unknowns by their names in brackets."""
+        """The dimension as a unit: N*m, kg/s^2; 1 of a number; unknowns by their names in brackets."""
         known = tuple(self.get(base, 0) for base in BASE)
         bases = [] if known in _KNOWN else [(base, self[base]) for base in BASE if base in self]
         bases += [(f"[{base[0]}]" if isinstance(base, tuple) else "[?]", self[base]) for base in self.unknowns]
@@ -88,13 +88,13 @@ KINDS: dict[frozenset[tuple[Any, Any]], str] = {frozenset(powers): kind for powe
 
 
 def dimension_of_unit(unit: Unit) -> Dimension:
-    """Of a declared unit."""
+    """Dimension of a declared unit."""
     length, mass, time = unit.dimension
     return Dimension({base: Fraction(n) for base, n in (("m", length), ("kg", mass), ("s", time)) if n})
 
 
 class Inference:
-    """What is known of unknown dimensions so far; grows by every equation."""
+    """Equations between dimensions, solved for the unknown ones; grows by every equation."""
 
     def __init__(self) -> None:
         self._solved: dict[Any, Dimension] = {}
@@ -110,14 +110,14 @@ class Inference:
         return Dimension({(name,): Fraction(1)})
 
     def reduced(self, dimension: Dimension) -> Dimension:
-        """With what is known of its unknowns put in."""
+        """The dimension with the known values of its unknowns substituted."""
         for base in [base for base in dimension if base in self._solved]:
             power = dimension[base]
             dimension = dimension.times({base: -power}).times(self._settled(base), power)
         return dimension
 
     def _settled(self, base: Any) -> Dimension:
-        """What is known of an unknown, in unknowns of which nothing is; kept, so that a long way is gone once."""
+        """The known value of an unknown, in unknowns that have none; cached, so that a long chain is followed once."""
         open_ = [base]
         while open_:
             known = self._solved[open_[-1]]
@@ -225,8 +225,8 @@ class Walk:
         calls: of a function of the motion; None: not known.
         declared: the parameters that have a unit.
         moves: the names that have rates.
-        strict: whether small numbers beside declared parameters are coefficients, without a dimension.
-        fixes: whether a fix is sought.
+        strict: True if small numbers next to declared parameters are coefficients, without a dimension.
+        fixes: True if a fix is sought.
     """
 
     names: Callable[[str], Dimension]
@@ -321,7 +321,7 @@ class Walk:
         return Term(NUMBER, first, k, names, bare=True)
 
     def _finished(self, term: Term) -> Term:
-        """As it is added or put in: 1 - cos(a) is a plain number, t alone counts seconds; both fit anything."""
+        """The term as it enters a sum: 1 - cos(a) is a plain number, t alone counts seconds; both fit any dimension."""
         if term.bare or ("t" in term.names and term.names <= TIME):
             return replace(term, dimension=self.inference.unknown())
         divided = any(kind == "/" for kind, _ in self._code_of(term))
@@ -344,7 +344,7 @@ class Walk:
         self.clashes.append(Clash(place, known(term.dimension), known(needed), beside, function, names, fix))
 
     def _place(self, term: Term) -> Place:
-        """Where a term stands, with the brackets that belong to it."""
+        """Place of a term in the text, including the brackets that belong to it."""
         text = self._source
         columns = [(c, code) for c, code in zip(self._expression.columns, self._expression.code, strict=True)]
         mine = [c for c, _ in columns[term.first : term.last + 1] if c >= 0]

@@ -3,7 +3,7 @@
 A parsed text as a value: Expression, and the Call and Reference that outputs are made of.
 
 The tree is held in postfix order, so that a sum of a thousand terms is evaluated by a loop and two
-texts with the same tree are equal. Where in the text each piece stands is kept beside it, for carets.
+texts with the same tree are equal. The place of each piece in the text is stored with it, for carets.
 """
 
 from __future__ import annotations
@@ -198,7 +198,7 @@ what stands n below the top, a part with a name | ("under", names): the parts th
 
 @dataclass(frozen=True, slots=True)
 class Reference:
-    """What an argument names: a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate."""
+    """A name as an argument: of a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate."""
 
     name: str
     column: int = field(default=0, compare=False)
@@ -224,7 +224,7 @@ class Expression:
         text: what the user wrote (not compared: `a+b` equals `a + b`).
         code: the tree in postfix order.
         columns: of each piece of code, where it stands in the text, from 0 (-1: it stands nowhere).
-        typed: whether a person typed it in place of what a model declares.
+        typed: True if a person typed it in place of what a model declares.
     """
 
     text: str = field(compare=False)
@@ -416,7 +416,7 @@ def _composed(text: str, parts: tuple[Expression, ...], operation: Instruction) 
 
 
 def _enclosed(a: Expression, sign: str, last: bool = False) -> str:
-    """An operand in parentheses, where it needs them beside the sign."""
+    """An operand in parentheses, where it needs them next to the sign."""
     outermost, what = a.code[-1]
     if outermost == "number":
         alone = what >= 0 and type(what) is int

@@ -86,7 +86,7 @@ class Graph:
         self.near = {nodes[k]: value for k, value in state["near"].items()}
 
     def reduced(self, x: Node) -> tuple[Any, ...]:
-        """How a node is pickled: by its place in its graph, which goes along; a constant by what it is."""
+        """Arguments that rebuild a node from a pickle: its graph and its index; of a constant its operation."""
         return (constant_again, (x.op, x.args)) if self is CONSTANTS else (_node_at, (self, x.index))
 
     @property
@@ -115,7 +115,7 @@ class Graph:
         return symbol
 
     def found(self, what: Any) -> dict[Any, Any]:
-        """What was found of the nodes, to be asked again: their lengths, their derivatives; a dict for each."""
+        """Cached results about the nodes, such as lengths or derivatives: a dict for each kind of result."""
         return self._found.setdefault(what, {})
 
     def hold_on_sphere(self, symbols: tuple[Node, ...]) -> None:
@@ -127,7 +127,7 @@ class Graph:
         self.near |= values
 
     def is_constant(self, x: Scalar) -> bool:
-        """Whether x is made of numbers and of symbols that stay the same."""
+        """True if x is made of numbers and of symbols that stay the same."""
         if type(x) is not Node or x in self._constants:
             return True
         return x.op != "symbol" and all(map(self.is_constant, x.args))
@@ -530,7 +530,7 @@ def common_of_squares(x: Node, y: Node) -> Scalar | None:
 
 
 def same_number(a: Scalar, b: Scalar) -> bool:
-    """Whether both are numbers, and equal."""
+    """True if both are numbers, and equal."""
     return type(a) is not Node and type(b) is not Node and a == b
 
 

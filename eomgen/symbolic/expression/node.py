@@ -10,7 +10,7 @@ from eomgen.symbolic.expression.numbers import Number, tidy
 
 
 class Owner(Protocol):
-    """What a node asks of the graph that owns it."""
+    """Interface of the graph that owns a node, as the node uses it."""
 
     pi: Node
     unit_quaternions: list[tuple[Node, ...]]
@@ -51,7 +51,7 @@ def op_bits(*ops: str) -> int:
 
 
 def holds_op(x: Any, *ops: str) -> bool:
-    """Whether one of the operations stands in x."""
+    """True if one of the operations occurs in x."""
     return type(x) is Node and bool(x.ops & op_bits(*ops))
 
 
@@ -77,7 +77,7 @@ class Node:
         self.ops: int = ops
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For another process."""
+        """Reconstruction of the node from a pickle, by its graph."""
         return self.graph.reduced(self)
 
     @property
@@ -152,7 +152,7 @@ SparseRow = dict[int, Scalar]
 
 
 def argument(x: Node, k: int) -> Scalar:
-    """What x is made of, at place k."""
+    """Argument number k of x."""
     found: Scalar = x.args[k]
     return found
 

@@ -103,7 +103,7 @@ def rotation(axis: Vector, cosine: AnyScalar, sine: AnyScalar) -> Matrix:
 
 @dataclass(frozen=True)
 class Pose:
-    """Where frame B stands in frame A.
+    """Position and orientation of frame B in frame A.
 
     Args:
         R: rotation R_AB, 3 x 3.
@@ -195,7 +195,7 @@ class SpatialInertia:
 
     @staticmethod
     def about_center(m: AnyScalar, com: Vector, I_com: Matrix) -> SpatialInertia:
-        """From the inertia about the mass centre: I = I_com + m (c.c 1 - c c^T) (parallel axes)."""
+        """Spatial inertia from the inertia about the mass centre: I = I_com + m (c.c 1 - c c^T) (parallel axes)."""
         h = times(m, com)
         shift = matrix_of(((dot(h, com) if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3))
         return SpatialInertia(m, h, added(I_com, shift))

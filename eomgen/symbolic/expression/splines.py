@@ -102,7 +102,7 @@ class Spline:
         return whole.raised(-whole.at(Fraction(0)))
 
     def raised(self, by: Fraction) -> Spline:
-        """With a number added."""
+        """The spline with a number added."""
         return replace(self, pieces=tuple((piece[0] + by, *piece[1:]) for piece in self.pieces))
 
     def scaled(self, factor: Fraction) -> Spline:
@@ -117,7 +117,7 @@ class DeclaredSamples:
     Args:
         way, ends: of `spline_of`.
         factor: by which the values have been multiplied since.
-        ends_given: whether somebody said how it ends.
+        ends_given: True if the behaviour at the ends was declared.
     """
 
     times: SplineRow
@@ -147,11 +147,11 @@ class Sampled:
         return Sampled(f"{self.name}'", self.spline.derivative(), self.pi_power)
 
     def integral(self) -> Sampled:
-        """From 0 on."""
+        """The integral from t = 0 on."""
         return Sampled(self.name.removesuffix("'"), self.spline.integral(), self.pi_power)
 
     def raised(self, by: Fraction) -> Sampled:
-        """With a number added, where there is no pi in it."""
+        """The function with a number added; the number has no pi in it."""
         return replace(self, spline=self.spline.raised(by), declared=None)
 
     def named(self, name: str) -> Sampled:
@@ -298,5 +298,5 @@ def _tridiagonal(rows: Sequence[tuple[Fraction, Fraction, Fraction, Fraction]]) 
 
 
 def _rounded(a: Fraction) -> Fraction:
-    """Of a number that has grown long a multiple of 1e-90: f'' of many samples is continuous to that."""
+    """A number; if it has grown long, the nearest multiple of 2^-300 (1e-90), to which f'' is then continuous."""
     return a if a.denominator.bit_length() <= LONGEST else Fraction(round(a * 2**300), 2**300)

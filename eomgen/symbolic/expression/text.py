@@ -135,7 +135,7 @@ def reference_at(text: str, position: int) -> str | None:
 
 
 def unclosed_at(text: str, position: int) -> bool:
-    """Whether a dotted name here is the last thing of the text: the parenthesis before it is never closed."""
+    """True if a dotted name here is the last thing in the text: the parenthesis before it is never closed."""
     found = _DOTTED.match(text, position)
     return found is not None and skip_space(text, found.end()) == len(text)
 
@@ -419,7 +419,7 @@ class _Parser:
         return tuple(args)
 
     def argument(self) -> Reference | Expression:
-        """What stands after the present token, "(" or ","; the token after it becomes the present one."""
+        """The argument after the present token, "(" or ","; the token after it becomes the present one."""
         start = skip_space(self.text, self.token.end)
         if unclosed_at(self.text, start):
             raise ExpressionError("'(' is never closed", self.token.start, "write ) at the end")
@@ -618,7 +618,7 @@ def rate_of_call(text: str) -> str:
 
 
 def meant_name(name: str, allowed: Container[str]) -> str:
-    """What may stand there for phi_dot (phi'), π (pi), θ (theta); "" for what is no habit."""
+    """The correct spelling of phi_dot (phi'), π (pi), θ (theta) among the allowed names; "" if none is recognized."""
     for end, dots in _ENDS:
         rate = name.removesuffix(end) + "'" * dots
         if name.endswith(end) and rate in allowed:
@@ -665,13 +665,13 @@ WORDS: dict[str, tuple[str, ...]] = {
 
 
 def other_words(word: str, known: Iterable[str]) -> tuple[str, ...]:
-    """What a word of other programs is called here, among what is known."""
+    """The names here, among the known ones, of what other programs call `word`."""
     there = set(known)
     return tuple(each for each in WORDS.get(word.lower(), ()) if each in there)
 
 
 def _in_parentheses(text: str, start: int) -> str:
-    """From an opening parenthesis to the one that closes it, or to the end."""
+    """The part of a text from an opening parenthesis to the one that closes it; at the end of the text it is closed."""
     depth = 0
     for k in range(start, len(text)):
         depth += {"(": 1, ")": -1}.get(text[k], 0)

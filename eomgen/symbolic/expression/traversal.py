@@ -23,7 +23,7 @@ _INDEX = attrgetter("index")
 
 @dataclass(frozen=True)
 class Count:
-    """How many operations an evaluation takes.
+    """Number of operations that an evaluation takes.
 
     Args:
         total: at every call, once the parameters are fixed.
@@ -43,7 +43,7 @@ MOST_WHOLE = 10**9  # of the whole numbers of a fraction that stands in formulas
 
 
 def holds_many_digits(x: Scalar) -> bool:
-    """Whether a number with all its digits, as of a double, stands in a scalar: a number, and no part of a formula."""
+    """True if a number with all its digits, as of a double, occurs in a scalar: that is a number and no formula."""
     leaves = [a for node in order((x,)) for a in node.args if isinstance(a, Fraction | int)]
     plain = [x] if isinstance(x, Fraction | int) else leaves
     return any(max(abs(Fraction(a).numerator), Fraction(a).denominator) > MOST_WHOLE for a in plain)
@@ -114,7 +114,7 @@ class Symbols:
         u: generalized speeds, nu, named `theta'` where u is a rate, else by the speed's name.
         a: accelerations u', nu, named `theta''` or `w1'`.
         lam: multipliers of the closing rows, k, named `lam(constraint, row)`, row from 1.
-        unknowns: numbers that are asked, by name, in the model's order.
+        unknowns: numbers that are requested, by name, in the model's order.
     """
 
     graph: Graph

@@ -31,7 +31,7 @@ class Unit:
         factor: exact, positive.
         pi_power: of the pi in an angle: 1 for deg, -1 for 1/deg.
         length, mass, time: exponents of m, kg, s.
-        angle: exponent of rad, which is 1 but tells rad/s from 1/s.
+        angle: exponent of rad, which is 1 but distinguishes rad/s from 1/s.
         cycles: exponent of the Hz in it: a frequency counts cycles, an angular velocity radians.
     """
 
@@ -70,7 +70,7 @@ class Unit:
 
     @property
     def size(self) -> float:
-        """Of one of it, in SI."""
+        """Value of one such unit in SI."""
         return float(self._size(math.pi))
 
     def _size(self, pi: Any) -> Any:
@@ -97,7 +97,7 @@ class Unit:
         return Unit(text, self.factor, *(e - (k == 3) for k, e in enumerate(self._exponents())))
 
     def expression_in_si(self, expression: Expression) -> Expression:
-        """What a user wrote in this unit, in SI: 40 cm is 2/5, 90 deg is 1/2*pi."""
+        """An expression written in this unit, in SI: 40 cm is 2/5, 90 deg is 1/2*pi."""
         return expression.scaled(self.factor, self.pi_power)
 
     def raised(self, n: int) -> Unit:
@@ -224,7 +224,7 @@ def _nearest(name: str) -> str:
 
 
 # -------- typed -----------------------------------------------------------------------------------------------
-# What a person types -> an expression and the unit beside it: `45 deg`, `300 rpm`, `pi/4 rad`, `2*l`; a time.
+# What a person types -> an expression and its unit: `45 deg`, `300 rpm`, `pi/4 rad`, `2*l`; a time.
 
 
 _BEFORE_UNIT = re.compile(r"(?<=[\d.)])\s*(?=[^\W\d]|°)|\s+(?=[^\W\d]|°|1/)")
@@ -277,7 +277,7 @@ def read_typed(typed: Any) -> tuple[Expression, Unit | None]:
 
 
 def is_plain(value: Expression) -> bool:
-    """Whether it is a number: no names but pi, nothing that an output would ask."""
+    """True if it is a number: no names but pi, and no function of an output."""
     return value.names <= {"pi"} and not value.calls
 
 
@@ -287,13 +287,13 @@ def _plain(value: Any) -> Any:
 
 
 def parse_typed(text: str, *, references: bool = False, start: int = 0) -> tuple[Expression, Unit | None]:
-    """(the expression, the unit that stands beside it, or None).
+    """(the expression, the unit behind it, or None).
 
     Args:
         references: functions of the outputs are allowed, as calls.
         start: the column at which the text begins; columns count from there.
     Raises:
-        ExpressionError: it is neither; the unit is none; names stand beside a unit.
+        ExpressionError: it is neither; the unit is none; names stand in front of a unit.
     """
     try:
         return _padded(text, references, start), None
@@ -318,7 +318,7 @@ def parse_typed(text: str, *, references: bool = False, start: int = 0) -> tuple
 
 
 def parse_typed_equation(text: str) -> tuple[tuple[Expression, Unit | None], tuple[Expression, Unit | None]]:
-    """Both sides of `left = right`, each with the unit beside it.
+    """Both sides of `left = right`, each with its unit.
 
     Raises:
         ExpressionError: it is no equation; column and length say where.
@@ -332,7 +332,7 @@ def parse_typed_equation(text: str) -> tuple[tuple[Expression, Unit | None], tup
 
 
 def unit_for_name(name: str, expression: Expression) -> str:
-    """How `5*m`, or `45*deg`, is written where the name was meant as a unit; "" where it is none."""
+    """The fix of `5*m` or `45*deg` where the name was meant as a unit, "write 5 m"; "" where the name is no unit."""
     factor = expression.text.replace(" ", "").removesuffix(f"*{name}")
     return f"write {factor} {name}" if name in UNITS and factor != expression.text.replace(" ", "") else ""
 

@@ -1,1 +1,1 @@
-"""What expressions are worth: in floats, intervals, the prime field or 50 digits, and where they vanish."""
+"""Values of expressions, in floats, intervals, the prime field or 50 digits, and their zeros."""

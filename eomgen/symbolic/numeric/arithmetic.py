@@ -19,8 +19,8 @@ from eomgen.symbolic.numeric.tolerances import OUTWARDS, TINIEST
 # -------- balls -----------------------------------------------------------------------------------------------
 # Balls: a number of many digits and how far from it the true one may be, (x, r) with |true - x| <= r.
 #
-# Rounding of each operation widens its ball, what cancels shows as a ball that is wide beside its number. r = 0 of a
-# number that is exact; r = inf where nothing can be said: 1/x with 0 in the ball of x. x = nan: surely no value.
+# Rounding of each operation widens its ball; what cancels shows as a ball that is wide compared with its number. r = 0
+# of a number that is exact; r = inf where nothing can be said: 1/x with 0 in the ball of x. x = nan: surely no value.
 
 
 Ball = tuple[Any, Any]
@@ -32,7 +32,7 @@ def balls(digits: int, *, last: bool = False) -> Arithmetic:
     """Balls around numbers of so many digits.
 
     Args:
-        last: what no precision could tell apart is equal: a branch, a sign or an edge that hangs on it is decided so.
+        last: True if what no precision could distinguish counts as equal: it decides branches, signs and edges.
     """
     return _Balls(digits, last).arithmetic
 
@@ -105,7 +105,7 @@ class _Balls:
         return (x, r + self.unit * abs(x))
 
     def _guarded(self, function: Callable[..., Ball]) -> Callable[..., Ball]:
-        """Of what has no value: none; of what nothing can be said: nothing can be said."""
+        """Makes an operation propagate arguments that have no value, or an unbounded error, without being called."""
 
         def of(*arguments: Ball) -> Ball:
             if any(x != x for x, _ in arguments):
@@ -203,7 +203,7 @@ class _Balls:
 
 
 # -------- intervals -------------------------------------------------------------------------------------------
-# Intervals: what an expression may be worth anywhere in a box, for many boxes at once.
+# Intervals: the values that an expression may take anywhere in a box, for many boxes at once.
 #
 # An interval is (low, high), two arrays with one entry a box. Every function gives an interval that holds its value
 # at every point of its arguments' intervals: [1, 2] * [-1, 3] = [-2, 6], its ends moved outwards by more than
@@ -374,7 +374,7 @@ INTERVALS = Arithmetic(
 
 
 def follows(rows: Sequence[Sequence[int]], row: Sequence[int]) -> bool:
-    """Whether the row is a combination of the others, modulo the prime."""
+    """True if the row is a combination of the others, modulo the prime."""
     left = list(row)
     for pivot, k in _echelon(rows):
         _take_out(left, pivot, k)

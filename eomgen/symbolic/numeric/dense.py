@@ -13,12 +13,12 @@ SWEEPS = 8  # of scaling; each takes the square root of what is left
 
 
 def independent(J: np.ndarray, *, smallest: float) -> bool:
-    """Whether no row of J follows from the others."""
+    """True if no row of J is a combination of the others."""
     return rank(J, smallest=smallest) == len(J)
 
 
 def rank(A: np.ndarray, *, smallest: float = RANK) -> int:
-    """How many singular values of the scaled A are more than `smallest`."""
+    """Number of singular values of the scaled A above `smallest`."""
     return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
 
 
@@ -54,7 +54,7 @@ def without_rounding(A: np.ndarray) -> np.ndarray:
 
 
 def weighted(M: np.ndarray, J: np.ndarray) -> np.ndarray:
-    """M + mean(M_ii) J^T J, rows of J of one length: with J a given it measures a alike, and M may be 0 along J."""
+    """M + mean(M_ii) J^T J, rows of J of one length: where J a is given it weighs a alike; M may be 0 along J."""
     rows = of_one_length(J)
     found: np.ndarray = M + np.trace(M) / max(len(M), 1) * rows.T @ rows
     return found
@@ -74,7 +74,7 @@ def independent_rows(A: np.ndarray, smallest: float) -> list[int]:
 
 
 def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
-    """How many rows {column: number of 50 digits} are independent."""
+    """Number of independent rows {column: number of 50 digits}."""
     left = [dict(row) for row in rows]
     rank = 0
     while left:
@@ -94,7 +94,7 @@ def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
 
 
 def follows_in_digits(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool:
-    """Whether a row of numbers of 50 digits is a combination of others (`modular.follows` in the reals)."""
+    """True if a row of numbers of 50 digits is a combination of others (`arithmetic.follows` in the reals)."""
     others = [_of_size_one(each) for each in rows]
     return sparse_rank([*others, _of_size_one(row)]) == sparse_rank(others)
 

@@ -25,7 +25,7 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS, check_patience
 
 WAYS_KEPT = 16  # of evaluations that may come again
-NUMBERS_KEPT = 4096  # exact numbers that are known with 50 digits
+NUMBERS_KEPT = 4096  # exact numbers cached with 50 digits
 NONE = frozenset[Node]()
 _Step = tuple[Node, str, tuple[int, ...]]
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
@@ -127,7 +127,7 @@ def floats_of(values: Iterable[Any]) -> list[float]:
 
 @dataclass(frozen=True)
 class _Way:
-    """In which order values are found: constants, symbols, nodes given, then each step from the values before it.
+    """Order of evaluation: constants, symbols, nodes given, then each step from the values before it.
 
     Args:
         steps: a node, its operation, and the places of its arguments among all values.
@@ -374,7 +374,7 @@ def solved_quickly(rows: Sequence[Sequence[Any]]) -> list[Any] | None:
 
 
 def sums_of_products(rows: Sequence[Sequence[Any]], columns: Sequence[Sequence[Any]]) -> list[list[tuple[Any, Any]]]:
-    """Of each column, of each row: (row column, |row| |column|), with 50 digits."""
+    """(row column, |row| |column|) with 50 digits, for each row, in a list for each column."""
     from eomgen.symbolic.numeric.sure_digits import sums_by_balls
 
     def both(row: Sequence[Any], column: Sequence[Any]) -> tuple[Any, Any]:
@@ -456,7 +456,7 @@ class Layers:
 
     @cached_property
     def _constant(self) -> tuple[Scalar, ...]:
-        """What the moving operations and the outputs take that is the same at all states."""
+        """Arguments of the moving operations, and outputs, that are the same at all states."""
         moving = {*self._moving, *self.unknowns}
         taken = dict.fromkeys(a for x in self._moving for a in x.args) | dict.fromkeys(self.outputs)
         return tuple(x for x in taken if type(x) is not Node or x not in moving)
@@ -478,7 +478,7 @@ class Layers:
 
     @cached_property
     def _places(self) -> dict[Scalar, int]:
-        """Where each value stands: unknowns, constants, then layer by layer."""
+        """{scalar: place of its value}: unknowns, constants, then layer by layer."""
         ordered = [*self.unknowns, *self._constant]
         for nodes in self._kinds.values():
             ordered += nodes

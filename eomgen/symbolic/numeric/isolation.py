@@ -47,7 +47,7 @@ class Isolation:
     Args:
         roots: the middle of a box about each root, roots x unknowns.
         undecided: the middles of boxes that may hold roots, `halves` how far they reach to each side.
-        finished: whether every box was examined.
+        finished: True if every box was examined.
     """
 
     roots: np.ndarray
@@ -57,7 +57,7 @@ class Isolation:
 
 
 def can_isolate(equations: Sequence[Scalar]) -> bool:
-    """Whether the equations have no jumps."""
+    """True if the equations have no jumps."""
     return not any(node.op in JUMPS for node in order(equations))
 
 
@@ -114,7 +114,7 @@ class _Boxes:
         return np.asarray(np.all(~((low > 0) | (high < 0)), axis=1))  # no value: it may
 
     def _is_vain(self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        """Boxes of which halves tell no more: an equation is below all doubles, or has no value at the ends and in the
+        """Boxes of which halves say no more: an equation is below all doubles, or has no value at the ends and in the
         middle, or changes in a small box by little more than the rounding at a point."""
         low, high = self._at(self.equations, a, b)
         lost = np.any(np.maximum(-low, high) <= TINIEST, axis=1)
@@ -182,7 +182,7 @@ def _kept(chosen: np.ndarray, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray,
 
 
 def _regular(matrices: np.ndarray) -> np.ndarray:
-    """Whether each of the matrices can be inverted without losing all digits."""
+    """True, for each matrix, if it can be inverted without losing all digits."""
     with np.errstate(all="ignore"):
         condition = np.linalg.cond(matrices) if len(matrices) else np.zeros(0)
     return np.isfinite(condition) & (condition < 1e10)
@@ -293,7 +293,7 @@ class ChebyshevPieces:
 
 
 def nodes_between_each(a: np.ndarray, b: np.ndarray, degree: int) -> np.ndarray:
-    """As `nodes_between`, of pieces that need not follow one another."""
+    """The nodes of `nodes_between`, for pieces that need not follow one another."""
     s = -np.cos(np.pi * np.arange(degree + 1) / degree)
     found: np.ndarray = ((a + b) / 2)[:, None] + ((b - a) / 2)[:, None] * s
     found[:, 0], found[:, -1] = a, b

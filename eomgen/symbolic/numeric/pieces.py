@@ -1,9 +1,9 @@
-"""Scalars -> what their pieces hang on: quantities that move, and where one piece ends and the next begins.
+"""Scalars -> the quantities on which their pieces depend, and the values where one piece ends and the next begins.
 
 A comparison, min, max, abs or sign changes where the difference of its two sides passes 0, samples where their argument
-passes one of their places; the root of a square is a size, too. Differences that are the same up to what stands still
+passes one of their places; the root of a square is an absolute value, too. Differences that are equal up to constants
 are one quantity with several ends.
-With the choice of each made, the scalars are formulas without pieces, of which one says by algebra what they are.
+With the choice of each made, the scalars are formulas without pieces, which algebra can examine.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Switch:
         return sorted(set(evaluate(self.ends, state, fifty_digits())))
 
     def piece(self, state: State) -> int | None:
-        """In which piece the quantity lies, from 0; None: between two."""
+        """Index of the piece in which the quantity lies, from 0; None: between two."""
         value = evaluate((self.quantity,), state, fifty_digits())[0]
         places = self.places(state)
         if any(abs(value - end) <= COMPUTED * (1 + abs(end)) for end in places):
@@ -58,7 +58,7 @@ class Switch:
         return len([end for end in places if value > end])
 
     def targets(self, state: State) -> list[list[Any]]:
-        """Of every piece some values of the quantity inside."""
+        """Some values of the quantity inside each piece."""
         places, number = self.places(state), fifty_digits().number
         widths = [b - a for a, b in pairwise(places)] or [1 + abs(places[0])]
         inside = [[a + number(share) * (b - a) for share in SHARES] for a, b in pairwise(places)]
@@ -85,7 +85,7 @@ class Switch:
 
 
 def piecewise_nodes(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Node, ...]:
-    """What changes its form with something that moves, in the order of evaluation."""
+    """The nodes whose form changes with something that moves, in the order of evaluation."""
     nodes = order(x for x in scalars if holds_op(x, *PIECEWISE))
     active = _active(nodes, moving)
     return tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active)
@@ -103,7 +103,7 @@ def _base(x: Node) -> Scalar | None:
 
 
 def compared_sides(x: Node) -> tuple[Scalar, Scalar]:
-    """What is compared where x chooses; of samples their argument and 0."""
+    """The two sides that are compared where x chooses; of samples their argument and 0."""
     if x.op in COMPARING:
         return x.args[0], x.args[1]
     base = _base(x)
@@ -111,7 +111,7 @@ def compared_sides(x: Node) -> tuple[Scalar, Scalar]:
 
 
 def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
-    """What each of the nodes chooses at a state; None where it lies between two pieces of one.
+    """The choice of each node at a state; None where it lies between two pieces of one.
 
     A node without a value, in a case that does not hold there, chooses 0: nothing.
     """
@@ -161,7 +161,7 @@ def _as_chosen(x: Node, choice: int, sides: Sequence[Scalar]) -> Scalar:
 
 
 def _polynomial_of(sampled: Sampled, piece: int, t: Scalar, pi: Node) -> Scalar:
-    """What samples are in one piece."""
+    """The polynomial of one piece of the samples."""
     s, found = t - sampled.spline.origins[piece], 0 * t
     for c in reversed(sampled.spline.pieces[piece]):
         found = found * s + c
@@ -171,7 +171,7 @@ def _polynomial_of(sampled: Sampled, piece: int, t: Scalar, pi: Node) -> Scalar:
 
 
 def _active(nodes: Sequence[Node], moving: frozenset[Node]) -> set[Any]:
-    """What hangs on something that moves."""
+    """The nodes that depend on something that moves."""
     active: set[Any] = set(moving)
     for x in nodes:
         if x.op != "symbol" and any(type(a) is Node and a in active for a in x.args):

@@ -58,12 +58,12 @@ class Sought(Protocol[X]):
 
 @dataclass(frozen=True)
 class Root(Generic[X]):
-    """Where an iteration ended.
+    """End of an iteration.
 
     Args:
         x: the place.
         left: |f| before the last step, its largest entry; nan where f or its slopes have no value.
-        met: whether it is a root.
+        met: True if it is a root.
     """
 
     x: X
@@ -73,7 +73,7 @@ class Root(Generic[X]):
 
 @dataclass(frozen=True)
 class Newton:
-    """How a root is sought.
+    """Settings of the search for a root.
 
     Args:
         enough: |f| at a root.
@@ -84,7 +84,7 @@ class Newton:
         stalls: |f| below which a root is reached when it falls to no `share` of itself any more: redundant equations
             differ by rounding.
         again: one step more at the root, for its last digits.
-        keeps: A is kept while |f| falls by this factor in a step.
+        keeps: A is reused while |f| falls by this factor in a step.
         double: of a step, to within which the next is half of it: at a double root it is taken twice.
         longest: step.
         least: (the slopes, -f) -> d, where change has a measure of its own; None: |d| is least.
@@ -203,10 +203,10 @@ class Descent:
         equations: what is to vanish.
         unknowns: the symbols sought.
         values: of every other symbol, with 50 digits.
-        telling: how many of the unknowns, the first ones, tell two roots apart and how near they are (None: all). The
+        telling: how many of the unknowns, the first ones, distinguish two roots and their distance (None: all). The
             others may be free at a root, as the multipliers of redundant constraints are.
         scales: of the rows and of the columns (None: those of slopes at a few places).
-        last: the slopes where they were asked last, by the unknowns there.
+        last: the last evaluated slopes, by the unknowns there.
     """
 
     equations: tuple[Scalar, ...]
@@ -217,7 +217,7 @@ class Descent:
     last: dict[tuple[Any, ...], np.ndarray] = field(default_factory=dict, compare=False, repr=False)
 
     def roots_near(self, guesses: np.ndarray, most: int | None = None) -> list[np.ndarray]:
-        """From each guess the root that is reached; those that reach none are left out.
+        """The roots that are reached from the guesses, each once; guesses that reach none are left out.
 
         Args:
             most: how many at most, the nearest to the first guess (None: all).
@@ -247,7 +247,7 @@ class Descent:
         return None if wanders or not near.closes_in(root.x) else found
 
     def closes_in(self, state: State) -> bool:
-        """Whether Newton's steps from a state shrink, or are nothing, or what is left is the rounding of terms."""
+        """True if Newton's steps from a state shrink or vanish, or the equations are 0 to within rounding."""
         first = self._step(state)
         if first is None or self._is_nothing(first, state) or self._is_rounding(state):
             return first is not None
@@ -256,7 +256,7 @@ class Descent:
         return second is not None and self._length(second) <= SHRINKS * self._length(first)
 
     def reach(self, x: np.ndarray) -> np.ndarray:
-        """How far about a place the root is that was found there, of each unknown."""
+        """Distance, for each unknown, from a place found to its root."""
         step = self._measured_at(x)._step(self._state(x))
         return np.asarray(COMPUTED * np.abs(x) + (0.0 if step is None else STEPS_APART * np.abs(step.astype(float))))
 
@@ -295,7 +295,7 @@ class Descent:
         return all(abs(d) <= CERTAIN_AT_50 * (1 + abs(state[x])) for x, d in zip(self.unknowns, step, strict=True))
 
     def _is_rounding(self, state: State) -> bool:
-        """Whether each equation is 0 as far as its terms, of which much cancels, are known with so many digits."""
+        """True if each equation is 0 to within the rounding of its terms at 50 digits."""
         exact = {node: (x, 0) for node, x in state.items()}
         return all(abs(x) <= reach for x, reach in evaluate(self.equations, exact, balls(50)))
 
@@ -381,7 +381,7 @@ class Descent:
         return self._scales[1]
 
     def _undamped(self, x: np.ndarray) -> np.ndarray:
-        """Where Newton's own steps lead from the first guess: damped ones creep along stiff valleys."""
+        """The place reached by Newton's undamped steps from the first guess: damped ones creep along stiff valleys."""
         for _ in range(UNDAMPED):
             f, A = self._scaled(x[None, :])
             if not np.all(np.isfinite(f)):
@@ -413,7 +413,7 @@ class Descent:
         return np.asarray(np.isfinite(size) & (size < NEAR_ROOT))
 
     def _apart(self, x: np.ndarray) -> list[np.ndarray]:
-        """Of the rows that are one root in the entries that tell, one."""
+        """One row for each root: rows that agree in the entries that distinguish roots are the same root."""
         f, A = self._scaled(x)
         steps = self._columns * np.einsum("bij,bj->bi", np.linalg.pinv(A, rcond=LEAST_CHANGE), f)
         reaches = (STEPS_APART * np.abs(steps) + COMPUTED * np.abs(x))[:, : self.telling]

@@ -20,7 +20,7 @@ except ImportError:  # no wheel for this platform: mpmath decides
 
 SOLVING = 256  # bits: those of 50 digits, and as many more as an elimination takes
 SURE = 100  # bits of a value, or of one beside 1, that must be left
-WORTH = 2  # operations that a value must save that is handed over, or handed back
+WORTH = 2  # operations that a value must save if it is converted, or converted back
 ROWS = 8  # from which on elimination is handed over
 OPERATIONS: dict[str, Callable[..., Any]] = {
     "neg": operator.neg,
@@ -76,7 +76,7 @@ def in_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Seq
 
 
 def _value(handed: int, steps: Sequence[_Step]) -> bool:
-    """Whether the steps are all known, and many beside what is handed over and back."""
+    """True if all steps are known operations, and enough of them for the conversion of `handed` values to pay."""
     return HAS_BALLS and len(steps) >= WORTH * handed and {op for _, op, _ in steps} <= OPERATIONS.keys()
 
 
@@ -106,7 +106,7 @@ def solved_by_balls(mp: Any, rows: Sequence[Sequence[Any]]) -> list[Any] | None:
 
 
 def sums_by_balls(mp: Any, rows: Sequence[Sequence[Any]], columns: Sequence[Sequence[Any]]) -> list[Any] | None:
-    """Of each column, of each row: (row column, |row| |column|); None where they are few, or not sure."""
+    """(row column, |row| |column|) for each row, in a list for each column; None where they are few, or not sure."""
     n, m, k = len(rows), len(columns[0]), len(columns)
     if not HAS_BALLS or n < ROWS:
         return None

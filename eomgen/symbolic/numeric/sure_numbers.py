@@ -1,8 +1,8 @@
 """Exact expressions -> their numbers: the one door by which a number leaves an exact form.
 
-A form is evaluated in balls (see `balls`) of 30 digits, then of 60, and so on until the ball is narrow beside its
-number: so no digit is lost to what cancels in it, (1 - cos x)/x^2 at x = 1e-9. What is still undecided with the most
-digits is 0 where it is tiny beyond all measure, and has no number otherwise.
+A form is evaluated in balls (see `balls`) of 30 digits, then of 60, and so on until the ball is narrow compared with
+its number: so no digit is lost to what cancels in it, (1 - cos x)/x^2 at x = 1e-9. What is still undecided with the
+most digits is 0 where it is tiny beyond all measure, and has no number otherwise.
 """
 
 from __future__ import annotations

@@ -15,17 +15,17 @@ SEVEN_DIGITS = 1e-6  # the same to seven digits
 FOUR_DIGITS = 6e-4  # the same to four digits
 COMPUTED = 1e-9  # several solutions one after another: forces from accelerations from coordinates
 CARRIED = 1e-8  # what a run in time carried along, or what was searched twice
-BEST = 1e-15  # [of the unknown] asked of a search that shall go as far as doubles do
+BEST = 1e-15  # [of the unknown] for a search that shall go as far as doubles do
 OUTWARDS = 5e-16  # of an end of an interval, by which it is moved outwards: two units in the last place
 ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
-SLOPE_AT_REST = 1e-30  # beside the square of a length of order 1, whose root has no slope at 0: no double sees it
+SLOPE_AT_REST = 1e-30  # added to the square of a length of order 1, whose root has no slope at 0: no double sees it
 TINIEST = 1e-300  # instead of 0 in a divisor
-FELT = 1e-100  # [of a scaled row] its largest entry: beside one above it what underflows in doubles is nothing
+FELT = 1e-100  # [of a scaled row] its largest entry: compared with one above it what underflows in doubles is nothing
 SLOW = 1e-4  # [of a unit, a second] a rate of this part of 1 is compared as 1 is: smaller ones are mostly rounding
 
 # In single precision (7 digits).
 SINGLE_ROUNDING = 6e-8  # of a number, half a unit in the last place: states so near are one
-SINGLE = 1e-6  # one evaluation, beside what the rounding of its arguments does; of a run, what is asked of a step
+SINGLE = 1e-6  # one evaluation, in addition to the rounding of its arguments; of a run, the tolerance of a step
 
 # What is left of 0 in numbers of 50 digits.
 ZERO_AT_50 = 1e-25  # [1] of what would be of the order of 1: half of the digits are left for what cancels
@@ -48,9 +48,9 @@ PIVOT = 1e-11  # of a row's pivot in emitted code: the squared sine of its angle
 SURE_PIVOT = 1e-3  # of the same: above it a row need not wait for one that is farther from those before it
 DEPENDENT_EASE = 1e-10  # of J A^-1 J^T, added to its diagonal where no pivot may be sought: ten times a squared sine
 NEARLY_SINGULAR = 1e-5  # at a place that is known to half of the digits only, or where constraints resist too little
-BRANCHES_MEET = 1e-4  # of the largest singular value: two branches meet so near that neither is told from the other
+BRANCHES_MEET = 1e-4  # of the largest singular value: two branches meet so near that nothing distinguishes them
 WIDE_SPECTRUM = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
-BESIDE = 1e-14  # of a change: how far beside a state that is known in doubles a corner is looked for
+BESIDE = 1e-14  # of a change: how far from a state that is known in doubles a corner is looked for
 DEGENERATE = 1e-6  # of a determinant, length or diagonal entry that a description divides by
 
 # Places, instants and shapes.
@@ -67,7 +67,7 @@ NEAR_ROOT = 1e-7  # of scaled equations: so near, Newton's method has a root; a 
 SHARE = 1e-6  # of a row, multiplier or coordinate in a combination: what has a smaller part is not named
 OPEN_GAP = 1e-6  # of a gap or its rate against its terms: more is not the rounding of what a user typed
 UNBALANCED = 1e-6  # of the forces: what least squares leave, above which constraints do not carry them
-MASSES_APART = 1e11  # of the least mass: beside a larger one the least is lost in a difference of doubles
+MASSES_APART = 1e11  # of the least mass: compared with a larger one the least is lost in a difference of doubles
 AT_AN_EDGE = 1e-5  # [1] of what vanishes at the edge of a domain (1 - x under an arccosine): a motion ends there
 GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
 SOON = 1e-6  # [s] after the start, when a motion that begins between two pieces is in one
@@ -80,13 +80,13 @@ SAME_TURN = 1e-14  # [1 or rad] of ratios and angles that were doubles: so near,
 FOLLOWS_AT_50 = 1e-22  # of a column over its largest entry, with 50 digits: what is left of one that follows
 LEAST_DENSITY = 1e-6  # of a body's own size: a thin one is taken as thick as this, so that all of it has mass
 NEARLY_A_POINT = 1e-6  # [of its largest parameter] of a body whose extent is lost in that nothing is said
-TOWARD_THE_MODEL = 1e-7  # of the forces: what pulls parameters to the model's where data do not tell
+TOWARD_THE_MODEL = 1e-7  # of the forces: what pulls parameters to the model's where data do not determine them
 
-# Accuracy that is asked of a run in time: rtol and atol of a step.
-RUN = 1e-9  # of the user's runs, where nothing else is asked
+# Accuracy that is requested of a run in time: rtol and atol of a step.
+RUN = 1e-9  # of the user's runs, where nothing else is requested
 FAIR_RUN = 1e-10  # of a run to one instant, where a finer one does not come across
 FINE_RUN = 1e-12  # of a run whose end is printed as a number
-FINEST_RUN = 1e-13  # of a run that is continued across a singular place; the least that is worth asking
+FINEST_RUN = 1e-13  # of a run that is continued across a singular place; the finest that is useful
 LEAST_RTOL = 2.3e-14  # below which rounding is larger: 100 units in the last place
 RUNS_AGREE = 1e-7  # of the motion's size: two runs across a singular place differ by less
 
@@ -94,7 +94,7 @@ RUNS_AGREE = 1e-7  # of the motion's size: two runs across a singular place diff
 DIFFERENCE_STEP = 1e-5  # of a first derivative in doubles, near the cube root of rounding
 PARAMETER_STEP = 1e-3  # of a parameter, of a difference of fourth order: near the fifth root of rounding
 IMAGINARY_STEP = 1e-30  # i h of a derivative Im f(s + i h) / h, which has no difference and so no rounding
-ASIDE_STEP = 1e-6  # [rad] beside a place where a description is locked
+ASIDE_STEP = 1e-6  # [rad] off a place where a description is locked
 WIDE_STEP = 1e-4  # of a second difference, near the fourth root of rounding; of what is drawn
 
 # Of what is printed.

@@ -1,4 +1,4 @@
-"""How much work one formula is worth, in one unit; and how long a user waits for all of it.
+"""Budgets of work for one formula, in one unit, and the time limit that a user sets for everything.
 
 Budgets are counted, never timed: what is printed is the same on every machine. The clock only ends what takes too long:
 hot loops ask it by `check_patience`; what cannot ask, a loop of a library, is stopped from a thread a little later.
@@ -61,10 +61,10 @@ class _Clock:
 
     Args:
         end: on the monotonic clock [s].
-        told: what is being done, the outermost first.
-        done: what was.
-        kept: what stays of it.
-        closed: when nothing is to be stopped any more; thrown: whether something was, from outside.
+        reported: the activities under way, the outermost first.
+        done: the finished ones.
+        kept: what remains of the work.
+        closed: set when nothing is to be stopped any more; thrown: True if something was stopped from outside.
     """
 
     seconds: float
@@ -77,7 +77,7 @@ class _Clock:
     lock: threading.Lock = field(default_factory=threading.Lock)
 
     def error(self) -> OutOfPatience:
-        """What was done, what was given up, and what helps."""
+        """The error that says what was done, what was given up, and how to go on."""
         given_up = ", ".join(self.reported[-2:]) or "the work"
         before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
         what = f"given up after {self.seconds:g} s, {self.kept}: {given_up}{before}"
@@ -105,7 +105,7 @@ def time_left() -> float | None:
 
 
 def keep_what_there_is() -> None:
-    """Lets what was found be told, however long that takes: nothing more is sought."""
+    """Ends the time limit, so that what was found can be reported in full: nothing more is sought."""
     clock = _CLOCK.get()
     if clock is not None:
         with clock.lock:
@@ -116,10 +116,10 @@ def keep_what_there_is() -> None:
 
 
 def another_stretch(kept: str) -> None:
-    """Of work that goes on step by step, each of which stays: the next one may take as long as all so far.
+    """Restarts the time limit, for work whose finished steps remain: the next step may take the whole time again.
 
     Args:
-        kept: what there is now, for whoever is told that the rest was given up.
+        kept: what there is now, for the message that the rest was given up.
     """
     clock = _CLOCK.get()
     if clock is not None:
@@ -134,7 +134,7 @@ def another_stretch(kept: str) -> None:
 
 @contextmanager
 def doing(what: str) -> Iterator[None]:
-    """Says what is done, for whoever is told that it was given up."""
+    """Names the activity inside, for the message that it was given up."""
     clock = _CLOCK.get()
     if clock is None:
         yield
@@ -154,7 +154,7 @@ def doing(what: str) -> Iterator[None]:
 
 @contextmanager
 def patience(seconds: float | None) -> Iterator[None]:
-    """What is done inside takes so long at the most; None: as long as it takes.
+    """Limits the time of what is done inside; None: no limit.
 
     Raises:
         OutOfPatience: it did not come to its end.
@@ -195,7 +195,7 @@ def _stop_late(clock: _Clock, closed: threading.Event, thread: int) -> None:
 
 
 def _imports(thread: int) -> bool:
-    """Whether a thread is importing: stopped there it would leave half a module behind for all that comes after."""
+    """True if a thread is importing: stopped there it would leave half a module behind for all that comes after."""
     frame = sys._current_frames().get(thread)
     while frame is not None:
         if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
@@ -218,7 +218,7 @@ SELDOM = (1_000_000, 50, 100)  # objects made between two looks at the youngest;
 
 
 class _Rests:
-    """How many rests are under way, in whatever threads, and whether the collector worked before the first."""
+    """Number of pauses under way in all threads, and the collector's state before the first one."""
 
     def __init__(self) -> None:
         self.lock, self.number, self.worked = Lock(), 0, False
@@ -242,7 +242,7 @@ _RESTS = _Rests()
 
 @contextmanager
 def growing() -> Iterator[None]:
-    """Expressions are made, and all of them stay: to look for cycles among them takes longer than to make them.
+    """Pauses the cycle collector while expressions are made that all stay: the search for cycles would take longer.
 
     Python's own counting of references goes on. What was made stays young, and is looked at when the collector wakes:
     put among what is old it would never count as new there, and rings that callers drop would pile up for ever. Where

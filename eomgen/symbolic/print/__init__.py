@@ -1,1 +1,1 @@
-"""How expressions are written: the order of a textbook, numbers, text that the grammar reads back, sympy."""
+"""Printed forms of expressions: the order of a textbook, numbers, text that the grammar reads back, sympy."""

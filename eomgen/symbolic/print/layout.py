@@ -294,7 +294,7 @@ def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
 
 
 def _rank(factor: Factor) -> Rank:
-    """Where a factor stands: by what it is made of, and by its age only where that is long or the same."""
+    """Sort key of a factor: by what it is made of, and by its age only where that is long or the same."""
     base = factor[0]
     known: dict[Node, Rank] = base.graph.found(_rank)
     if base not in known:
@@ -386,7 +386,7 @@ def _with_turned_difference(factors: tuple[Factor, ...], named: Container[Node])
 
 
 def is_bare_argument(op: str, x: Scalar) -> bool:
-    """Whether x stands behind the function without parentheses: sin x, and of an angle cos 2 x and sin omega t."""
+    """True if x stands behind the function without parentheses: sin x, and of an angle cos 2 x and sin omega t."""
     if type(x) is not Node:
         return False
     if is_base(x) or op not in TRIGONOMETRIC:
@@ -397,7 +397,7 @@ def is_bare_argument(op: str, x: Scalar) -> bool:
 
 
 def _with_shorter_roots(product: Product, named: Container[Node]) -> Product:
-    """What the number below the line and the number under a root share goes under the root.
+    """The product with the common factor of a root's number and the denominator moved under the root.
 
     k/(g d) sqrt(g n x) = k/d sqrt(n x/g)
     """
@@ -448,7 +448,7 @@ def has_nested_quotient(x: Scalar) -> bool:
 
 
 def _is_of_sums(x: Node) -> bool:
-    """Whether x is a product, quotient or power of which a part is a sum."""
+    """True if x is a product, quotient or power of which a part is a sum."""
     return x.op in ("mul", "div", "pow") and any(type(a) is Node and a.op in SUMS for a in x.args)
 
 
@@ -461,7 +461,7 @@ LONGEST_FRACTION = 100  # the smallest denominator of a fraction that reads wors
 MUCH_LONGER = 2  # characters by which a decimal may be longer than its fraction
 MOST_PRINTED = 4000  # digits of a whole number: Python prints 4300
 BITS = math.log2(10)  # of a digit
-KEPT = 1000  # numbers whose decimals are kept
+KEPT = 1000  # numbers whose decimals are cached
 SMALLEST = -4  # power of ten below which a decimal is written with its exponent: 8.464e-7
 
 
@@ -484,7 +484,7 @@ def number_text(c: Number) -> str:
 
 
 def number_length(c: Number) -> int:
-    """How long the text of c is; of a very long one nearly."""
+    """Length of the text of c; of a very long one an estimate."""
     return int((c.numerator.bit_length() + c.denominator.bit_length()) / BITS) if _is_long(c) else len(number_text(c))
 
 
@@ -513,7 +513,7 @@ def decimal_of(c: Number) -> tuple[str, int] | None:
 
 
 def _places(denominator: int) -> int | None:
-    """How many places after the point 1/denominator has; None where they never end."""
+    """Number of places after the point of 1/denominator; None where they never end."""
     powers = []
     for prime in (2, 5):
         count = 0

@@ -1,4 +1,4 @@
-"""How a name is set in LaTeX, by its own letters or as a model declares it."""
+"""Names in LaTeX, derived from their letters or declared by a model."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Symbol:
 
     @property
     def tex(self) -> str:
-        """In LaTeX."""
+        """The symbol in LaTeX."""
         below, above = f"_{{{self.below}}}" if self.below else "", f"^{{{self.above}}}" if self.above else ""
         return f"{self.base}{below}{above}"
 
@@ -61,7 +61,7 @@ class Symbol:
         return replace(self, base=over).tex
 
     def with_index(self, *more: str) -> Symbol:
-        """With more in its index, behind what stands there."""
+        """The symbol with more in its index, behind what stands there."""
         return replace(self, below=",".join(filter(None, (self.below, *more))))
 
 
@@ -76,7 +76,7 @@ def _dotted(base: str, dots: int) -> str | None:
 
 
 def _is_one(inside: str) -> bool:
-    """Whether the braces around it close where it ends: of {a}, not of {a}{b}."""
+    """True if the braces around it close where it ends: of {a}, not of {a}{b}."""
     depth = 0
     for token in _TOKEN.findall(inside):
         depth += (token == "{") - (token == "}")
@@ -212,7 +212,7 @@ class _Tokens:
         return token
 
     def refuse(self, what: str, fix: str) -> ExpressionError:
-        """What is wrong with the token."""
+        """The error at the present token."""
         return ExpressionError(what, self.at, fix, max(len(self.now), 1))
 
 
@@ -288,7 +288,7 @@ def _braces(tokens: _Tokens, *, index: bool, bare: bool) -> str:
 
 
 def _word(tokens: _Tokens) -> str:
-    r"""What stands in another type: \mathrm{max}, letters and digits."""
+    r"""A word in another type: \mathrm{max}, letters and digits."""
     if _PLAIN.fullmatch(tokens.now):
         return tokens.take()
     if tokens.now != "{":
@@ -309,7 +309,7 @@ def _word(tokens: _Tokens) -> str:
 
 
 def _stranger(tokens: _Tokens) -> ExpressionError:
-    """What is wrong with a token that the grammar does not know here."""
+    """The error for a token that the grammar does not know here."""
     token = tokens.now
     if not token:
         return tokens.refuse("the symbol ends where a letter should follow", "put one there")

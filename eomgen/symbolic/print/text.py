@@ -26,7 +26,7 @@ from eomgen.symbolic.print.layout import (
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
 
-SHORTEST_NAMED = 16  # characters: what is shorter is not worth a name
+SHORTEST_NAMED = 16  # characters: what is shorter gets no name
 LONGEST_RESULT = 20_000  # characters of an exact result
 SHORTEST_LIMIT = 60
 _SIGNS = {"neg": 3, "add": 3, "sub": 3, "mul": 5, "div": 7, "pow": 5}
@@ -150,7 +150,7 @@ def readable_text(x: Scalar) -> str | None:
 
 
 def text_size(x: Scalar) -> int:
-    """At least the length of to_text(x), at the cost of the graph: nothing is printed."""
+    """A lower bound of the length of to_text(x), at the cost of the graph: nothing is printed."""
     if type(x) is not Node:
         return number_length(x)
     sizes: dict[Node, int] = x.graph.found(text_size)
@@ -174,7 +174,7 @@ def _size(node: Node, sizes: Mapping[Node, int]) -> int:
 def named_parts(expressions: Sequence[Scalar], limit: int) -> tuple[Node, ...]:
     """The sub-expressions to be named so that no text is much longer than `limit`, in evaluation order.
 
-    None where every expression is short enough. Else all that are used more than once and worth a
+    None where every expression is short enough. Else all that are used more than once and long enough for a
     name, and what must be cut out of a longer text still.
     """
     limit = max(limit, SHORTEST_LIMIT)
@@ -219,7 +219,7 @@ def with_definitions(
 
 
 def _uses(nodes: Iterable[Node], expressions: Iterable[Scalar]) -> dict[Node, int]:
-    """By how many nodes, or as how many expressions, each node is used; signs and coefficients looked through."""
+    """Number of nodes and expressions that use each node; signs and coefficients are looked through."""
     uses = dict.fromkeys(nodes, 0)
     for node in uses:
         if _can_be_named(node):

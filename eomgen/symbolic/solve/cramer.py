@@ -55,7 +55,7 @@ def solution_by_minors(
     Args:
         rows: of A, {column: entry}, n of them; A is regular at almost every state.
         right: n rows of m.
-        vanishes: whether an entry that came up on the way is zero at all states.
+        vanishes: says if an entry that came up on the way is zero at all states.
         shorter: puts an unknown into a shorter form before it is used further.
     Raises:
         DerivationError: more than LARGEST_BLOCK unknowns hang together.

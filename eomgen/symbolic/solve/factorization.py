@@ -109,7 +109,7 @@ PlaceLists = tuple[tuple[int, ...], ...]
 
 @dataclass(frozen=True)
 class Zeros:
-    """Where the factors are not zero.
+    """Places of the factors' entries that are not zero.
 
     Args:
         partners: of each column j of L the rows i > j.
@@ -121,12 +121,12 @@ class Zeros:
 
     @cached_property
     def rows(self) -> PlaceLists:
-        """Of each column the rows of J that reach it."""
+        """The rows of J that reach each column."""
         return tuple(tuple(m for m, row in enumerate(self.reach) if j in row) for j in range(len(self.partners)))
 
     @cached_property
     def later(self) -> PlaceLists:
-        """Of each row of J, in the factor of J M^-1 J^T, the later rows that elimination joins it to."""
+        """The later rows to which elimination joins each row of J in the factor of J M^-1 J^T."""
         found = [0] * len(self.reach)
         for rows in self.rows:
             mask = mask_of(rows)
@@ -136,7 +136,7 @@ class Zeros:
 
     @property
     def operations(self) -> int:
-        """Of M = L D L^T, L^-1 J^T and J M^-1 J^T, of that one factored, and of a solution."""
+        """Number of operations of M = L D L^T, L^-1 J^T, J M^-1 J^T and its factors, and of a solution."""
         degrees = [len(partners) for partners in self.partners]
         factor = sum(d * d + 2 * d for d in degrees)
         border = sum(2 * degrees[j] + 5 for row in self.reach for j in row)
@@ -146,7 +146,7 @@ class Zeros:
 
     @property
     def more(self) -> int:
-        """Of a solution by the factors; with rows of J of two, and of what the first leaves."""
+        """Number of operations of a solution by the factors; with rows of J of two, and of what the first leaves."""
         degrees, touched = [len(partners) for partners in self.partners], sum(map(len, self.reach))
         once = sum(4 * d + 2 for d in degrees) + sum(4 * len(later) + 1 for later in self.later) + 4 * touched
         left = sum(4 * d + 2 for d in degrees) + 4 * touched
@@ -154,7 +154,7 @@ class Zeros:
 
 
 def zeros_of(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:
-    """Where the factors of M, eliminated in the order of its rows, and L^-1 J^T are not zero.
+    """Places of the entries that are not zero in the factors of M, eliminated in row order, and in L^-1 J^T.
 
     Args:
         M: symmetric, n x n; structural zeros are the number 0.

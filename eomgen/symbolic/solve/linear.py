@@ -54,7 +54,7 @@ class Solution:
         free: the unknowns that stay free: as many as the equations leave undetermined.
         left: right sides of the rows in which no unknown is left: they must vanish.
         worst: the largest rank of a pivot; None where some pivots came late, or none was sure.
-        unsure: whether something that may vanish at some state, where the equations are regular, was divided by.
+        unsure: True if a divisor may vanish at some state where the equations are regular.
     """
 
     constants: dict[int, Scalar]
@@ -65,7 +65,7 @@ class Solution:
     unsure: bool = False
 
     def determined(self, j: int) -> bool:
-        """Whether unknown j has one value only."""
+        """True if unknown j has one value only."""
         return j in self.constants and not self.shares[j]
 
 
@@ -99,7 +99,7 @@ def _number_first(a: Scalar) -> int:
 
 
 def in_every_piece(a: Scalar) -> bool:
-    """Whether what vanishes at a state of one piece is zero, in all pieces: s + |s| is not, nor s + sqrt(s^2)."""
+    """True if what vanishes at a state of one piece is zero in all pieces: s + |s| is not, nor s + sqrt(s^2)."""
     with suppress(DerivationError):  # without values at real states
         return not holds_op(a, *PIECEWISE, "sqrt") or equal_at_real_states([(a, 0)], states=PIECES_TRIED).equal
     return True
@@ -107,7 +107,7 @@ def in_every_piece(a: Scalar) -> bool:
 
 @dataclass(frozen=True)
 class Pivots:
-    """What may be divided by, and in which order.
+    """Rules for pivots: what may be divided by, and in which order.
 
     Args:
         rank: of a scalar as a pivot, 0 the best: numbers before all else.
@@ -116,12 +116,12 @@ class Pivots:
         sure: the largest rank of a pivot that vanishes nowhere; the others wait for the normal equations (None: all
             are taken as they come).
         tests: of each row the entries of W that are not those of A (the push of a contact without its friction).
-        factors: symbols that may stand in common factors of rows and columns, which are taken out first: parameters for
-            which the equations are not singular.
-        steady: whether an atom of such symbols vanishes nowhere; rows are divided by no other.
-        regular: what waits is solved by normal equations, however many unknowns hang together and depend on others.
-        vanishes: whether an entry whose shadow is zero is left out. What stays is no pivot: what is zero in one piece
-            only, and where the equations are asked off the constraints too what is zero on these only.
+        factors: symbols that may stand in common factors of rows and columns, which are divided out first: parameters
+            for which the equations are not singular.
+        steady: says if an atom of such symbols vanishes nowhere; rows are divided by no other.
+        regular: what waits is solved by normal equations, however many unknowns are coupled or dependent.
+        vanishes: says if an entry whose shadow is zero is left out. What stays is no pivot: it is zero in one piece
+            only, or, where the equations must hold off the constraints too, on the constraints only.
     """
 
     rank: Callable[[Scalar], int] = _number_first
@@ -136,11 +136,11 @@ class Pivots:
 
 
 def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
-    """By elimination: pivots are plain numbers where there are any, those first that fill in least (Markowitz)."""
+    """Solution by elimination: pivots are plain numbers if there are any; least fill-in comes first (Markowitz)."""
     rank, late, sure = pivots.rank, frozenset(pivots.last), pivots.sure
 
     def tested(line: _Line, j: int) -> bool:
-        """Whether W has the entry too: friction alone does not tell the push that it comes from."""
+        """True if W has the entry too: friction alone does not determine the normal force that it comes from."""
         return j not in late or not is_zero(line.test.get(j, 0))
 
     def divides(line: _Line, j: int, x: Scalar) -> int:
@@ -191,7 +191,7 @@ def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
 
 
 def _is_small(x: Scalar, values: ValuesAt, pivots: Pivots) -> bool:
-    """Whether an entry is small and not rounding: a product in which none but numbers and parameters are small."""
+    """True if an entry is small but not rounding: a product in which only numbers and parameters are small."""
     others: list[Scalar] = []
     left = [x]
     while left:
@@ -372,7 +372,7 @@ def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
 
 
 def _independent(A: np.ndarray) -> bool:
-    """Whether the columns are independent."""
+    """True if the columns are independent."""
     lengths = np.linalg.norm(A, axis=0)
     return bool(lengths.all() and np.linalg.svd(A / lengths, compute_uv=False)[-1] > RANK)
 
@@ -447,7 +447,7 @@ def _quotient(a: Scalar, b: Scalar) -> Scalar:
 
 
 # -------- scaling ---------------------------------------------------------------------------------------------
-# Linear equations -> their solution, common factors taken out of rows and columns before.
+# Linear equations -> their solution, common factors of rows and columns divided out before.
 #
 #     a_ij = r_i b_ij s_j,   sum of b_ij y_j = b_i / r_i,   x_j = y_j / s_j
 #
@@ -494,7 +494,7 @@ class Scaled:
 
 
 def scaled_solution(system: LinearSystem, pivots: Pivots) -> Solution:
-    """By elimination, once the common factors of rows and columns in `pivots.factors` were taken out."""
+    """Solution by elimination, once the common factors in `pivots.factors` are divided out of rows and columns."""
     found = without_common_factors(system.rows, system.right, frozenset(pivots.factors), pivots.tests, pivots.steady)
     scaled = replace(system, rows=found.rows, right=found.right)
     solution = sparse_solution(scaled, replace(pivots, tests=found.tests))
@@ -516,7 +516,7 @@ def without_common_factors(
     Args:
         sure: the symbols that may stand in what is divided by.
         tests: further rows, of the same number, that are scaled alike.
-        steady: whether an atom of these symbols vanishes nowhere: a row is divided by no other.
+        steady: says if an atom of these symbols vanishes nowhere: a row is divided by no other.
     """
     entries = {(i, j): monomial(x) for i, row in enumerate(rows) for j, x in row.items()}
     by_row: dict[int, SymbolPowers] = {}
@@ -626,7 +626,7 @@ def unique_solution(system: LinearSystem, *, vanishes: Callable[[Scalar], bool] 
     """x of as many rows as unknowns: by minors where the unknowns are few, else by elimination.
 
     Args:
-        vanishes: whether an entry is zero at all states, not only where the values are (None: told by these).
+        vanishes: says if an entry is zero at all states, not only where the values are (None: decided by these values).
     Raises:
         DerivationError: there is no single solution.
     """

@@ -59,7 +59,7 @@ def roots(
 
 
 def has_period(equation: Scalar, unknown: Node, period: Scalar) -> bool:
-    """Whether equation(x + period) is the same function as equation(x)."""
+    """True if equation(x + period) is the same function as equation(x)."""
     (shifted,) = substituted((equation,), {unknown: unknown + period})
     return shifted is equation or vanishes(shifted - equation)
 
@@ -85,7 +85,7 @@ def outside_of_turns(equations: Iterable[Scalar]) -> frozenset[Node]:
 
 
 def vanishes(x: Scalar) -> bool:
-    """Whether x is 0 at all values of its symbols; not so where it has a value at no state that was tried."""
+    """True if x is 0 at all values of its symbols; False where it has a value at no state that was tried."""
     if type(x) is not Node:
         return x == 0
     try:
