@@ -32,7 +32,7 @@ def balls(digits: int, *, last: bool = False) -> Arithmetic:
     """Balls around numbers of so many digits.
 
     Args:
-        last: True if what no precision could distinguish counts as equal: it decides branches, signs and edges.
+        last: True if what no precision could distinguish counts as equal, so that branches and signs are decided.
     """
     return _Balls(digits, last).arithmetic
 
