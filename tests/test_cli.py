@@ -638,7 +638,7 @@ def test_reactions_that_cannot_be_code_are_said_in_one_line(tmp_path):
     loose, _, weight = (MODELS / "atwood.toml").read_text().partition("[constraints.string]")
     (tmp_path / "loose.toml").write_text(loose + weight[weight.index("[forces") : weight.index("[outputs]")])
     for path, line in (
-        (tmp_path / "loose.toml", "no code for the reactions: body 'left' is held by nothing along y"),
+        (tmp_path / "loose.toml", "no code for the reactions: body 'left' is unsupported along y"),
         (MODELS / "four_cranks.toml", "no code for the reactions: none has a single value"),
     ):
         name = path.stem

@@ -293,7 +293,7 @@ UNHELD = LADDER.replace('floor = { kind = "support", point = "ladder.end", norma
 @pytest.mark.parametrize(
     ("model", "word"),
     [
-        (loads(UNHELD.replace(', friction = "mu"', "")), "body 'ladder' is held by nothing along y"),
+        (loads(UNHELD.replace(', friction = "mu"', "")), "body 'ladder' is unsupported along y"),
         (model_called("loop"), "'pot' acts on coordinates and at no place"),
     ],
 )

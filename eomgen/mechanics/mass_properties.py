@@ -186,7 +186,7 @@ class _Tensor:
 
     @property
     def is_ordered(self) -> bool:
-        """Whether the moments come as the three cosines of the cubic, the smallest first."""
+        """True if the moments are given as the three cosines of the cubic, the smallest first."""
         return self._moments[1]
 
     @cached_property
@@ -366,7 +366,7 @@ class _Tensor:
 
 
 def _ascending(tensor: _Tensor) -> list[int] | None:
-    """The indices of the moments, ascending; None where nothing tells."""
+    """Indices of the moments in ascending order; None where the order is not known."""
     moments = tensor.moments
     if tensor.is_ordered:
         return [0, 1, 2]
@@ -406,10 +406,10 @@ def _with_signs(x: Scalar) -> Scalar:
 def numbers_in(
     scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None
 ) -> list[float] | None:
-    """What scalars are worth; None where they hold what has no value.
+    """Values of scalars; None where they depend on a symbol without a value.
 
     Args:
-        state: values of other symbols than parameters (None: those have none).
+        state: values of symbols other than parameters; None: these have none.
     """
     known = {**(state or {}), **known_exactly(scope)}
     return None if any(symbol not in known for symbol in symbols_of(tuple(scalars))) else numbers_of(scalars, known)

@@ -156,7 +156,7 @@ SHORT = '[forces.q]\nkind = "distributed"\nbody = "b"\nbetween = ["A", "A"]\nint
         (BEAM, {"reaction": "nonsense"}, "there is no reaction 'nonsense'"),
         (BEAM, {"reaction": "nonsense"}, "there are reaction_x(A), reaction_y(A), reaction_n(B)"),
         (BEAM, {"reaction": ""}, "there is no reaction ''"),
-        (BEAM, {"influence": "bending_moment(b)"}, "a body and a place along it are asked for"),
+        (BEAM, {"influence": "bending_moment(b)"}, "a body and a place along it are needed"),
         (BEAM + SHORT, {}, "'A' and 'A' are at one place: a load along a line needs a length"),
         (HEAD, {}, "the model has no body"),
         (LEVER.replace("LOAD", '[0, "F^2 - 3"]'), {}, "the loads on 'b' are not linear in the unknown 'F'"),

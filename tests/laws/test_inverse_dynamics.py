@@ -281,8 +281,8 @@ acceleration = [0, -9.81]
         (FOUR_BAR, ["alpha", "beta"], "2 actuated, and 1 degrees of freedom: how the actuators share"),
         (FOUR_BAR, ["alpha", "alpha"], "how the actuators share"),
         (FOUR_BAR, ["alhpa"], "there is no coordinate, speed, input or hinged body 'alhpa'"),
-        ((MODELS / "cart_pole.toml").read_text(), ["x"], "1 would be moved by nothing"),
-        ((MODELS / "quadrotor.toml").read_text(), ["f1", "f2", "f3", "f4"], "2 would be moved by nothing"),
+        ((MODELS / "cart_pole.toml").read_text(), ["x"], "1 would have no actuator"),
+        ((MODELS / "quadrotor.toml").read_text(), ["f1", "f2", "f3", "f4"], "2 would have no actuator"),
         (WITH_FRICTION, [], "Coulomb friction"),
         (
             WITH_FRICTION.replace("{ start = 0, speed = 1 }", '{ motion = "t" }').replace("friction = 0.3", ""),

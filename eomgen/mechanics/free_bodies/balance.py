@@ -79,7 +79,7 @@ class BodyEquation:
 
     @property
     def needed(self) -> Scalar:
-        """What the reactions have to make up."""
+        """Sum that the reactions must give: inertia less applied load."""
         return self.inertia - self.applied
 
 
@@ -107,13 +107,13 @@ class Balance:
 
     @cached_property
     def unknowns(self) -> tuple[Node, ...]:
-        """The unknowns that stand in the loads: the bodies at rest determine them together with the reactions."""
+        """Unknowns in the loads; the equilibrium of the bodies determines them together with the reactions."""
         symbols = self.system.symbols.unknowns
         return tuple(symbols[name] for name in in_loads(self.system.scope.model))
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of all that the equations are solved for: reaction_x(B), then the unknowns."""
+        """Names of the unknowns of the equations: reaction_x(B), then the unknowns of the loads."""
         return (*(c.name for c in self.components), *(unknown.name for unknown in self.unknowns))
 
 
@@ -235,12 +235,12 @@ def balances_of_nodes(free: System) -> set[str]:
 
 
 def _pushes_along(system: System, power: Scalar) -> bool:
-    """Whether a force does work on a coordinate by the slide of its point alone."""
+    """True if a force does work on a coordinate by the motion of its point relative to the body."""
     return any(not holds_identically(x) for x in gradient(power, system.symbols.u))
 
 
 def _seat_moves_others(system: System, link: BodyLink) -> bool:
-    """Whether a free coordinate moves the seat of a joint and something else: what joins the two acts at no place."""
+    """True if a free coordinate moves the seat of a joint and something else, so that their coupling has no place."""
     given = driven_coordinates(system.scope.model)
     free = [q for q in system.symbols.q if q.name not in given]
     seat = (*link.before.p, *link.point)
@@ -288,7 +288,7 @@ def _inertia(axes: Axes) -> list[tuple[Scalar, ...]]:
 
 
 def _center_accelerations(axes: Axes) -> list[Vector]:
-    """Of every mass centre: in the plane from its place, in space from the body's twist."""
+    """Acceleration of every mass centre: in the plane from its position, in space from the body's twist."""
     links, scope = axes.motion.links, axes.motion.scope
     if axes.plane:
         places = tuple(x for link, m in zip(links, axes.masses, strict=True) for x in link.pose.point(m.com))
@@ -356,19 +356,19 @@ def still(system: System) -> dict[Node, Scalar]:
 
 
 def refuse_friction(balance: Balance) -> None:
-    """At rest friction may be anything up to its limit: then no force follows from the balance.
+    """Refuses friction at rest: it may have any value up to its limit, so that the balance determines no force.
 
     Raises:
         DerivationError: the contact is named.
     """
     for component in balance.components:
         if component.frictional:
-            what = f"'{component.owner}' has friction: at rest it has a range, and so have the unknowns"
+            what = f"'{component.owner}' has friction: at rest its force, and so the unknowns, may lie in a range"
             raise DerivationError(what, f"constraints.{component.owner}.friction", "leave the friction out")
 
 
 def is_balanced(balance: Balance, solution: Solution) -> bool:
-    """Whether what the unknowns and reactions cannot change vanishes, wherever the constraints hold."""
+    """True if the residuals that no unknown or reaction can change vanish wherever the constraints are satisfied."""
     left = solution.left
     if all(holds_identically(x) for x in left):
         return True
@@ -383,7 +383,7 @@ def is_balanced(balance: Balance, solution: Solution) -> bool:
 
 
 def unbalanced(balance: Balance, solution: Solution) -> DerivationError:
-    """No equilibrium: more degrees of freedom than the unknowns can hold."""
+    """Error: no equilibrium, as there are more degrees of freedom than the unknowns can hold."""
     names = ", ".join(f"'{p.name}'" for p in balance.unknowns)
     degrees_of_freedom = len(balance.system.symbols.u) - len(balance.system.constraints.closing)
     how_many = (
@@ -394,7 +394,7 @@ def unbalanced(balance: Balance, solution: Solution) -> DerivationError:
     return DerivationError(
         f"the bodies are not in balance at rest, whatever {names} may be{how_many}",
         "unknowns",
-        "hold every freedom by a constraint or by an unknown in a load, or start in equilibrium",
+        "hold every degree of freedom by a constraint or by an unknown in a load, or start in equilibrium",
     )
 
 
@@ -450,9 +450,9 @@ def _work(scalars: Iterable[Scalar]) -> int:
 #
 #     F_i = f_i + sum of R_j F_j,    N_i = n_i - arm x f_i + sum of (R_j N_j + p_j x R_j F_j)      j: the bodies on i
 #
-# In these what acts between bodies that are carried is absent: a joint's own reaction stands there alone, along axes
-# that do not turn against it, beside constraints with other bodies. So elimination finds numbers where the equations of
-# single bodies have sines and cosines, which vanish at some state.
+# Forces between carried bodies are absent in these: a joint's own reaction is there alone, along axes that do not turn
+# against it, except for constraints with other bodies. So elimination finds numbers where the equations of single
+# bodies have sines and cosines, which vanish at some state.
 
 
 NOTHING: tuple[Scalar, ...] = (0,) * 6
@@ -517,7 +517,7 @@ def _row(sixes: dict[int, tuple[Scalar, ...]], direction: int) -> SparseRow:
 
 
 def _carried(links: Sequence[BodyLink]) -> list[frozenset[int]]:
-    """Of each body itself and all that hang on it."""
+    """Set of each body itself and all bodies that it carries, by index."""
     found: list[frozenset[int]] = [frozenset((i,)) for i in range(len(links))]
     for i in reversed(range(len(links))):
         if links[i].parent != GROUND:
@@ -526,7 +526,7 @@ def _carried(links: Sequence[BodyLink]) -> list[frozenset[int]]:
 
 
 def _is_inside(balance: Balance, j: int, bodies: Iterable[int]) -> bool:
-    """Whether a joint's component acts between two of these bodies: with one another it has no force and no moment."""
+    """True if a joint's component acts between two of these bodies: on both together it has no force and no moment."""
     if not 0 <= j < len(balance.components) or balance.components[j].kind == "constraint":
         return False
     touched = {effect.link for effect in balance.components[j].effects}
@@ -552,7 +552,7 @@ def along_carriers(balance: Balance, rows: Sequence[SparseRow]) -> tuple[list[Sp
 
 
 def _of_hinges(balance: Balance, n: int, row: SparseRow, own: Mapping[int, Component]) -> SparseRow:
-    """What a unit of each of these components gives to one equation."""
+    """Coefficients of these components in one equation: the contribution of a unit of each."""
     equation = balance.equations[n]
     i = balance.system.motion.index[equation.body]
     six = {j: [e.six[equation.direction] for e in c.effects if e.link == i] for j, c in own.items()}

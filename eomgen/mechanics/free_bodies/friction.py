@@ -120,7 +120,7 @@ def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
 
 
 def has_friction(system: System) -> bool:
-    """Whether any contact has friction."""
+    """True if any contact has friction."""
     return bool(frictions(system))
 
 
@@ -288,7 +288,7 @@ class _WithFriction:
         return replace(self.equations, forcing=forcing)
 
     def _normal(self, contact: FrictionContact, first: int) -> tuple[dict[int, Scalar], Scalar]:
-        """What N is besides itself, a row over a, lam and N: its multiplier, or by the balance."""
+        """Row over a, lam and N, and a constant, that give N: its multiplier, or by the balance."""
         multiplier = self._multiplier(contact.component, contact.name)
         if multiplier is None:
             return self._linear(contact.component, first)
@@ -309,7 +309,7 @@ class _WithFriction:
 
 
 def _multiplier(system: System, component: Component, name: str, kept: Sequence[int]) -> int | None:
-    """Which of the kept rows has the normal reaction for its multiplier; None where it follows from the balance.
+    """Index of the kept row whose multiplier is the normal reaction; None where it follows from the balance.
 
     Raises:
         DerivationError: its row follows from others, so that it is indeterminate.
@@ -387,8 +387,8 @@ def _slopes(pairs: Mapping[Node, EqualPushes], symbols: tuple[Node, ...], values
     """G_rs, what vanishes at a generic state left out."""
     rows = [[gradient(N, symbols) for N in pair] for pair in pairs.values()]
     flat = [abs(x) for x in values([g for row in rows for slopes in row for g in slopes])]
-    least, worth = ZERO_AT_50 * max(flat, default=0), iter(flat)
-    kept = [[[g if next(worth) > least else 0 for g in slopes] for slopes in row] for row in rows]
+    least, sizes = ZERO_AT_50 * max(flat, default=0), iter(flat)
+    kept = [[[g if next(sizes) > least else 0 for g in slopes] for slopes in row] for row in rows]
     return [list(zip(*row, strict=True)) for row in kept]
 
 
@@ -424,7 +424,7 @@ def _together(pressed: _Pressed) -> list[Scalar]:
 
 
 def _solved_near_unit(rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar]) -> list[Scalar]:
-    """Of rows near those of the unit matrix: elimination in their order."""
+    """Solution of equations whose matrix is near the unit matrix, by elimination in their order."""
     if not rows:
         return []
     (first, *_), *_ = rows

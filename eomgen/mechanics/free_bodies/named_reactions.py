@@ -1,7 +1,7 @@
-"""Reactions -> what an output asks of them by name, every one: reaction_x(B), reaction_n(wall), tension(rope, 2).
+"""Reactions -> all quantities that outputs can name: reaction_x(B), reaction_n(wall), tension(rope, 2).
 
 In the plane these are the components themselves; in space, and at hinges of several bodies, sums of them in the
-ground's axes. Beside each contact with friction stands its friction along the contact's tangent, reaction_t(wall), on a
+ground's axes. Each contact with friction also has its friction along the contact's tangent, reaction_t(wall), on a
 surface along both tangents.
 """
 
@@ -26,7 +26,7 @@ from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, plus, vector_of
 
 FORCE, COUPLE = "N", "N*m"
-OWN = frozenset(("n", "t", "s", "tension", ""))  # components that are asked for as they are, in space too
+OWN = frozenset(("n", "t", "s", "tension", ""))  # components that outputs name as they are, in space too
 
 WrenchPart = Callable[[Effect], Vector]
 
@@ -36,7 +36,7 @@ class NamedReaction:
     """sum of combination * components + given.
 
     Args:
-        name: as an output asks for it.
+        name: as an output writes it.
         owner: the constraint, or the body whose joint it is.
         unit: FORCE or COUPLE.
         combination: {index of the component: factor}.
@@ -58,7 +58,7 @@ def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
 
 
 def name_of(call: Call, names: Container[str]) -> str:
-    """The name in a table by which it is asked for: the ends of a member in either order."""
+    """Name in a table that a call means: the ends of a member may be in either order."""
     ends = ends_requested(call) if call.name == "tension" and call.args else None
     either = () if ends is None else (ends, ends[::-1])
     written = (f"tension({argument_name(call.args[0])}, {a}-{b})" for a, b in either)
@@ -122,7 +122,7 @@ def _sum(part: WrenchPart, on: int, effects: Sequence[Effect]) -> Vector:
 
 
 def _turned(balance: Balance, on: int, vector: Vector) -> Vector:
-    """From the axes of the body's equations to the ground's."""
+    """Vector in the ground's axes of one in the axes of the body's equations."""
     plane = balance.system.scope.model.space == "plane"
     return vector if plane else apply(balance.system.motion.links[on].pose.R, vector)
 
@@ -147,12 +147,11 @@ def _name(balance: Balance, component: Component) -> str:
 
 
 def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]:
-    """What drives a coordinate q: the work of all reactions on the bodies as q alone changes, that of constraints left
-    out.
+    """Combination of reactions that is the force of the drive of a coordinate q: their work as q alone changes.
 
-    sum over joints of D_k ds_k/dq, s_k the variable of the joint; of joints whose seat it moves what the seat takes;
-    of what is placed all that its place takes;
-    of constraints sum f . dp/dq - dphi/dq, what acts on places that it moves and that belong to no body.
+    sum over joints of D_k ds_k/dq, s_k the variable of the joint; for joints whose seat q moves, the work on the seat;
+    for placed bodies, the work of their reaction; for constraints sum f . dp/dq - dphi/dq, the work on places that q
+    moves and that belong to no body.
     """
     if not component.side:
         return {j: 1}
@@ -215,7 +214,7 @@ def _left_of_row(balance: Balance, row: Row, q: Node) -> Scalar:
 
 
 def _moves_seat(link: BodyLink, q: Node) -> bool:
-    """Whether a coordinate moves the seat of a joint in its parent, or the joint's point in its body."""
+    """True if a coordinate moves the seat of a joint in its parent, or the joint's point in its body."""
     seat = (*link.before.p, *link.point, *(x for row in link.before.R for x in row))
     return any(depends_on(x, (q,)) for x in seat)
 

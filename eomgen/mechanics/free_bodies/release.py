@@ -1,9 +1,8 @@
 """System, constraint -> Model without it: the next phase of a motion in which a contact has ended.
 
-Where the coordinates satisfy the constraint by themselves they cannot describe what follows. Then the body that the
-constraint held,
-which stands where it is `placed`, is freed along the constraint's push: a new coordinate, the displacement from the
-contact.
+Where the coordinates satisfy the constraint by themselves they cannot describe the next phase. Then the body that the
+constraint held, which stands where it is `placed`, is freed along the constraint's push: a new coordinate, the
+displacement from the contact.
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ def _with_free_coordinates(model: Model, names: list[str]) -> Model:
 
 
 def stays_straight(system: System, constraint: str) -> bool:
-    """Whether each displacement that releases the constraint is along its own push, whatever else is released."""
+    """True if each displacement that releases the constraint is along its own push, whatever else is released."""
     rows = [
         row
         for row in system.constraints.rows
@@ -68,13 +67,13 @@ def stays_straight(system: System, constraint: str) -> bool:
 
 @dataclass(frozen=True)
 class Leave:
-    """How a body leaves a row.
+    """Displacement of a placed body that releases a row.
 
     Args:
         link: the placed body.
         direction: of its displacement for a unit of the new coordinate, parent's axes.
-        straight: that is the push of the row itself.
-        turns: it must turn as well.
+        straight: True if that is the push of the row itself.
+        turns: True if it must turn as well.
     """
 
     link: BodyLink
@@ -84,7 +83,7 @@ class Leave:
 
 
 def _freed(system: System, model: Model, row: Row) -> Model:
-    """The model in which the body that the row pushes is displaced where the row alone kept it from going."""
+    """The model in which the body that the row pushes may be displaced along the direction that the row alone held."""
     leave = _placed(system, row)
     model, name = _with_coordinate(model, row.constraint, DISPLACEMENTS[row.component])
     joint: Any = model.bodies[leave.link.name].joint

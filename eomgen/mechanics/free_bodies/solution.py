@@ -100,7 +100,7 @@ def _solved(
         return 0 if type(a) is not Node else 1 if _is_product(a, steady) else 2
 
     def has_sign(a: Node) -> bool:
-        """Whether it is such a parameter, or a sum or root of terms of one sign."""
+        """True if the scalar is a parameter that is not 0, or a sum or root of terms of one sign."""
         return bool(sign_of_terms(a, steady))
 
     last = [j for j, c in enumerate(balance.components) if c.friction_effects]

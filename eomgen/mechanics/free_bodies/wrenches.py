@@ -1,4 +1,4 @@
-"""System -> Components: every scalar reaction, and what a unit of it does to the bodies."""
+"""System -> Components: every scalar reaction, with the forces and couples of a unit of it on the bodies."""
 
 from __future__ import annotations
 
@@ -53,14 +53,14 @@ PLANE_ROWS, SPACE_ROWS = (0, 1, 5), (0, 1, 2, 3, 4, 5)  # of (force, moment) abo
 
 @dataclass(frozen=True)
 class Effect:
-    """What a unit of a reaction does to one body: force and couple at a place, in the axes of the body's equations.
+    """Force and couple of a unit of a reaction on one body, at a place, in the axes of the body's equations.
 
     Args:
         link: index of the body.
         force, couple: on it.
         arm: from its mass centre to the place [m].
         place: the same place in body axes [m]; None of a couple that acts on the body as a whole.
-        beyond: how far from there it really acts, body axes; of a couple, of the force whose moment it is.
+        beyond: vector from there to where it really acts, body axes; of a couple, of the force whose moment it is.
     """
 
     link: int
@@ -95,7 +95,7 @@ class Axes:
         return PLANE_ROWS if self.plane else SPACE_ROWS
 
     def of_body(self, link: BodyLink) -> Matrix:
-        """From body axes to those of the equations."""
+        """Rotation matrix from body axes to those of the equations."""
         return link.pose.R if self.plane else IDENTITY
 
     def of_ground(self, link: BodyLink, vector: Vector) -> Vector:
@@ -107,7 +107,7 @@ class Axes:
         return tuple(mass_properties(self.motion.scope, link.name) for link in self.motion.links)
 
     def arm(self, i: int, place: Vector) -> Vector:
-        """From the mass centre to a place given in body axes."""
+        """Vector from the mass centre to a place given in body axes."""
         link = self.motion.links[i]
         return in_turned_axes(self.of_body(link), minus(place, self.masses[i].com))
 
@@ -125,12 +125,12 @@ def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) 
 
 
 def joint_effects(system: System) -> list[Effect]:
-    """What drives, springs, dampers and rotors of all joints do, on both bodies of each."""
+    """Effects of drives, springs, dampers and rotors of all joints, on both bodies of each."""
     return [effect for link in system.motion.links for effect in efforts_of(system, link.name)]
 
 
 def efforts_of(system: System, body: str) -> list[Effect]:
-    """What drive, spring, damper and rotor of a body's joint do, on the body first; a constraint has none."""
+    """Effects of drive, spring, damper and rotor of a body's joint, on the body first; () for a constraint."""
     if body not in system.motion.index:
         return []
     axes = Axes(system.motion)
@@ -258,17 +258,17 @@ class Component:
 
     @property
     def frictional(self) -> bool:
-        """Whether it is friction, or there is friction by it."""
+        """True if the component is friction, or has friction due to it."""
         return bool(self.friction) or self.bilateral_friction is not None
 
     @property
     def is_wrench(self) -> bool:
-        """Whether it is a force and a couple together: one of a screw, or of what is placed."""
+        """True if the component is a force and a couple together: that of a screw, or of a placed body."""
         return self.label.startswith("wrench")
 
     @property
     def name(self) -> str:
-        """As an output asks for it: reaction_x(B), tension(rope, 2)."""
+        """Name that an output uses: reaction_x(B), tension(rope, 2)."""
         if self.label == "tension":
             which = self.side or (self.number if self.number > 1 else "")
             return f"tension({self.owner}, {which})" if which else f"tension({self.owner})"
@@ -346,7 +346,7 @@ def _refuse_spread(joints: Sequence[BodyLink], follow: Sequence[Scalar], free: S
 
 
 def _basis(axes: Axes, link: BodyLink, system: System) -> list[tuple[str, Vector, Vector]]:
-    """(label, force, couple) of each reaction of a joint, child's axes: the complement of its freedom."""
+    """(label, force, couple) of each reaction of a joint, child's axes: the complement of its motion subspace."""
     columns = link.joint.complement(link.s, axes.motion.scope.value)
     forces = [vector_of(c[3:]) for c in columns if _vanishes(c[:3])]
     couples = [vector_of(c[:3]) for c in columns if _vanishes(c[3:])]
@@ -378,7 +378,7 @@ def _forces(axes: Axes, link: BodyLink, forces: list[Vector], most: int) -> list
 
 
 def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
-    """Whether nothing can turn the body against its joint: a particle with all that acts on it at its mass."""
+    """True if nothing can turn the body against its joint: a particle with all forces through its mass."""
     motion = axes.motion
     shape = motion.scope.model.bodies[link.name].shape
     carries = any(other.parent == motion.index[link.name] for other in motion.links)
@@ -412,7 +412,7 @@ def joint_friction(system: System, link: BodyLink) -> Scalar | None:
 
 
 def sliding_friction(system: System, component: Component) -> tuple[Scalar, Scalar]:
-    """Of a component with friction: (its friction along the contact for a unit of it, the sliding velocity)."""
+    """(friction along the contact for a unit of the component, the sliding velocity) of a component with friction."""
     if component.kind == "joint":
         link = system.motion.link(component.owner)
         factor, sliding = joint_friction(system, link), link.s_rate[0]
@@ -461,7 +461,7 @@ def _constraint_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
 
 
 def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
-    """Of the friction of a bilateral contact: which components its normal force has."""
+    """Indices of the components of the normal force to which the friction of a bilateral contact belongs."""
     mine = (friction.kind, friction.owner)
     return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
 
@@ -498,8 +498,7 @@ def _of_constraint(
 # -------- placements ------------------------------------------------------------------------------------------
 # System, what else reacts -> Components: the wrenches that hold bodies which are placed by given motions.
 #
-# What is `placed` is geometry: where its places hold free coordinates alone, constraints that are named hold it. Where
-# they
+# A `placed` body is geometry: where its places depend on free coordinates alone, named constraints hold it. Where they
 # move with time, something moves it as given. That is a wrench which does no work along any free coordinate q,
 #
 #     w = sum c_k d_k,   d_k the wrench that does work on the variable s_k alone,   sum c_k ds_k/dq = 0
@@ -513,12 +512,12 @@ WayWithSlopes = tuple[SparseRow, list[Scalar]]  # a way, and its slopes along th
 
 
 def placements_of(system: System, axes: Axes, others: Sequence[Component]) -> tuple[Component, ...]:
-    """Those of every body that is placed by a given motion.
+    """Reactions of every body that is placed by a given motion.
 
     Args:
         others: the reactions of all joints and constraints.
     Raises:
-        MissingValues, DerivationError: the constraints do not close near the start.
+        MissingValues, DerivationError: the constraints cannot be satisfied near the start.
     """
     given = {link.name: ways for link in axes.motion.links if (ways := _free_of_work(system, link))}
     if not given:
@@ -563,7 +562,7 @@ def _less(row: WayWithSlopes, factor: Scalar, other: WayWithSlopes) -> WayWithSl
 
 @dataclass(frozen=True)
 class _Numbers:
-    """What forces and couples do to the bodies at a state: rows of the balance."""
+    """Forces and couples on the bodies at a state in numbers: rows of the balance."""
 
     axes: Axes
     state: State
@@ -580,7 +579,7 @@ class _Numbers:
         return found
 
     def more(self, held: np.ndarray, effects: Sequence[Sequence[Effect]]) -> int:
-        """By how much these raise the rank of what holds the bodies."""
+        """Increase of the rank of the reactions `held` by these effects."""
         return _rank(np.hstack([held, self.columns(effects)])) - _rank(held)
 
 
@@ -603,7 +602,7 @@ def _of_body(
 
 
 def _along(axes: Axes, link: BodyLink, way: SparseRow) -> list[Effect]:
-    """Of the wrench sum c_k d_k."""
+    """Effects of the wrench sum c_k d_k."""
     force, couple = ZERO, ZERO
     for k, c in way.items():
         f, n = scaled_axes(axes, link.name, k, c)

@@ -1,4 +1,4 @@
-"""Equations of motion -> first integrals: what is conserved along every motion."""
+"""Equations of motion -> first integrals: the quantities conserved along every motion."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
 
 
 def where_momenta_hold(equations: EquationsOfMotion) -> Extent:
-    """Where all momenta that stay constant do: what follows from them holds there."""
+    """Extent in which all conserved momenta are constant; results that follow from them hold there."""
     held = EVERYWHERE
     for each in momentum_integrals(equations):
         if not depends_on(each.expression, (equations.symbols.t,)):
@@ -208,7 +208,7 @@ def _alone(rate: Scalar, vanishes: bool, others: Sequence[Node]) -> Scalar | Non
 
 
 def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[bool]:
-    """Of each rate whether it is another one, by 50 digits, where the others are and t is not."""
+    """True for each rate that 50 digits show to change when the other coordinates change and t does not."""
     state, rng = scattered_state(system.constraints), Random(2)
     moved = state | {x: state[x] + of_50_digits(rng.uniform(0.1, 0.4)) for x in others}
     moved |= on_unit_norms(system.scope.quaternions, moved)
@@ -259,15 +259,15 @@ class Constant:
 
 
 def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
-    """Of each function of q, u and t whether it stays constant along every motion, in every piece.
+    """True for each function of q, u and t that is constant along every motion, in every piece.
 
-    Where constraints close or there is friction none is said to be, nor where the prime field cannot tell.
+    With closing constraints or friction, or where the test cannot decide, all are False.
     """
     return tuple(held.everywhere for held in where_constant(equations, functions))
 
 
 def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Extent, ...]:
-    """Of each function of q, u and t in which pieces it stays constant."""
+    """Extent in which each function of q, u and t is constant along every motion."""
     if equations.J or equations.friction or not equations.M:
         return (NOWHERE,) * len(functions)
     try:
@@ -294,7 +294,7 @@ def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) ->
 
 
 def _following(rows: Sequence[Sequence[Scalar]], requested: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
-    """Of each row asked whether it follows from the rows, at random states: exact ones, or else of 50 digits."""
+    """True for each requested row that depends linearly on the rows, at random states: exact, or else of 50 digits."""
     flat = [x for row in (*rows, *requested) for x in row]
     for follow, values_of in ((follows, _exact_values), (dense.follows_in_digits, _real_values)):
         rng, found = Random(5), [True] * len(requested)
@@ -369,7 +369,7 @@ def _has_inertia(system: System, body: str) -> bool:
 
 
 def _new(found: Sequence[Constant], known: Sequence[Scalar]) -> tuple[Constant, ...]:
-    """Those that are no numbers, and neither one of those known nor its opposite."""
+    """Constants found that do not vanish and are neither one of those known nor its opposite."""
     kept: list[Constant] = []
     for each in found:
         x = each.expression
@@ -403,7 +403,7 @@ def _mass_center(system: System, bodies: Sequence[str]) -> Vector:
 
 
 def _seats(system: System) -> dict[str, Vector]:
-    """Where bodies are joined to the ground, at places that stay; the ground's origin where there are none."""
+    """Fixed places at which bodies are joined to the ground, by name; the ground's origin where there are none."""
     symbols = system.symbols
     found: dict[str, Vector] = {}
     for link in system.motion.links:

@@ -150,7 +150,7 @@ class _Laws:
         )
 
     def _vary(self, sums: Sequence[Sequence[Scalar]]) -> bool:
-        """Whether numbers at two states show that one of the sums of terms changes with what moves."""
+        """True if numbers at two states show that one of the sums of terms changes with the moving variables."""
         rng = Random(1)
         terms = [x for each in sums for x in each]
         fixed = {x: rng.uniform(0.5, 1.5) for x in symbols_of(terms) if x not in self._moving}
@@ -231,7 +231,7 @@ class CoupledEquations:
 
     @property
     def is_even(self) -> bool:
-        """Whether det(l^2 - l B - A) has no odd powers of l: B11 + B22 = 0, A11 B22 + A22 B11 = A12 B21 + A21 B12."""
+        """True if det(l^2 - l B - A) has no odd powers of l: B11 + B22 = 0, A11 B22 + A22 B11 = A12 B21 + A21 B12."""
         A, B = self.A, self.B
         mixed = A[0][0] * B[1][1] + A[1][1] * B[0][0] - A[0][1] * B[1][0] - A[1][0] * B[0][1]
         return vanishes(B[0][0] + B[1][1]) and vanishes(mixed)
@@ -321,13 +321,13 @@ def _determinant(A: ScalarRows) -> Scalar:
 
 @dataclass(frozen=True)
 class ClosedInstant:
-    """What is asked: the state at which the condition holds.
+    """State at which a condition is satisfied, in closed form.
 
     Args:
         equations, accelerations: the equations of motion.
         condition: of q, u, t and parameters; it vanishes.
         start: t, q and u at the start, scalars of the parameters.
-        located: the state asked, in numbers.
+        located: the requested state, in numbers.
     """
 
     equations: EquationsOfMotion
@@ -343,7 +343,7 @@ class ClosedInstant:
         return dict(zip(state, substituted(tuple(state.values()), constants), strict=True))
 
     def _at_root(self, laws: State) -> State:
-        """The laws at the time at which the condition holds."""
+        """The laws at the time at which the condition is satisfied."""
         t = self.equations.symbols.t
         (equation,) = substituted((self.condition,), laws)
         if depends_on(equation, self._moving):
@@ -409,7 +409,7 @@ class ClosedInstant:
             return None
 
     def _agreeing(self, state: State) -> State:
-        """Those values that hold parameters only and are the located numbers."""
+        """Values that depend on parameters only and agree with the located numbers."""
         found = {}
         for node, x in state.items():
             if not depends_on(x, (*self._moving, self.equations.symbols.t)):
@@ -446,10 +446,10 @@ def constant_sums(scalars: Sequence[Scalar], moving: Sequence[Node]) -> list[Nod
 def position_equations(
     system: System, start: Mapping[Node, Scalar], relations: Relations | None = None
 ) -> list[Scalar]:
-    """What is known of positions: the constraints' gaps, and rates that can be integrated from the start.
+    """Expressions of positions that vanish: gaps of the constraints, and rates integrated from the start.
 
     Args:
-        relations: what momenta and constraints say of the speeds.
+        relations: those that momenta and constraints give between the speeds.
     """
     rows = [row for row in system.constraints.rows if not row.identical]
     gaps = [row.gap for row in rows if row.gap is not None]

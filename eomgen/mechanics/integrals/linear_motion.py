@@ -2,7 +2,7 @@
 
     q'' = A q + B q' + f(t)
 
-A root of a number of unknown sign is real or imaginary: `sign` decides, and where it cannot, there is no answer (None).
+A root of a number of unknown sign is real or imaginary: `sign` decides, and where it cannot, the result is None.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ Sign = Callable[[Scalar], int | None]
 
 @dataclass(frozen=True)
 class MotionConstants:
-    """How constants are judged and written.
+    """Functions that give the signs and short forms of constants.
 
     Args:
         t: time.
@@ -120,7 +120,7 @@ def _of_term(A: Scalar, B: Scalar, g: Scalar, of: MotionConstants) -> Scalar | N
 
 
 def _of_polynomial(A: Scalar, B: Scalar, g: Scalar, t: Node) -> Scalar | None:
-    """Of a polynomial g: A q = q'' - B q' - g, or B u = u' - g with A = 0, solved by repeated insertion."""
+    """Solution for a polynomial g: A q = q'' - B q' - g, or B u = u' - g with A = 0, by repeated insertion."""
     degrees = [g]
     while not is_zero(degrees[-1]) and len(degrees) <= HIGHEST_DEGREE + 1:
         degrees.append(readable(derivative(degrees[-1], t)))

@@ -99,13 +99,13 @@ def start_in_numbers(system: System, start: Mapping[Node, Scalar]) -> dict[Node,
 
 @dataclass(frozen=True)
 class FreeSpeed:
-    """What the free speed follows from.
+    """Quantities from which the free speed is found.
 
     Args:
         equations: the equations of motion.
         relations: every speed by the free one.
         start: q and u at the start, scalars of the parameters.
-        there: a state of the motion in numbers, parameters included, which says in which sense it goes.
+        there: a state of the motion in numbers, parameters included, which gives the sense of the motion.
         accelerations: a as expressions, where they are known.
         at: coordinates whose values are put in.
     """
@@ -120,8 +120,8 @@ class FreeSpeed:
     def value(self) -> tuple[Scalar, Extent] | None:
         """(u_s as a function of the coordinates that are not in `at`, where that holds); None where nothing gives it.
 
-        By the energy where it stays; else along the path, where it is lost or stored without a potential; else by the
-        energy in the piece in which it stays.
+        By the energy where it is conserved; else along the path, where it is lost or stored without a potential; else
+        by the energy in the piece in which it is conserved.
         """
         energies = energy_integral(self.equations)
         if not any(energy.held.everywhere for energy in energies):
@@ -145,7 +145,7 @@ class FreeSpeed:
     # -- in which sense ---------------------------------------------------------------------------
 
     def _sense(self, slope: Scalar) -> int:
-        """The sign of 2 A u_s + B there; at rest the one that it takes as the motion goes on; 1 where it stays at rest.
+        """The sign of 2 A u_s + B there; at rest that of the motion that follows; 1 if it stays at rest.
 
         Args:
             slope: 2 A u_s + B as it depends on u_s, or u_s itself.
@@ -162,7 +162,7 @@ class FreeSpeed:
 
     @property
     def _acceleration(self) -> Scalar:
-        """Of the free speed, with the model's own inputs."""
+        """Acceleration of the free speed, with the model's own inputs."""
         assert self.accelerations is not None
         inputs = {node: self.equations.inputs[name] for name, node in self.equations.symbols.inputs.items()}
         return substituted((self.accelerations[self.equations.symbols.u.index(self._speed)],), inputs)[0]
@@ -207,7 +207,7 @@ class FreeSpeed:
         return own + over(growth, first) * (self.start[s] * self.start[s] - at)
 
     def _has_pieces_of_speed(self, F: Scalar) -> bool:
-        """Whether something in it changes its form with the speed: max(0, -y'), which is no square of it."""
+        """True if F has a piecewise function of the free speed: max(0, -y')."""
         return any(depends_on(x, (self._speed,)) for x in order((F,)) if x.op in PIECEWISE)
 
     def _in_sense(self, F: Scalar) -> Scalar:
@@ -280,7 +280,7 @@ class Relations:
 def relations_of(
     equations: EquationsOfMotion, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
 ) -> Relations | None:
-    """What momenta and closing rows, all linear in the speeds, say of them; None where more than one stays free.
+    """Relations between the speeds from momenta and closing rows, all linear in them; None if several stay free.
 
     Args:
         start: q and u at the start, scalars of the parameters.

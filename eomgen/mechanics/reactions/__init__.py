@@ -1,1 +1,1 @@
-"""Reactions, the forces that given motions take, and whether bodies are in equilibrium at a state."""
+"""Reactions, the forces that given motions need, and the test that bodies are in balance at a state."""

@@ -1,9 +1,9 @@
-"""Reactions, a state -> whether everything is in balance there; reactions by cuts through the system.
+"""Reactions, a state -> test of the balance there; reactions by cuts through the system.
 
-Reactions, a state -> whether everything is in balance there, in numbers: D'Alembert's principle, three times over.
+The test is made in numbers, by D'Alembert's principle in three forms:
 
     each body:    sum of reactions + applied = inertia
-    each pair:    what two bodies do to each other has no resultant and no moment
+    each pair:    the forces of two bodies on each other have no resultant and no moment
     the whole:    sum of reactions and applied forces = dP/dt,   of their moments about the origin = dL/dt
 
 P and L are those of the bodies' twists, of which the bodies' own equations in the plane make no use; the forces of the
@@ -51,7 +51,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50
 
 
 def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
-    """What is out of balance at a state, in words; "" where nothing is. Reactions left open take random values.
+    """Description of what is out of balance at a state; "" where nothing is. Reactions left open take random values.
 
     Args:
         state: values of all symbols, accelerations of the motion included, at 50 digits.
@@ -87,7 +87,7 @@ def _of_bodies(balance: Balance, numbers: BodyNumbers, x: np.ndarray) -> str:
     if not len(wrong):
         return ""
     if COMPUTED * size[wrong[0]] < ELIMINATED_AT_50 * size.max():
-        raise NoValue("what is small is lost beside the largest force")
+        raise NoValue("small forces are lost by rounding against the largest force")
     e = balance.equations[wrong[0]]
     return f"body '{e.body}' is out of balance along {DIRECTIONS[e.direction]}"
 
@@ -125,7 +125,7 @@ class _Wrenches:
         return np.hstack([f, n + np.cross(p, f)])
 
     def _arms(self, effects: Sequence[Effect]) -> list[float]:
-        """How far a force may act from the origin: what cancels in its moment was no larger than force times arm."""
+        """Largest distance of each force from the origin: terms of its moment are no larger than force times arm."""
         arms = self.numbers.array(tuple(e.arm for e in effects)).reshape(-1, 3)
         return [
             float(np.linalg.norm(arm) + np.linalg.norm(self._places[effect.link][1]))
@@ -142,7 +142,7 @@ class _Wrenches:
 
     @cached_property
     def _places(self) -> list[tuple[np.ndarray, np.ndarray]]:
-        """Of each body (its equations' axes in the ground's, its mass centre)."""
+        """(axes of its equations in the ground's, mass centre) of each body, in numbers."""
         scope, links = self.system.scope, self.system.motion.links
         centers = tuple(link.pose.point(mass_properties(scope, link.name).com) for link in links)
         p = self.numbers.array(centers).reshape(-1, 3)
@@ -165,7 +165,7 @@ def _of_pairs(wrenches: _Wrenches) -> str:
 
 
 def _takes_a_couple(system: System, component: Component) -> bool:
-    """What the model has no bearing for: of a gear's frame, and of strands that keep their direction."""
+    """True if a component is a couple for which the model has no bearing: of a gear, or of a strand's direction."""
     forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
     if component.kind != "constraint":
         return False
@@ -174,7 +174,7 @@ def _takes_a_couple(system: System, component: Component) -> bool:
 
 
 def _is_inner(system: System, component: Component) -> bool:
-    """Whether the component acts between bodies, nothing of it on the ground."""
+    """True if the component acts between bodies only, not on the ground."""
     if len({effect.link for effect in component.effects}) < 2:
         return False
     if component.kind != "constraint":
@@ -247,7 +247,7 @@ def _momenta(system: System) -> Iterable[tuple[Vector, Vector]]:
 # Balance -> reactions by the balance of all bodies on one side of a joint or constraint, which hold together by it
 # alone.
 #
-# Cut it through: the side without the ground is held by nothing else, so that what acts at the cut is
+# Cut it through: the side without the ground has no other support, so that the force and moment at the cut are
 #
 #     f = sum(m a_C - f_applied),    n = sum(d/dt (I w) - n_applied + (C - P) x (m a_C - f_applied))    about its
 #         place P
@@ -322,7 +322,7 @@ class _Sides:
 
     @cached_property
     def _ends(self) -> list[set[int]]:
-        """What each component joins: the ground too, where its pushes on bodies do not make up for one another."""
+        """Bodies that each component joins; with the ground, if its forces on bodies are not in balance together."""
         found = []
         for c in self.balance.components:
             ends = {effect.link for effect in c.effects}
@@ -330,7 +330,7 @@ class _Sides:
         return found
 
     def _is_even(self, component: Component) -> bool:
-        """Whether action and reaction are among its pushes: a string over a peg of the ground presses on that, too."""
+        """True if the component's forces balance one another; a string over a peg of the ground presses on it too."""
         if component.kind != "constraint":
             return True
         total: list[Scalar] = [0] * 6
@@ -364,7 +364,7 @@ class _Sides:
         return pose.R, minus(pose.point(com), effect.place)
 
     def _relative(self, b: int, body: int) -> Pose:
-        """Of b in the axes of another body: along the tree where it hangs on that."""
+        """Pose of b in the axes of another body: along the tree where that body carries b."""
         links = self.axes.motion.links
         path: list[int] = []
         while b not in (body, GROUND):
@@ -386,7 +386,7 @@ def _only(effects: Sequence[Effect]) -> Effect | None:
 
 
 def _is_apart(effect: Effect, others: Sequence[Effect | None]) -> bool:
-    """Whether it is of size 1, and what the others of the cut give is not seen along it."""
+    """True if an effect is a unit wrench orthogonal to the other effects of the cut, all at one place."""
     for other in others:
         if other is None or other.place != effect.place:
             return False

@@ -1,4 +1,4 @@
-"""System -> Inverse: the forces and torques that given accelerations take.
+"""System -> Inverse: the forces and torques that given accelerations need.
 
     A tau + J^T lam = r,   r = M a + c - Q
 
@@ -106,7 +106,7 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
     if has_friction(system):
         raise DerivationError(
             "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
-            fix="give the coordinates their `motion`, and ask for drive(...)",
+            fix="give the coordinates their `motion`, and use drive(...)",
         )
     symbols, closing = system.symbols, system.symbols.lam
     if not symbols.u:
@@ -162,7 +162,7 @@ def _columns(system: System, names: Sequence[str], needed: ScalarRow) -> tuple[S
             )
         elif all(is_zero(x) for x in known[name]):
             requested = name if name in scope.model.coordinates else "its coordinate"
-            raise UsageError(f"'{name}' is driven: it takes what drive({requested}) says", fix=NAME)
+            raise UsageError(f"'{name}' is driven: drive({requested}) is the force that it needs", fix=NAME)
     return tuple(known[name] for name in names)
 
 
@@ -197,9 +197,9 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
     whole, own = (dense.rank(rows, smallest=RANK_NEARBY) for rows in (np.vstack([A, J]), J))
     reported = f"{len(names)} actuated, and {nu - own} degrees of freedom"
     if whole < nu:
-        raise UsageError(f"{reported}: {nu - whole} would be moved by nothing", fix=NAME)
+        raise UsageError(f"{reported}: {nu - whole} would have no actuator", fix=NAME)
     if whole - own < len(names):
-        raise UsageError(f"{reported}: how the actuators share their work is indeterminate", fix=NAME)
+        raise UsageError(f"{reported}: the forces of the actuators are indeterminate", fix=NAME)
 
 
 def _numbers(entries: Sequence[Scalar], state: dict[Node, object], width: int) -> np.ndarray:
@@ -238,7 +238,7 @@ def _acting_alone(columns: Sequence[ScalarRow]) -> dict[int, int]:
 # System -> the forces that act along coordinates: what drives a given motion, and multipliers of constraints of
 # coordinates.
 #
-# With the coordinate k freed, the equations of motion say what force along it keeps it moving as given:
+# With the coordinate k freed, the equations of motion give the force along it that keeps it moving as given:
 #
 #     F_k = (M a + c - Q - J^T lam - sum f_r N_r)_k,   all of them at the given motion
 #
@@ -347,7 +347,7 @@ def _refuse_shared(constraints: Constraints, constraint: str) -> None:
     """Refuse a constraint that follows from others: what these carry together is determined, not what each does."""
     try:
         redundant = redundant_rows(constraints)
-    except MissingValues:  # whether they do cannot be told without values
+    except MissingValues:  # without values nobody can say if they do
         return
     for row in redundant:
         sharing = tuple(dict.fromkeys((row.constraint, *row.others)))

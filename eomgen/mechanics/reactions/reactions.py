@@ -1,6 +1,4 @@
-"""Balance -> Reactions: every reaction of every joint and constraint.
-
-Balance -> Reactions: every reaction of every joint and constraint, as functions of q, u and the accelerations.
+"""Balance -> Reactions: every reaction of every joint and constraint, as functions of q, u and the accelerations.
 
 The equations of the bodies hold more rows than there are reactions: those left over are the equations of motion. Where
 they hold fewer independent ones, some reactions are indeterminate, and the null space says how they may be shared.
@@ -75,7 +73,7 @@ class Reactions:
 
     @cached_property
     def by_components(self) -> tuple[Reactions, tuple[Node, ...]]:
-        """(the same as functions of the components, the symbols of these): what is asked of them is linear in these."""
+        """(the reactions as functions of the components, the symbols of these), linear in them."""
         graph, names = self.balance.system.scope.graph, self.balance.names
         symbols = tuple(graph.symbol(f"component {j} of the balance") for j in range(len(names)))
         constants: dict[int, Scalar] = dict(enumerate(symbols))
@@ -100,7 +98,7 @@ class Reactions:
 
     @property
     def null_space(self) -> tuple[dict[str, Scalar], ...]:
-        """Of each free component: what may be added to all reactions without a trace, by name."""
+        """Self-stresses, one for each free component: shares, by name, that may be added without a change of motion."""
         found = []
         for f in self.solution.free:
             row: dict[str, Scalar] = {self.balance.names[f]: 1}
@@ -110,7 +108,7 @@ class Reactions:
 
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
-        """What the unknowns of the loads are at rest, those that have a single value."""
+        """Values of the unknowns of the loads at rest, of those that have a single one."""
         first = len(self.components)
         pairs = enumerate(self.balance.unknowns, start=first)
         return {p: self.solution.constants[j] for j, p in pairs if self.solution.determined(j)}
@@ -119,7 +117,7 @@ class Reactions:
         """An unknown of the loads.
 
         Raises:
-            DerivationError: it stands in no load.
+            DerivationError: it occurs in no load.
             Indeterminate: the balance at rest leaves it open.
         """
         if name not in self.balance.names[len(self.components) :]:
@@ -171,7 +169,7 @@ class Reactions:
         return given[k] + self.combined(combinations[k], name)
 
     def is_open(self, owner: str) -> bool:
-        """Whether a contact has ended: its reaction is 0."""
+        """True if a contact has ended: its reaction is 0."""
         mode = self.balance.system.modes.get(owner)
         return mode is not None and not mode.closed
 
@@ -248,13 +246,13 @@ class Reactions:
         found = [j for j, c in enumerate(self.components) if c.owner == owner and c.kind == "constraint"]
         if len(found) != 1:
             raise DerivationError(
-                f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them",
+                f"multiplier({owner}): '{owner}' has {len(found)} components; name one of them",
                 fix=f"reaction({owner}, LABEL)",
             )
         return self.value(found[0])
 
     def labels(self, owner: str) -> list[str]:
-        """What the components of one constraint or joint are called."""
+        """Labels of the components of one constraint or joint."""
         return [c.label for c in self.components if c.owner == owner]
 
     def _labelled(self, owner: str, label: str, words: str) -> Scalar:
@@ -286,7 +284,7 @@ class Reactions:
         return combinations, self._replaced(given if R is None else apply(R, given))
 
     def _turning(self, on: int, frame: str, motion: Motion) -> Matrix | None:
-        """From the axes of the equations of a body to the ground's, or to those of `frame`; None where they agree."""
+        """Rotation from the axes of a body's equations to the ground's, or to those of `frame`; None: no rotation."""
         R = None if motion.scope.model.space == "plane" or on < 0 else motion.links[on].pose.R
         if not frame or frame == "ground":
             return R
@@ -294,7 +292,7 @@ class Reactions:
         return to_frame if R is None else product(to_frame, R)
 
     def _on(self, component: Component, on: int, what: str) -> Vector:
-        """What a unit of the component does to one body; to the ground (-1) the opposite of what it does to all."""
+        """Force or couple of a unit of the component on one body; on the ground (-1) the opposite of that on all."""
         total = ZERO
         for effect in (*component.effects, *component.friction_effects):
             if effect.link == on or on < 0:
@@ -302,7 +300,7 @@ class Reactions:
         return total if on >= 0 else times(-1, total)
 
     def _side(self, owner: str, side: str, effects: Sequence[Effect]) -> int:
-        """The body on which the reaction is asked: an index, -1 for the ground."""
+        """Index of the body on which the reaction is requested, -1 for the ground."""
         motion = self.balance.system.motion
         if not side:
             return effects[0].link
@@ -326,8 +324,10 @@ class Reactions:
 
 
 def determinate_sums(stresses: Sequence[Mapping[Any, Scalar]]) -> list[dict[Any, Scalar]]:
-    """Of reactions that have no single value, sums that have one: sum of k_i r_i with sum of k_i s_i = 0 for each of
-    the self-stresses s that may be added to them. One for each reaction beside one that belongs to a stress alone.
+    """Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0.
+
+    That holds for each of the self-stresses s, which may be added to the reactions. For each stress one reaction that
+    belongs to it alone is chosen as its measure; there is one sum for each of the other reactions.
 
     Args:
         stresses: {reaction: share} of each.
@@ -357,7 +357,7 @@ def reactions_of(
         short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some states.
         work: products of terms by which one coefficient is made readable at a configuration.
     Raises:
-        DerivationError: a body is held by nothing; a force acts at no place.
+        DerivationError: a body is unsupported; a force acts at no place.
     """
     if at or work != Work.ANSWER:
         return _found(system, at or {}, short, work)
@@ -411,8 +411,8 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reaction
 # -------- unheld ----------------------------------------------------------------------------------------------
 # Balance, Solution -> refusal of a motion of bodies that no reaction resists and no coordinate describes.
 #
-# The rows that the reactions leave over are the equations of motion: one for each freedom. Where there are more, some
-# virtual motion is resisted by nothing, and it is none of the coordinates'.
+# The rows that the reactions leave over are the equations of motion: one for each degree of freedom. Where there are
+# more, no reaction resists some virtual motion, and it is none of the coordinates'.
 
 
 def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar]) -> None:
@@ -425,7 +425,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
     """
     system, left = balance.system, solution.left
     if at:
-        if not system.symbols.u or all(map(holds_identically, left)):  # of rest what is left is looked at elsewhere
+        if not system.symbols.u or all(map(holds_identically, left)):  # residuals at rest are tested elsewhere
             return
     else:
         motions = degrees_of_freedom(system.constraints)
@@ -441,7 +441,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
 
 
 def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
-    """The body that moves most in what no reaction resists and no coordinate describes, and the direction.
+    """Error that names the body that moves most in a motion without reaction and coordinate, and the direction.
 
     Args:
         touched: only of directions along which some reaction acts: no number follows from the others.
@@ -457,18 +457,18 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
     equation = balance.equations[worst]
     direction = DIRECTIONS[equation.direction]
     turning = direction.startswith("moment")
-    what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
+    what = "unsupported against rotation" if turning else f"unsupported along {direction}"
     joined = _joined_by_a_coordinate(balance.system)
     fix = (
         f"{joined}, and nothing named joins them: name the constraint that does"
         if joined
-        else "what is placed carries no reaction: name the constraint that holds it, or hang it by joints"
+        else "a placed body carries no reaction: name the constraint that holds it, or connect it by joints"
     )
     return DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), fix)
 
 
 def _joined_by_a_coordinate(system: System) -> str:
-    """Where one free coordinate moves several joints, or one in two ways, the sentence that says so."""
+    """Sentence that one free coordinate moves several joints, or one joint in two ways; "" where none does."""
     given = driven_coordinates(system.scope.model)
     joints = [link for link in system.motion.links if link.joint is not None and link.joint.carries_reaction]
     for q in system.symbols.q:

@@ -1,1 +1,1 @@
-"""The one start of a motion that every verb takes, and the ways in which loops can be assembled there."""
+"""Start of a motion, the same for every verb, and the ways in which loops can be assembled there."""

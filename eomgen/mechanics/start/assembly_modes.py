@@ -1,4 +1,4 @@
-"""System, start -> Branches: in which ways the loops close while the independent coordinates stay."""
+"""System, start -> Branches: the ways in which the loops close while the independent coordinates stay."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ class Branches:
 
     Args:
         kept: the coordinates that stay.
-        here, others: that of the start, and those found beside it.
+        here, others: that of the start, and the other ones found.
     """
 
     kept: tuple[str, ...]
@@ -96,16 +96,16 @@ def branches_of_loops(system: System, start: Mapping[str, float]) -> Branches | 
 
 @dataclass(frozen=True)
 class _Search:
-    """What is open where loops are put together otherwise.
+    """Search for other ways in which the loops close.
 
     Args:
-        system: whose loops close.
-        gaps, derivatives: phi, and its derivatives by what is sought.
-        rows: those that are independent.
-        agreeing: what is positive where hinges and welds are not turned over.
+        system: the system of the loops.
+        gaps, derivatives: phi, and its derivatives by the coordinates sought.
+        rows: indices of the independent gaps.
+        agreeing: scalars that are positive where hinges and welds are not turned over.
         here: the place of the start.
-        turns: of each coordinate sought, whether it is an angle.
-        reach: how far lengths may lie from where they are.
+        turns: mask of the coordinates sought that are angles.
+        reach: largest distance of lengths from their values at the start.
     """
 
     system: System
@@ -143,7 +143,7 @@ class _Search:
         return np.asarray(place + np.array(step))
 
     def is_regular(self, J: np.ndarray) -> bool:
-        """Whether no other branch meets this one there: slopes against those at the start."""
+        """True if no other branch meets this one there, judged by the slopes against those at the start."""
         scale = np.linalg.norm(self._at(self.here)[1], axis=0)
         sizes = np.linalg.svd(J / np.where(scale > 0, scale, 1.0), compute_uv=False)
         return bool(sizes[-1] > BRANCHES_MEET * sizes[0])
@@ -223,27 +223,27 @@ def _following(system: System, free: Sequence[Node], J: np.ndarray) -> list[Node
 
 
 def _is_angle(gaps: Sequence[Any], known: State, q: Node) -> bool:
-    """Whether a whole turn changes no gap."""
+    """True if a whole turn of the coordinate changes no gap."""
     before, after = (evaluate(gaps, {**known, q: known[q] + turn}, FLOAT) for turn in (0.3, 0.3 + 2 * math.pi))
     return bool(np.allclose(before, after, atol=COMPUTED))
 
 
 # -------- assembly sides --------------------------------------------------------------------------------------
-# System, a place -> on which side of the line between their own hinges two links of the plane are pinned together.
+# System, a place -> the side of the line between their own hinges on which two links of the plane are pinned together.
 #
-# The pin R of two links that turn about P and Q lies to the left or to the right of the line from P to Q. That tells
-# the two ways in which such a pair closes (open and crossed, elbow up and down). In line, the pair is in a dead
-# centre.
+# The pin R of two links that turn about P and Q lies to the left or to the right of the line from P to Q. That
+# distinguishes the two ways in which such a pair closes (open and crossed, elbow up and down). In line, the pair is in
+# a dead centre.
 
 
 @dataclass(frozen=True)
 class AssemblySide:
-    """Where a pin lies.
+    """Side of the line PQ on which a pin R lies.
 
     Args:
         constraint: the pin.
-        first, second: the bodies whose hinges P and Q are.
-        left: whether R is to the left of the way from P to Q.
+        first, second: the bodies with the hinges P and Q.
+        left: True if R is to the left of the way from P to Q.
     """
 
     constraint: str
@@ -253,7 +253,7 @@ class AssemblySide:
 
 
 def assembly_sides(system: System, state: Mapping[Node, Any]) -> tuple[AssemblySide, ...]:
-    """Of each constraint that pins two turning bodies of a plane system together; () in space."""
+    """Side of each constraint that pins two turning bodies of a plane system together; () in space."""
     if system.scope.model.space != "plane":
         return ()
     found: dict[str, AssemblySide] = {}
@@ -280,7 +280,7 @@ def _turns(link: BodyLink) -> bool:
 
 
 def _is_left(system: System, state: Mapping[Node, Any], links: list[BodyLink], pushes: list[PointForce]) -> bool | None:
-    """Whether R is on the left; None in line, and where the bodies are not pinned at one point."""
+    """True if R is on the left; None in line, and where the bodies are not pinned at one point."""
     ends = [link.pose.point(push.place[1]) for link in links for push in pushes if push.place[0] == link.name]
     hinges = [link.pose.point(link.point) for link in links]
     flat: tuple[Scalar, ...] = tuple(x for point in (*hinges, *ends) for x in point[:2])

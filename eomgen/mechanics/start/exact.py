@@ -1,4 +1,4 @@
-"""System -> ExactStart: the one start that every verb takes, in closed form where it has one."""
+"""System -> ExactStart: the start of a motion for every verb, in closed form where it has one."""
 
 from __future__ import annotations
 
@@ -52,11 +52,11 @@ MOST_UNKNOWNS = 8  # speeds and multipliers of speeds that are sought in closed 
 
 @dataclass(frozen=True)
 class ExactStart:
-    """Where a motion begins; what is not asked is not sought.
+    """Start of a motion; each result is computed at its first use.
 
     Args:
-        system: of which.
-        at_rest: all speeds are 0, whatever the model says.
+        system: the system that moves.
+        at_rest: True if all speeds are 0, whatever the model says.
     """
 
     system: System
@@ -73,7 +73,7 @@ class ExactStart:
 
     @property
     def is_drawn(self) -> bool:
-        """Whether a parameter has no value."""
+        """True if a parameter has no value and is drawn at random."""
         return bool(self._sought[0].drawn)
 
     @cached_property
@@ -114,7 +114,7 @@ class ExactStart:
 
     @property
     def is_exact(self) -> bool:
-        """Whether everything has a closed form."""
+        """True if all coordinates and speeds have a closed form."""
         return all(x in self.exact for x in (*self.system.symbols.q, *self.system.symbols.u))
 
     @cached_property
@@ -194,7 +194,7 @@ class _Sought:
 
     @cached_property
     def exact(self) -> dict[Node, Scalar]:
-        """What has a closed form."""
+        """Closed forms of t, coordinates and speeds, of those that have one."""
         symbols, moved = self.system.symbols, {change.name for change in self.begun.changes}
         moved |= {u.name for u in following_rates(self.system)}
         known = {x: value for x, value in self.declared.items() if x.name not in moved}
@@ -277,7 +277,7 @@ class _Sought:
         return evaluate(scalars, {x: of_50_digits(value) for x, value in self.located.numbers.items()}, fifty_digits())
 
     def _independent(self, J: Sequence[Sequence[Scalar]]) -> list[int]:
-        """The rows that say something of these speeds, each beside those before it."""
+        """Indices of the rows of J that are independent of those before them."""
         flat = [e for row in J for e in row]
         if not flat or not set(symbols_of(flat)) <= self.located.numbers.keys():
             return []
@@ -305,7 +305,7 @@ Seeds = Mapping[Node, Scalar]
 
 
 def parameter_seeds(scope: Scope, name: str) -> dict[Node, Scalar]:
-    """How the parameters change with one of them: it, and those whose expressions hold it."""
+    """Derivatives of the parameters with respect to one of them: its own, and those of parameters that depend on it."""
     given = {other: part.value for other, part in scope.model.parameters.items() if part is not None}
     found: dict[Node, Scalar] = {scope.symbols.parameters[name]: 1}
     for other in in_order(given)[0]:
@@ -317,14 +317,14 @@ def parameter_seeds(scope: Scope, name: str) -> dict[Node, Scalar]:
 
 
 def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: str = "") -> dict[Node, Fraction]:
-    """How coordinates and speeds at the start change with the parameters, or with the start of one of them.
+    """Derivatives of coordinates and speeds at the start with respect to parameters, or to the start of one of them.
 
     Args:
         numbers: t, parameters, inputs, q and u at the start, with 50 digits.
-        seeds: how the parameters and inputs change.
+        seeds: the changes of parameters and inputs.
         own: the coordinate or speed whose start is changed; "" of none.
     Raises:
-        DerivationError: the constraints do not say how.
+        DerivationError: the constraints do not determine them.
     """
     scope, symbols = system.scope, system.symbols
 
@@ -377,14 +377,14 @@ def _kept(
     if several or np.max(abs(A @ step + left)) > CARRIED * max(1.0, np.max(np.abs(left))):
         names = ", ".join(f"'{x.name}'" for x in silent or moved)
         raise DerivationError(
-            f"the constraints do not say how the start changes with {what}{f': of {names}' if names else ''}",
-            fix="declare what follows from the constraints as dependent",
+            f"the constraints do not determine how the start changes with {what}{f': of {names}' if names else ''}",
+            fix="declare the coordinates that follow from the constraints as dependent",
         )
     return seeds | {x: seeds[x] + Fraction(d) for x, d in zip(silent, step.tolist(), strict=True)}
 
 
 def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapping[Node, Any]) -> list[Node]:
-    """Which of them start elsewhere than the model says: where the constraints hold."""
+    """Those of the variables whose start the constraints move away from the value that the model says."""
     found = floats_of(evaluate([said[x] for x in variables], numbers, fifty_digits()))
     own = [float(numbers[x]) for x in variables]
     return [x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > CARRIED * max(1.0, abs(b))]
@@ -399,7 +399,7 @@ DIGITS = 12  # of a speed that a start was given by its constraints
 
 
 def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
-    """Every symbol that moves, at rest at the start: exact scalars of the parameters.
+    """Values of t, q, u, a at rest at the start: exact scalars of the parameters.
 
     Args:
         places: coordinates that are elsewhere than at the start.

@@ -59,10 +59,9 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, LARGE
 # hold.
 #
 # Of the dependent coordinates those that position constraints fix are sought from `near`, else from `start`; those
-# that only
-# velocity constraints move really start at `start`. Other coordinates and speeds stay as given where the constraints
-# hold there.
-# Where these do not, the nearest values are taken at which they do (`consistency`), and what has changed is told.
+# that only velocity constraints move really start at `start`. Other coordinates and speeds stay as given where the
+# constraints hold there. Where these do not, the nearest values are taken at which they do (`consistency`), and the
+# changes are reported.
 
 
 @dataclass(frozen=True)
@@ -86,13 +85,13 @@ class Change:
 
 @dataclass(frozen=True)
 class Start:
-    """Where a motion begins.
+    """Start of a motion in numbers, and the changes that the constraints made necessary.
 
     Args:
         values: of every coordinate and independent speed; all constraints hold.
         changes: of those that are not dependent, so that the constraints hold.
         constraints: the names of the constraints that did not hold at the values given.
-        fork: where branches meet there.
+        fork: that of the branches that meet there; None where none do.
         hit: the one-sided constraints into which the given speeds lead: an impact without rebound, M (u+ - u-) = J^T
             Lam.
     """
@@ -105,7 +104,7 @@ class Start:
 
     @property
     def words(self) -> str:
-        """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
+        """Sentence that says which start values were changed or completed, and why; "" where none were."""
         if not self.changes:
             return ""
         if self.hit:
@@ -255,9 +254,9 @@ def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tup
         return state, fork, ()
     found = speeds_along(system.constraints, fork, state, _tiers(system, called))
     if found is None:
-        what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
+        what = f"the start lies in {fork.words}, and no motion continues from it with its speeds"
         raise DerivationError(
-            what, f"constraints.{fork.constraints[0]}", "give other speeds, or start beside that position"
+            what, f"constraints.{fork.constraints[0]}", "give other speeds, or start near that position"
         )
     return found, fork, fork.constraints
 
@@ -271,7 +270,7 @@ def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
 def _changes(
     system: System, before: Mapping[str, float], after: Mapping[str, float], called: frozenset[str]
 ) -> tuple[Change, ...]:
-    """What differs, dependent coordinates left out."""
+    """Changes between two starts, without those of dependent coordinates."""
     follow = {*dependent_coordinates(system.scope), *(u.name for u in following_rates(system))}
     own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in follow]
     return tuple(
@@ -429,7 +428,7 @@ def _nearest(system: System, state: State) -> str:
 
 
 def _in_full(system: System, row: Row, size: float, state: State) -> float:
-    """By how much a row is open: of a link, whose gap g = (L - r.r/L)/2 is a length to first order, |L - |r||.
+    """Amount by which a row is open; of a link, whose gap g = (L - r.r/L)/2 is a length to first order, |L - |r||.
 
     L = g + sqrt(g^2 + r.r)
     """
@@ -444,7 +443,7 @@ def _in_full(system: System, row: Row, size: float, state: State) -> float:
 
 
 def _fix(system: System, gap: Scalar) -> str:
-    """What closes a gap: another guess, a coordinate marked dependent, other start values."""
+    """Advice to close a gap: another guess, a coordinate marked dependent, other start values."""
     dependent = dependent_coordinates(system.scope)
     standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
     sought = [name for name in standing if name in dependent]
@@ -532,7 +531,7 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
 
 
 def _closes(system: System, state: Mapping[Node, Any], place: Mapping[Node, float]) -> bool:
-    """Whether all constraints close near a place, and not just nearly: with 50 digits."""
+    """True if all constraints can be satisfied near a place to 50 digits."""
     there = {node: of_50_digits(float(x)) for node, x in {**state, **place}.items()}
     return closed(system.constraints, there, movable(system.constraints)) is not None
 

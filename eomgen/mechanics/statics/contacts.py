@@ -1,4 +1,4 @@
-"""Model -> how its contacts are at the start and at rest, by numbers alone."""
+"""Model -> the states of its contacts at the start and at rest, by numbers alone."""
 
 from __future__ import annotations
 
@@ -51,11 +51,11 @@ Numbers = Mapping[str, float]
 
 @dataclass(frozen=True)
 class ContactsAtStart:
-    """How the contacts of a model are at its start.
+    """States of the contacts of a model at its start.
 
     Args:
         modes: of those that are not closed, or push against their normals.
-        assumptions: what had to be assumed, in words: "floor assumed closed: h has no value".
+        assumptions: the assumptions made, in words: "floor assumed closed: h has no value".
     """
 
     modes: ContactModes = field(default_factory=dict)
@@ -135,7 +135,7 @@ class _StartNumbers:
         return {name: 10 ** rng.uniform(-1, 1) for name in self.missing}
 
     def open_contacts(self, names: Sequence[str]) -> ContactsAtStart:
-        """Those of the contacts that can end whose gap is positive; none where the start leaves all of them closed."""
+        """Contacts that can end and have a positive gap; none where the start leaves all of them closed."""
         if not names:
             return ContactsAtStart()
         try:
@@ -166,7 +166,7 @@ class _StartNumbers:
         return ContactsAtStart(modes, tuple(assumptions))
 
     def leaving(self, touching: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
-        """Those of the contacts that touch and would have to pull: they leave at once."""
+        """Touching contacts that would have to pull: they open at once."""
         seeds = SEEDS if self.missing else SEEDS[:1]
         try:
             found = [self._let_go(touching, opened, self._far(seed)) for seed in seeds]
@@ -189,7 +189,7 @@ class _StartNumbers:
         return None
 
     def _agrees(self, modes: ContactModes, held: Sequence[Contact], free: Sequence[Contact], drawn: Numbers) -> bool:
-        """Whether what is held pushes, and what is free opens, with the accelerations at the start."""
+        """True if the held contacts push and the free ones open, with the accelerations at the start."""
         equations = self._equations(modes)
         system = equations.system
         reactions, scope = reactions_of(system), system.scope
@@ -205,7 +205,7 @@ class _StartNumbers:
         return all(N >= -CARRIED * size for N in pushes) and all(x >= -CARRIED * fastest for x in opening)
 
     def pushing(self, contacts: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
-        """Those of the contacts that push against their normals: N < 0, with the friction of just that."""
+        """Contacts that push against their normals: N < 0, with the friction of that same sign."""
         signs = {contact.name: 1 for contact in contacts}
         try:
             for _ in range(ROUNDS):
@@ -264,7 +264,7 @@ def _state(system: System, drawn: Numbers) -> State:
 
 
 def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
-    """How far each contact is open at the start; a strand that has no gap is taut."""
+    """Gap of each contact at the start; a strand that has no gap is taut."""
     state = _state(free, drawn)
     gaps = {name: rows_of_constraint(free.motion, name)[0].gap for name in names}
     values = evaluate(tuple(0 if gap is None else gap for gap in gaps.values()), state, fifty_digits())
@@ -272,7 +272,7 @@ def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float
 
 
 def _rates(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
-    """How fast each contact opens at the start."""
+    """Rate at which each contact opens at the start."""
     values = evaluate(
         tuple(rows_of_constraint(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
     )
@@ -280,7 +280,7 @@ def _rates(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, floa
 
 
 def _forces(reactions: Reactions, contact: Contact) -> list[Scalar]:
-    """What must not be negative while the contact is closed: N, of a string the tension of every strand."""
+    """Forces that must not be negative while the contact is closed: N, of a string the tension of every strand."""
     if not contact.pulls:
         return [reactions.normal(contact.name)]
     rows = reactions.balance.system.scope.model.constraints[contact.name].strand_rows()
@@ -301,15 +301,15 @@ def _lacking(names: Sequence[str]) -> str:
 
 
 # -------- rest contacts ---------------------------------------------------------------------------------------
-# Model -> how its contacts are at rest; reactions -> whether they can be so.
+# Model -> the states of its contacts at rest; reactions -> conditions for these states.
 #
-# At rest a rough contact keeps from sliding: its friction is a reaction like others, as long as |F| <= mu N. What can
-# only push, or only pull, needs N >= 0.
+# At rest a rough contact does not slide: its friction is a reaction like others, as long as |F| <= mu N. A contact
+# that can only push, or only pull, needs N >= 0.
 
 
 @dataclass(frozen=True)
 class RestCondition:
-    """What must hold for a contact to be as it was taken.
+    """Condition for a contact to be in the assumed state.
 
     Args:
         constraint: the contact, or the body on a path.
@@ -323,7 +323,7 @@ class RestCondition:
 
     @property
     def broken(self) -> str:
-        """What happens where it is negative."""
+        """Consequence of a negative margin, in words."""
         return {
             "pushes": f"contact '{self.constraint}' would have to pull",
             "pulls": f"'{self.constraint}' would have to push",
@@ -337,7 +337,7 @@ def modes_at_rest(model: Model) -> ContactModes:
 
 
 def conditions_of(statics: StaticReactions) -> tuple[RestCondition, ...]:
-    """What must hold of contacts that can end or slide, those whose reactions are determinate."""
+    """Conditions of the contacts that can end or slide, where their reactions are determinate."""
     found = []
     for contact in contacts_of(statics.system.scope.model):
         name = contact.name

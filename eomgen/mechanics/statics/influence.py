@@ -1,6 +1,4 @@
-"""Structure, a reaction or inner force -> InfluenceLine.
-
-Structure, a reaction or inner force -> InfluenceLine: what a unit load gives that travels along the bodies.
+"""Structure, a reaction or inner force -> InfluenceLine: its value for a unit load that travels along the bodies.
 
 The constraint that belongs to the force X is released; in the motion that is left, with a displacement 1 along X,
 
@@ -61,7 +59,7 @@ class InfluenceLine:
     """X for a unit load that travels along the spans.
 
     Args:
-        name: of X, as an output asks for it.
+        name: of X, as an output writes it.
         load: the unit load.
         plan: the motion of the released structure; of a cut body, that of the part behind the section.
         cut: the section, None for a reaction.
@@ -79,9 +77,9 @@ def influence_line(structure: Structure, requested: str, load: Vector = DOWN) ->
     """The influence line of a reaction, a member force or a section force.
 
     Args:
-        asked: as an output asks for it: "reaction_y(A)", "tension(T, n1-n2)", "bending_moment(beam, a)". After a colon
-            the bodies or nodes that the load passes: "reaction_y(A): I, II"; without them all that is horizontal, else
-            all that is not upright; of a truss the lowest nodes.
+        requested: as an output writes it: "reaction_y(A)", "tension(T, n1-n2)", "bending_moment(beam, a)". After a
+            colon the bodies or nodes that the load passes: "reaction_y(A): I, II"; without them all horizontal bodies,
+            else all that are not vertical; of a truss the lowest nodes.
         load: the unit load, ground axes.
     Raises:
         UsageError: there is no such force, or no way for the load.
@@ -103,7 +101,7 @@ def influence_line(structure: Structure, requested: str, load: Vector = DOWN) ->
 
 
 def _way(text: str) -> tuple[str, tuple[str, ...]]:
-    """What is asked, and the bodies or nodes that the load passes: "reaction_y(A): I, II"."""
+    """(the requested force, the bodies or nodes that the load passes), of "reaction_y(A): I, II"."""
     requested, _, way = text.partition(":")
     return requested.strip(), tuple(name.strip() for name in way.split(",") if name.strip())
 
@@ -114,7 +112,7 @@ def _call(requested: str) -> Call:
     except ExpressionError as error:
         raise UsageError(f"influence line: '{requested}': {error.what}", fix=error.fix) from error
     if call is None:
-        raise UsageError(f"influence line: '{requested}' is not one force", fix='ask "reaction_y(A)"')
+        raise UsageError(f"influence line: '{requested}' is not one force", fix='write, for example, "reaction_y(A)"')
     return call
 
 
@@ -161,7 +159,7 @@ class _Travelling:
         return spans
 
     def _chosen(self) -> Sequence[InfluenceSpan]:
-        """What is horizontal, in order; else what is not upright; of a truss the lowest nodes."""
+        """Spans that the load passes: the horizontal ones, else those not vertical; of a truss the lowest nodes."""
         links = self.structure.system.motion.links
         spans = list(self._over_bodies([link.name for link in links if not is_node(link.name)], skip=True))
         level = [s for s in spans if self._is_zero(s.end[1] - s.start[1])]
@@ -274,7 +272,7 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     """The released section: N shifts along t, V across, -n, M turns by 1."""
     if not 2 <= len(call.args) <= 3:
         raise UsageError(
-            f"influence line: {call}: a body and a place along it are asked for", fix=f'ask "{call.name}(body, x)"'
+            f"influence line: {call}: a body and a place along it are needed", fix=f'write "{call.name}(body, x)"'
         )
     body, where, *side = call.args
     motion, names = structure.system.motion, structure.system.scope.names
@@ -298,13 +296,13 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     if inside and not side and call.name != "bending_moment" and _is_pushed(structure, axis, x, name):
         requested = f"{call.name}({name}, {to_text(x)}"
         raise UsageError(
-            f"influence line: {requested}) jumps there", fix=f"ask {requested}, before) or {requested}, after)"
+            f"influence line: {requested}) jumps there", fix=f"write {requested}, before) or {requested}, after)"
         )
     return Cut(axis, x, lambda s: sizes.sign(x - s) >= here, shift, int(call.name == "bending_moment"), place)
 
 
 def _is_pushed(structure: Structure, axis: MemberAxis, x: Scalar, body: str) -> bool:
-    """Whether a reaction acts at the section."""
+    """True if a reaction acts at the section."""
     link = structure.system.motion.index[body]
     places = (e.place for _, effects in structure.pushes for e in effects if e.link == link and e.place is not None)
     distances = (axis.distance(place) for place in places)

@@ -1,8 +1,8 @@
-"""Motion, body -> MemberAxis: the line of straight legs along which a body is a beam, and how far along it a place is.
+"""Motion, body -> MemberAxis: the line of straight legs along which a body is a beam, with distances along it.
 
 It is the body's `line` where it has one; else the line through its points where they all lie on one, from left to
-right in the body's axes, or upwards; else from point to point in the order of their declaration, what lies on the way
-left out.
+right in the body's axes, or upwards; else from point to point in the order of their declaration, without those that
+lie on the way.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from eomgen.symbolic.solve.solving import vanishes
 
 @dataclass(frozen=True)
 class Sizes:
-    """Which of two scalars is larger: for all positive parameters, else at the model's values.
+    """Comparison of scalars: for all positive parameters where possible, else at the model's values.
 
     Args:
         positive: parameters that stand for positive numbers.
         values: those that have a value, with 50 digits.
-        at: what stands in place of coordinates.
+        at: values put in for coordinates.
         graph: of the system.
     """
 
@@ -46,7 +46,7 @@ class Sizes:
     at: Mapping[Node, Scalar] = field(default_factory=dict)
 
     def simple(self, x: Scalar) -> Scalar:
-        """A scalar multiplied out, what is known of the coordinates put in."""
+        """A scalar multiplied out, with the known values of coordinates put in."""
         if type(x) is not Node:
             return x
         return readable(substituted((x,), self.at)[0] if self.at else x, Work.VALUE, self.positive)
@@ -103,7 +103,7 @@ class Leg:
         return (-self.along[1], self.along[0], 0)
 
     def place(self, x: Scalar) -> Vector:
-        """Where the distance x along the axis is, body axes."""
+        """Position at the distance x along the axis, body axes."""
         return plus(self.start, times(x - self.x, self.along))
 
 

@@ -1,14 +1,12 @@
-"""Reactions, body -> SectionForces: normal force, shear force and bending moment along a body.
+"""Reactions, body -> SectionForces: normal force, shear force and bending moment along a body that is a beam.
 
-Reactions, body -> SectionForces: normal force, shear force and bending moment along a body that is a beam.
-
-Of all that acts before the section at x (resultant R, moment T about the section, counter-clockwise), t along the axis,
-n to its left:
+The forces before the section at x have the resultant R and the moment T about the section, counter-clockwise; t is
+along the axis, n to its left:
 
     N = -R . t,   V = R . n,   M = -T;        dN/dx = -q_t,   dV/dx = q_n,   dM/dx = V
 
 N is positive as tension, V where it turns the piece on which it acts clockwise, M where it stretches the right-hand
-fibre: of a beam drawn from left to right the lower one. What a rod weighs, and its inertia, is spread along it.
+fibre: of a beam drawn from left to right the lower one. The weight of a rod, and its inertia, is spread along it.
 """
 
 from __future__ import annotations
@@ -90,7 +88,7 @@ class SectionPiece:
 
 @dataclass(frozen=True)
 class Extreme:
-    """Where V = 0 within a piece: the bending moment has an extreme there."""
+    """Extreme of the bending moment within a piece, where V = 0."""
 
     x: Scalar
     M: Scalar
@@ -142,7 +140,7 @@ class SectionForces:
         if len(values) == 2 and not vanishes(values[0] - values[1]):
             requested, jump = f"{kind}({self.axis.body}, {to_text(x)}", " to ".join(map(to_text, values))
             raise DerivationError(
-                f"{requested}) jumps there from {jump}", fix=f"ask {requested}, before) or {requested}, after)"
+                f"{requested}) jumps there from {jump}", fix=f"write {requested}, before) or {requested}, after)"
             )
         return values[0]
 
@@ -216,7 +214,7 @@ def _spread(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
 
 
 def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterable[SectionPiece]:
-    """From station to station: everything before is carried along as one force and one moment."""
+    """Pieces from station to station; all forces before a piece are summed to one force and one moment."""
     sizes = axis.sizes
     stations = _stations(axis, actions, spreads)
     R: Vector = ZERO
@@ -252,7 +250,7 @@ def _piece(
 
 
 def _stations(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:
-    """Where something begins or ends, in order."""
+    """Distances at which a force, a load or a leg begins or ends, in order."""
     sizes = axis.sizes
     places = [*axis.ends, *(leg.x for leg in axis.legs), *(a.x for a in actions)]
     places += [x for s in spreads for x in (s.start, s.end)]
@@ -287,7 +285,7 @@ def _roots(V: tuple[Scalar, ...], sizes: Sizes) -> list[Scalar]:
 
 
 def _is_nothing(x: Scalar, sizes: Sizes) -> bool:
-    """Whether it vanishes, identically or at the model's values."""
+    """True if a scalar vanishes, identically or at the model's values."""
     try:
         return vanishes(x) or sizes.sign(x) == 0
     except DerivationError:  # it has no value
@@ -302,7 +300,7 @@ def _is_nothing(x: Scalar, sizes: Sizes) -> bool:
 
 
 def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vector | None:
-    """Where a reaction acts, body axes: a couple where the forces of the same constraint do, None where it has none."""
+    """Place of a reaction, body axes: of a couple that of the forces of the same constraint, None where it has none."""
     if effect.place is not None:
         return effect.place
     mine = (e for c in components if c.owner == owner for e in c.effects if e.link == effect.link)
@@ -366,7 +364,7 @@ class MemberLoads:
         yield from (effect for effect in joint_effects(system) if effect.link == link)
 
     def _place_of(self, effect: Effect, owner: str) -> Vector:
-        """Where a reaction acts: a couple where the forces of the same constraint do."""
+        """Place of a reaction: of a couple that of the forces of the same constraint."""
         place = place_of(self.reactions.components, effect, owner)
         return self._placed(replace(effect, place=place), f"the couple of '{owner}'").place or ZERO
 
@@ -433,7 +431,7 @@ class MemberLoads:
         return self.reactions.balance.system
 
     def _turned(self, vector: Vector) -> Vector:
-        """From ground axes to those of the body."""
+        """Vector in body axes of one in ground axes."""
         return self._simple(apply(transposed(self._system.motion.link(self.body).pose.R), vector))
 
     def _simple(self, vector: Vector) -> Vector:

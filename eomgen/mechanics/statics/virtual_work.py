@@ -1,6 +1,4 @@
-"""Structure -> its reactions by the principle of virtual work, and by the balance of its bodies.
-
-Structure -> its reactions by the principle of virtual work: one released at a time, no balance of bodies used.
+"""Structure -> its reactions by the principle of virtual work, released one by one, and by the balance of its bodies.
 
 With one reaction R released the bodies have one motion. In it all other reactions do no work, so that
 
@@ -161,7 +159,7 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
     plan = structure.released(combination)
     along = turning_by_one(plan)
     plan = plan.scaled(along)
-    still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or are what is asked
+    still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or one is the requested force
     loads = loads_at_rest(structure)
     works = substituted(tuple(load.work(plan) for load in loads), still)
     parts = [substituted(substituted(load.parts, structure.at), still) for load in loads]
@@ -181,8 +179,8 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
 
 
 UNITS = {(1, 1, -2): "N", (2, 1, -2): "N*m", (0, 1, -2): "N/m"}
-"""By the exponents of m, kg, s."""
-LONGEST_FACTOR = 60  # characters of a factor in a sum that is told
+"""Units by the exponents of m, kg, s."""
+LONGEST_FACTOR = 60  # characters of a factor in a sum that is printed
 
 
 @dataclass(frozen=True)
@@ -195,7 +193,7 @@ class StaticReaction:
         named: the reaction; None for an unknown.
         solved: its value as the balance of the bodies gives it; None where that leaves it open.
         positive: parameters that stand for positive numbers.
-        work: the equation of virtual work; None where it is indeterminate, or was not asked.
+        work: the equation of virtual work; None where it is indeterminate, or was not requested.
     """
 
     name: str
@@ -212,10 +210,7 @@ class StaticReaction:
 
     @cached_property
     def agree(self) -> bool:
-        """Whether the two values are the same function of the parameters.
-
-        What only one of the ways leaves open is a difference too.
-        """
+        """True if both values are the same function of the parameters; a value that one way lacks is a difference."""
         if self.work is None:
             return True
         return self.solved is not None and equal_at_random_states([(self.solved, self.work.value)]).equal
@@ -282,7 +277,7 @@ class StaticReactions:
 
     @property
     def disagreeing(self) -> tuple[StaticReaction, ...]:
-        """Those of which the two ways differ: then the result is wrong."""
+        """Reactions for which the two ways differ: then the result is wrong."""
         return tuple(reaction for reaction in self.reactions if not reaction.agree)
 
     @property
@@ -329,8 +324,7 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
 
 
 def released_in(structure: Structure, name: str) -> StaticReaction:
-    """One reaction, or unknown of the loads, by its virtual work alone; other degrees of freedom of the bodies stand
-    still.
+    """One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest.
 
     Raises:
         UsageError: there is no such reaction.
@@ -358,7 +352,7 @@ def unit_of_unknown(structure: Structure, unknown: Node) -> str:
 
 
 def _one_of(names: Sequence[str], requested: str) -> str:
-    """The name of the reaction, or of the unknown, that is asked for.
+    """Name of the requested reaction or unknown.
 
     Raises:
         UsageError: there is none.
