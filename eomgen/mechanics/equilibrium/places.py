@@ -173,7 +173,7 @@ class _Search:
 
     @cached_property
     def _reduced(self) -> tuple[Scalar, ...] | None:
-        """As many equations as coordinates, without multipliers; None where there are none.
+        """System of as many equations as coordinates, without multipliers; None where there is none.
 
         Without constraints the forces; with one degree of freedom left, det [Q; J] = 0 (no force along it) and the
         relations.

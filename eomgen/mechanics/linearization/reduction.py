@@ -293,7 +293,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
 
 
 def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
-    """Those of the coordinates `kept` on which the motion depends, and those with a speed of their own."""
+    """Indices among `kept` of coordinates on which the motion depends, or that have a speed of their own."""
     K, F, E = (without_noise(floats(x), COMPUTED) for x in (equations.K, equations.F, equations.E))
     own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
     seen = {j for j in kept if np.any(K[:, j])} | {*own}

@@ -203,7 +203,7 @@ class Structure:
 
     @cached_property
     def _columns(self) -> tuple[ScalarRow, ...]:
-        """For each row the velocities of the bodies that give a velocity 1 along it and 0 along the others."""
+        """Velocities of the bodies for each row, with a velocity 1 along it and 0 along the others."""
         return tangents(self._solved.velocities, self._solved.deltas)
 
     @cached_property

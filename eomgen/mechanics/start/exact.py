@@ -384,7 +384,7 @@ def _kept(
 
 
 def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapping[Node, Any]) -> list[Node]:
-    """Those of the variables whose start the constraints move away from the value that the model says."""
+    """Variables whose start the constraints move away from the value that the model says."""
     found = floats_of(evaluate([said[x] for x in variables], numbers, fifty_digits()))
     own = [float(numbers[x]) for x in variables]
     return [x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > CARRIED * max(1.0, abs(b))]
