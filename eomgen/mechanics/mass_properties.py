@@ -88,7 +88,7 @@ def flat_bodies(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
 
 
 def shapeless(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
-    """The bodies that have a mass and say nothing of its inertia."""
+    """Bodies that have a mass but no stated inertia."""
     parts = motion.scope.model.bodies
     silent = [b for b in bodies if parts[b].shape is None and parts[b].parts is None and parts[b].inertia is None]
     return tuple(body for body in silent if not is_zero(mass_properties(motion.scope, body).m))

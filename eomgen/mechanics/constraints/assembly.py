@@ -117,7 +117,7 @@ def fixed_by_position(constraints: Constraints) -> list[Node]:
 
 
 def tiers_of(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
-    """Coordinates or speeds in the order in which they are changed: nobody's, those of the model, those called."""
+    """Coordinates or speeds in the order in which they may change: not given, given by the model, by the caller."""
     silent = [node for node in own if node.name not in called and is_guess(model, node.name)]
     typed = [node for node in own if node.name in called]
     return silent, [node for node in own if node not in silent and node not in typed], typed

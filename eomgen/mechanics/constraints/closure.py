@@ -198,7 +198,7 @@ def closed(
 def nearest_root(
     gaps: Sequence[Scalar], state: State, free: Sequence[Node], sizes: np.ndarray | None = None
 ) -> State | None:
-    """The nearest state at which these vanish, as `closed`."""
+    """The nearest state at which the scalars vanish, as `closed`."""
     gaps, scale = tuple(gaps), np.ones(len(free)) if sizes is None else sizes
     slopes = tuple(x for row in jacobian(gaps, free) for x in row) if gaps else ()
     found = CLOSING.root(_Gaps(gaps, slopes, tuple(free), scale), state)

@@ -436,5 +436,5 @@ def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, 
 
 
 def stopped_at(edge: Edge, t: float) -> str:
-    """Why a motion ends there."""
+    """Reason why a motion ends there."""
     return f"Stopped at t = {t:.6g} s: {edge.words}, and how it goes on is not determined."

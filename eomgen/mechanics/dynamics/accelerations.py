@@ -54,7 +54,7 @@ def accelerations_at(equations: EquationsOfMotion, state: State) -> np.ndarray:
 
 
 def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]:
-    """The same with more digits than doubles have: what they leave of the right side is solved for again.
+    """Accelerations with more digits than doubles have: the residual of each solution is solved for again.
 
     Raises:
         NoValue: some motion that the constraints allow moves no mass at the state.

@@ -237,7 +237,7 @@ def _weighted(force: Vector, rows: ScalarRows, size: int) -> ScalarRow:
 
 
 def placeless_forces(loads: Loads) -> ScalarRow:
-    """Q of what no twist sees: generalized forces, energies of coordinates, forces along the slide of their points."""
+    """Q of loads that no twist contains: generalized forces, energies of coordinates, forces on sliding points."""
     size = len(loads.motion.scope.symbols.u)
     rows = [load_row(loads, load) for load in loads.generalized]
     energies = [force.potential for force in loads.applied if force.placeless]

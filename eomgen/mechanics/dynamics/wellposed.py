@@ -74,7 +74,7 @@ def why_not_conservative(equations: EquationsOfMotion) -> str:
 
 
 def refuse_massless(equations: EquationsOfMotion) -> None:
-    """A free coordinate that moves no mass has no acceleration, nor have several that can move together without any.
+    """Refuses free coordinates that move no mass, alone or together: they have no acceleration.
 
     Raises:
         ModelError: naming every such coordinate, or the body that can turn idly.
@@ -250,7 +250,7 @@ def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
 
 
 def _size(part: Any, values: Mapping[Node, float]) -> float:
-    """The largest number in it, in SI; 0 where the state does not say it."""
+    """The largest number of a load or row in a state, in SI; 0 where the state does not give it."""
     scalars = tuple(x for x in _scalars(part) if all(symbol in values for symbol in symbols_of((x,))))
     return max((abs(x) for x in evaluate(scalars, values, FLOAT) if not math.isnan(x)), default=0.0)
 
@@ -280,7 +280,7 @@ def _scalars(part: Any) -> Iterator[Scalar]:
 
 
 def reason_without_value(scalar: Scalar, values: Mapping[Node, float]) -> str:
-    """Why it has no finite value, and where; "" where it has one, or holds what is not known in a state."""
+    """Reason why scalars have no finite value, and where; "" where they have one, or need an unknown of the state."""
     symbols = symbols_of((scalar,))
     if not all(symbol in values for symbol in symbols):
         return ""

@@ -98,7 +98,7 @@ class StaticEquations:
 
     @property
     def equations(self) -> ScalarRow:
-        """All that vanishes."""
+        """All expressions that vanish: forces, relations and sigma, those of coordinates not sought included."""
         return (*self.forces, *self.beside, *self.phi, *self.sigma)
 
     @property
@@ -107,13 +107,13 @@ class StaticEquations:
 
     @property
     def indifferent(self) -> tuple[Node, ...]:
-        """Coordinates that no equation holds: any place of theirs will do."""
+        """Coordinates on which no equation depends: they may have any value."""
         held = frozenset(symbols_of(self.equations))
         return tuple(q for q in self.q if q not in held)
 
     @property
     def loaded(self) -> tuple[Node, ...]:
-        """The unknowns of the model that stand in the forces."""
+        """The unknowns of the model that occur in the forces."""
         held = frozenset(symbols_of(self.Q))
         return tuple(x for x in self.system.symbols.unknowns.values() if x in held)
 
@@ -319,7 +319,7 @@ def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
 
 
 def _refuse_dry_friction(system: System) -> None:
-    """Coulomb's friction holds a system at rest in a range of places.
+    """Refuses Coulomb's friction, which holds a system at rest in a range of places.
 
     Raises:
         DerivationError: the contact is named.
@@ -355,7 +355,7 @@ def _at_rest(forces: ScalarRow, given: State, free: System) -> ScalarRow:
 
 
 def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
-    """Dry friction that is written as a force: -c*sign(x')."""
+    """Refuses dry friction that is written as a force: -c*sign(x')."""
     u = free.symbols.u
     for node in order(Q):
         if node.op == "sign" and any(depends_on(a, u) for a in node.args):

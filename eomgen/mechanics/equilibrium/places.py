@@ -281,7 +281,7 @@ class _Search:
         return found.reshape(len(q), len(rows), len(rows[0]) if rows else 0)
 
     def _is_held(self, z: np.ndarray) -> bool:
-        """False near places where the constraints are singular, and would need forces without limit to hold it."""
+        """Test of a place: False where the constraints are nearly singular and would need unlimited forces."""
         n = len(self.statics.q)
         J = self.statics.slopes(self.statics.J, z[:n], self.floats)
         if not J.size or not np.all(np.isfinite(J)):
@@ -293,7 +293,7 @@ class _Search:
     # -- in order ----------------------------------------------------------------------------------
 
     def _sorted(self, found: Sequence[np.ndarray], *, complete: bool, where: str) -> Places:
-        """Each place once, angles in (-pi, pi], the nearest to the guess first."""
+        """Places without repetition, angles in (-pi, pi], the nearest to the guess first."""
         n = len(self.statics.q)
         unique: list[tuple[np.ndarray, np.ndarray]] = []
         for z in found:
@@ -418,7 +418,7 @@ class ClosedForms:
             yield statics.equations, statics.unknowns, {}
 
     def _simple(self, located: Located, *, starts: bool = True) -> dict[Node, Scalar]:
-        """Quarter turns, zeros and start values that coordinates are near to; whether these hold is to be seen."""
+        """Quarter turns, zeros and start values near the coordinates, as candidates of exact values."""
         scope, found = self.statics.system.scope, dict[Node, Scalar]()
         turning = {e for four in scope.quaternions for e in four}
         for q in self.statics.q:
@@ -479,7 +479,7 @@ def _round_components(graph: Owner) -> tuple[Scalar, ...]:
 
 
 def _entangled(statics: StaticEquations) -> int:
-    """The most coordinates that equations hold together."""
+    """Largest number of coordinates that are coupled by equations."""
     groups: list[set[Node]] = []
     for x in statics.equations:
         held = {node for node in statics.unknowns if depends_on(x, (node,))}
@@ -523,7 +523,7 @@ class Guess:
     requested: Mapping[str, float]
 
     def of(self, coordinates: Sequence[Node]) -> np.ndarray:
-        """Numbers of coordinates.
+        """First values of coordinates as numbers.
 
         Raises:
             UsageError: a requested name is no coordinate.
@@ -531,7 +531,7 @@ class Guess:
         return np.array([float(self._numbers[q.name]) for q in coordinates])
 
     def exact(self, q: Node) -> Scalar:
-        """One as a scalar of the parameters."""
+        """First value of a coordinate as a scalar of the parameters."""
         scope = self.system.scope
         near = scope.model.coordinates[q.name].near
         if q.name in self.requested:

@@ -154,7 +154,7 @@ def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
 
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
-    """Every equilibrium that is found, and whether there are others; the nearest to the guess first.
+    """Every equilibrium that is found, the nearest to the guess first, with the statement if there may be others.
 
     Args:
         guess: values of coordinates in place of `near` and `start`.

@@ -339,7 +339,7 @@ STABLE, UNSTABLE, INDIFFERENT = "stable", "unstable", "indifferent"
 
 
 def by_higher_derivatives(statics: StaticEquations, state: Mapping[Node, Any]) -> tuple[str, str]:
-    """(whether it is stable, why).
+    """(the kind of stability, the reason).
 
     Args:
         state: values of everything at the place, with 50 digits.
@@ -348,7 +348,7 @@ def by_higher_derivatives(statics: StaticEquations, state: Mapping[Node, Any]) -
 
 
 def states_beside(state: Mapping[Node, Any], coordinates: Sequence[Node]) -> Iterator[dict[Node, Any]]:
-    """States so near that what does not vanish at a place is hardly other there, and what vanishes is not 0.
+    """States near a place: terms that do not vanish at it are almost the same there, and those that vanish are not 0.
 
     Args:
         state: values of everything, with 50 digits.

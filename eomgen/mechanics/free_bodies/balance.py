@@ -149,7 +149,7 @@ def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
 
 
 def refuse_placeless(system: System) -> None:
-    """Refuse what acts at no place, or on a point that a coordinate moves in its body: some balance would lack it.
+    """Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them.
 
     Raises:
         DerivationError: it is named.
@@ -192,7 +192,7 @@ def _refuse_placeless_constraints(system: System) -> None:
 
 
 def _idle_rows(system: System) -> set[str]:
-    """The labels of rows without bodies that push nothing: z' = r - x, where z moves no body and nothing pushes it.
+    """Labels of rows without bodies and forces: z' = r - x, where z moves no body and no force acts along it.
 
     Along such a coordinate the row alone acts: lam = 0.
     """
@@ -427,7 +427,7 @@ def _held_by_constraints_alone(balance: Balance, i: int) -> bool:
 
 
 def _turn(link: BodyLink, three: Sequence[int], rows: list[SparseRow], needed: list[Scalar]) -> None:
-    """The three equations times R, where the coefficients then take fewer operations."""
+    """The three equations multiplied by R, if the coefficients then take fewer operations."""
     own = sorted({j for n in three for j in rows[n]})
     columns = {j: [rows[n].get(j, 0) for n in three] for j in own}
     turned = [

@@ -196,7 +196,7 @@ class _WithFriction:
 
     @cached_property
     def _solution(self) -> Solution:
-        """Friction is a load in it: a row along the motion, in which alone it stands, would only say M a again."""
+        """Solution of the balance with friction as a load: the row along the motion would only repeat M a."""
         return solution_of_balance(friction_as_load(self._balance, self._normals), {})
 
     @cached_property
@@ -259,7 +259,7 @@ class _WithFriction:
         return rows, right
 
     def _by_factors(self) -> ScalarRow:
-        """The same of many unknowns: a and lam for each N by the factors of M and J M^-1 J^T, then N alone."""
+        """Solution for many unknowns: a and lam for each N by the factors of M and J M^-1 J^T, then N alone."""
         try:
             parts = by_factors(self._loaded, self._kept, [contact.force for contact in self._single])
         except DerivationError:

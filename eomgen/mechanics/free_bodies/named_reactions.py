@@ -132,13 +132,13 @@ def _has_couple(component: Component) -> bool:
 
 
 def unit_of(component: Component) -> str:
-    """FORCE, or COUPLE of what is no force on any body."""
+    """Unit of a component: FORCE, or COUPLE if it has no force on any body."""
     forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
     return FORCE if forces else COUPLE
 
 
 def _name(balance: Balance, component: Component) -> str:
-    """A strand has the number that the string gives it; several may have one tension, the first gives the name."""
+    """Name of a component; a strand has its number in the string, and of several with one tension the first counts."""
     if component.label != "tension" or component.side:
         return component.name
     numbers = balance.system.scope.model.constraints[component.owner].strand_rows() or (1,)

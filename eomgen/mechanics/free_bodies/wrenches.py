@@ -279,7 +279,7 @@ class Component:
 
 
 def components_of(system: System, axes: Axes) -> tuple[Component, ...]:
-    """All of them: those of the joints, what drives given motions, those of the constraints."""
+    """All components: those of the joints, of the drives of given motions, and of the constraints."""
     return (*_joint_components(system, axes), *_constraint_components(system, axes))
 
 
@@ -332,7 +332,7 @@ def _driven_variables(motion: Motion) -> dict[tuple[str, int], str]:
 
 
 def _refuse_spread(joints: Sequence[BodyLink], follow: Sequence[Scalar], free: Sequence[Node], driver: Node) -> None:
-    """Refuse what follows a driver and a free coordinate that moves other joints too."""
+    """Refuse a joint that follows a drive and also a free coordinate that moves other joints."""
     for q in free:
         moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
         if len(moved) > 1 and any(depends_on(s, (q,)) for s in follow):

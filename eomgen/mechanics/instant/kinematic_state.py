@@ -83,7 +83,7 @@ class KinematicState:
 
     @property
     def state(self) -> State:
-        """All that is known."""
+        """All known values, accelerations included where they are known."""
         return self.accelerated or self.moving
 
     @property
@@ -419,7 +419,7 @@ def _kind(kinds: Kinds | None, body: str) -> Kind | None:
 
 
 def _ends(system: System, readable: Readable, body: str) -> tuple[tuple[str, Vector], ...]:
-    """Both ends of what has a `line`, or of a rod."""
+    """Both ends of a body with a `line`, or of a rod."""
     points, part = system.motion.points[body], system.scope.model.bodies[body]
     names = part.line or ("start", "end")
     if not set(names) <= points.keys():

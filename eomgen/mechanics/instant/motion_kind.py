@@ -130,7 +130,7 @@ class Kinds:
         return Kind(HELICAL, self._on_axis(center, field.w), axis, self.constants.of(pitch))
 
     def _in_all_directions(self, body: str, field: VelocityField) -> Kind:
-        """omega turns: a point of the body may still stay."""
+        """Kind of a motion in which omega turns: about a fixed point, or general."""
         place = fixed_point(field)
         if self.possible.vanish(*field.velocity(place), *self.possible.rate(place)):
             return Kind(SPHERICAL, self.constants.vector(place), point=self._named(body, field))
@@ -208,7 +208,7 @@ def homogeneous_center(field: VelocityField) -> Homogeneous:
 
 
 def finite_center(field: VelocityField, whose: str) -> Vector:
-    """The centre of rotation where there is one in sight.
+    """The centre of rotation at a finite place.
 
     Args:
         whose: the body, for messages.
@@ -288,7 +288,7 @@ class Constants:
         return None
 
     def vector(self, x: Vector) -> Vector | None:
-        """The same of the components."""
+        """Constant vector as functions of the parameters, by its components."""
         found = [value for each in x if (value := self.of(each)) is not None]
         return vector_of(found) if len(found) == 3 else None
 

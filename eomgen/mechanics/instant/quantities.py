@@ -104,7 +104,7 @@ class Quantities:
             return self.reactions.combined(found[0], formula.text) + found[1]
 
     def over_components(self, formula: Expression) -> Scalar:
-        """The same over the components of the balance, as symbols."""
+        """A formula over the components of the balance, as symbols."""
         by_components, _ = self.reactions.by_components
         return formula.evaluate(self.names, replace(self, balance=by_components).value)
 
@@ -170,7 +170,7 @@ class Quantities:
         return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
 
     def here(self, *vectors: Vector) -> tuple[Vector, ...]:
-        """The same, readable."""
+        """Vectors at the given state in readable form."""
         if not self.at:
             return vectors
         return tuple(vector_of(map(self._short, vector)) for vector in self.placed(*vectors))

@@ -86,7 +86,7 @@ class DisplacedJoint(Joint):
         return ()
 
     def _standing(self, value: ValueOf) -> Scalars:
-        """The variables of the place where it stands."""
+        """The joint variables of the place where a body stands."""
         return tuple(value(e) for e in self.placed.variables("plane" if len(self.along) == 2 else "space"))
 
     def _rotation(self, turns: Scalars) -> Matrix:

@@ -76,7 +76,7 @@ class FirstOrder:
         return equations
 
     def looked_at(self, *, at_rest: bool) -> FirstOrder:
-        """The same, looked at there; its equations are not derived anew."""
+        """The same equations for states at rest, or for moving ones, without a new derivation."""
         if at_rest == self.at_rest:
             return self
         found = replace(self, at_rest=at_rest)
@@ -90,7 +90,7 @@ class FirstOrder:
 
     @cached_property
     def seen(self) -> frozenset[str]:
-        """The names of what stands in the equations of motion."""
+        """The names of symbols in the equations of motion."""
         e = self.equations
         rows = (*e.M, e.forcing, *e.J, e.sigma, e.gamma)
         return frozenset(x.name for x in symbols_of(x for row in rows for x in row))
@@ -263,7 +263,7 @@ class NumberField(Protocol):
         """|x|, by which a pivot is chosen."""
 
     def with_values(self, more: Mapping[Node, MatrixEntry]) -> NumberField:
-        """The same with more symbols known."""
+        """The field with more symbols known."""
 
 
 @dataclass(frozen=True)

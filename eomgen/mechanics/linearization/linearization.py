@@ -262,7 +262,7 @@ def _steady_equations(
 
 
 def _refuse_unvalued(reference: ReferenceMotion) -> None:
-    """Equations that are only known in numbers need values of all parameters.
+    """Refuses equations that are known in numbers only, where a parameter has no value.
 
     Raises:
         DerivationError: those without one are named.
@@ -491,7 +491,7 @@ def reduced_of(reducing: Reducing, reference: ReferenceMotion) -> LinearEquation
 def refuse_corners(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> None:
-    """Forces that are not smooth at the reference, as k |x| at x = 0: close to it, on both sides, all must be the same.
+    """Refuses forces that are not smooth at the reference, as k |x| at x = 0: the equations on both sides must agree.
 
     Raises:
         DerivationError: they are not.
@@ -566,7 +566,7 @@ def _unsteady(
 
 
 def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
-    """Coordinates that do not describe motions there, as angles at a pole.
+    """Refuses coordinates that do not describe motions there, as angles at a pole.
 
     Raises:
         DerivationError: the speed that moves nothing is named, where it is one.

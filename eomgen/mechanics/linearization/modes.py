@@ -106,7 +106,7 @@ class Modes:
 
     @cached_property
     def conditions(self) -> Conditions:
-        """Routh and Hurwitz: what must be positive."""
+        """Stability conditions of Routh and Hurwitz."""
         if self.polynomial is None or self.small.exact is None:
             return Conditions()
         return stability_conditions(
@@ -429,7 +429,7 @@ def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
 
 
 def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
-    """Two zeros are one rigid motion of an equilibrium; of a steady motion they lead to its neighbours."""
+    """Modes of eigenvalue 0: at an equilibrium two zeros are one rigid motion; else each leads to neighbours."""
     pairs = len(shapes) // 2 if small.is_second_order and small.reference.about == EQUILIBRIUM else 0
     rigid = [Mode(0j, True, shape) for shape in shapes[: 2 * pairs : 2]]
     return rigid + [Mode(0j, False, shape) for shape in shapes[2 * pairs :]]

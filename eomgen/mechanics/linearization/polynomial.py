@@ -171,7 +171,7 @@ class PolynomialFactors:
         return simplest(self.as_it_came(a), Work.ANSWER, self.positive)
 
     def as_it_came(self, a: Scalar) -> Scalar:
-        """The same, no shorter."""
+        """The scalar in the symbols of the model, not simplified."""
         return substituted((a,), self.fresh)[0]
 
 

@@ -99,7 +99,7 @@ class Reducing:
 
     @cached_property
     def J(self) -> Entries:
-        """The closing rows that are looked at; the others follow from them."""
+        """The independent closing rows; the others follow from them."""
         return at(self.field, [self.first.equations.J[i] for i in self.choice.constraints])
 
     @cached_property
@@ -125,7 +125,7 @@ class Reducing:
 
     @cached_property
     def forces(self) -> list[MatrixEntry]:
-        """M a - forcing: what the constraints must push."""
+        """M a - forcing: the force that the constraints must give."""
         forcing = self.field.of(self.first.equations.forcing)
         return [self.field.tidy(inner(row, self.a) - x) for row, x in zip(self.M, forcing, strict=True)]
 
@@ -140,7 +140,7 @@ class Reducing:
 
     @cached_property
     def unbalanced(self) -> list[MatrixEntry]:
-        """Z^T (M a - forcing): what accelerates the independent speeds."""
+        """Z^T (M a - forcing): the unbalanced force along the independent speeds."""
         return [self.field.tidy(inner(column, self.forces)) for column in matrix_transposed(self.Z, len(self.choice.u))]
 
     # -- to first order ------------------------------------------------------------------------------------

@@ -185,7 +185,7 @@ def _column_of_input(name: str, node: Node, needed: ScalarRow) -> ScalarRow:
 
 
 def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence[ScalarRow]) -> None:
-    """Every motion must be reached by an actuator, and every tau be determined.
+    """Refuses actuators that leave a motion without force, or forces that are indeterminate.
 
     Raises:
         UsageError: rank [A J^T] < nu, or rank [A J^T] - rank J^T < number of actuators.
@@ -276,7 +276,7 @@ def _drive(system: System, coordinate: str) -> Scalar:
 
 
 def with_drive_let_go(system: System, coordinate: str) -> System:
-    """The same without what moves a driven coordinate: one like others, which starts where it is driven from.
+    """The system with a driven coordinate free, which starts where it is driven from.
 
     A system over all rates stays one: rates that its constraints would give need not be those of a state.
     """

@@ -47,7 +47,7 @@ UnknownColumn = tuple[int, int]
 
 @dataclass(frozen=True)
 class Structure:
-    """Bodies and what holds them, at one configuration.
+    """Bodies and the reactions on them, at one configuration.
 
     Args:
         balance: the equations of the bodies.
@@ -81,7 +81,7 @@ class Structure:
 
     @cached_property
     def pushes(self) -> tuple[tuple[str, tuple[Effect, ...]], ...]:
-        """(owner, what a unit does) of every row; of an unknown of the loads its derivative, on what it acts on."""
+        """(owner, effects of a unit) of every row; of an unknown of the loads its derivative, on the bodies."""
         axes = Axes(self.system.motion)
         given = [e for load in self.system.loads.placed for e in effects_of_load(axes, load)]
         given += joint_effects(self.system)
@@ -329,7 +329,7 @@ MOST_MOTIONS = 3  # that are described in words
 
 
 def refuse_loose(structure: Structure, degrees_of_freedom: int = 0) -> None:
-    """Refuse bodies that can move although no coordinate describes it, and would.
+    """Refuse bodies that would move in a way that no coordinate describes.
 
     Args:
         degrees_of_freedom: the number of motions that coordinates describe.

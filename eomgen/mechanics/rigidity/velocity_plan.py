@@ -71,7 +71,7 @@ class VelocityPlan:
     known: dict[Scalar, Any] = dataclass_field(default_factory=dict, compare=False, repr=False)
 
     def scaled(self, k: Scalar) -> VelocityPlan:
-        """k times as fast."""
+        """The plan, k times as fast."""
         if k == 1:
             return self
         flat = readable_all([k * x for six in self.velocities for x in six], Work.VALUE, self.system.scope.positive)
@@ -137,7 +137,7 @@ class VelocityPlan:
         return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
 
     def center(self, field: VelocityField) -> PlanCenter:
-        """The centre of rotation of what moves so in the plane."""
+        """The centre of rotation of a plane motion."""
         if self.vanishes(field.w):
             return PlanCenter(None, ZERO if self.vanishes(field.v) else self.simple.vector(field.v))
         return PlanCenter(self.simple.vector(rotation_center(field)))
@@ -248,7 +248,7 @@ class RigidBlock:
 
     @property
     def parts(self) -> tuple[str, ...]:
-        """Everything in it by name."""
+        """Names of all parts of the block."""
         return (*self.bodies, *(f"{truss} {member}" for truss, member in self.members), *self.nodes)
 
     def center(self, plan: VelocityPlan) -> PlanCenter:
@@ -287,7 +287,7 @@ def turning_by_one(plan: VelocityPlan) -> Scalar:
 
 
 def resting_blocks(plan: VelocityPlan) -> tuple[str, ...]:
-    """The bodies and trusses of which nothing moves, by name."""
+    """Names of the bodies and trusses that are at rest."""
     links = plan.system.motion.links
     bodies = tuple(link.name for link in links if link.name not in plan.moving and not is_node(link.name))
     trusses = dict.fromkeys(link.name.partition(".")[0] for link in links if is_node(link.name))

@@ -211,7 +211,7 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
 
 
 def _following(system: System, free: Sequence[Node], J: np.ndarray) -> list[Node]:
-    """The coordinates that follow from the others: dependent ones, then those that nobody gave, then others."""
+    """The coordinates that follow from the others: dependent ones, then those without a given start, then others."""
     dependent = dependent_coordinates(system.scope)
 
     def place(k: int) -> tuple[bool, bool, int]:

@@ -64,7 +64,7 @@ class ExactStart:
 
     @cached_property
     def begun(self) -> Start:
-        """q and u in numbers, and what was changed so that the constraints hold; parameters without a value are drawn.
+        """q and u in numbers, with the changes that satisfy the constraints; parameters without a value are drawn.
 
         Raises:
             UsageError, DerivationError: as of `start_of_motion`.
@@ -103,7 +103,7 @@ class ExactStart:
             return {}
 
     def _beside_what_is_drawn(self, found: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
-        """Speeds that do not hang on the parameters without a value, next to their numbers; {} where one does."""
+        """Speeds that do not depend on parameters without a value, next to their numbers; {} where one does."""
         symbols, (first, second) = self.system.symbols, (each.begun.values for each in self._sought)
         open_ = [u for u in symbols.u if u not in found]
         steady = all(abs(first[u.name] - second[u.name]) <= COMPUTED * (1 + abs(first[u.name])) for u in open_)
@@ -153,7 +153,7 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
 
 
 def _without_zeros(row: ScalarRow) -> ScalarRow:
-    """The row, 0 for what is so in another form: a column of these alone changes nothing."""
+    """The row with 0 for entries that are 0 in another form: a column of these alone changes nothing."""
     return tuple(0 if zero else x for x, zero in zip(row, hold_identically(row), strict=True))
 
 
@@ -361,7 +361,7 @@ def _kept(
     what: str,
     moved: Sequence[Node],
 ) -> dict[Node, Fraction]:
-    """The changes with which scalars stay 0: those that nobody gives follow.
+    """The changes with which scalars stay 0: values that are not given follow.
 
     Args:
         moved: what stands elsewhere than it was said to, so that the scalars are 0: it must be what follows.

@@ -386,7 +386,7 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
 
 
 def refuse_open_gaps(system: System, state: State) -> None:
-    """Raises OpenTies for the constraint that is open by most, DerivationError where its gap has no value."""
+    """Raises OpenConstraints for the constraint that is open by most, DerivationError where its gap has no value."""
     q = system.symbols.q
     gaps = [(row, row.gap) for row in system.constraints.rows if row.gap is not None and not row.identical]
     found = _worst(gaps, q, state)
@@ -405,13 +405,13 @@ def refuse_open_gaps(system: System, state: State) -> None:
 
 
 def _lacking(gap: Scalar, state: State) -> str:
-    """Why a gap has no value: " is 0/0 at x = 0, where it starts"."""
+    """Reason why a gap has no value: " is 0/0 at x = 0, where it starts"."""
     found = reason_without_value(gap, {node: float(x) for node, x in state.items()})
     return f"{found}, where it starts" if found else ""
 
 
 def _nearest(system: System, state: State) -> str:
-    """; how near the constraints come to closing, and where."""
+    """Clause that says how nearly the constraints can be satisfied, and where."""
     miss = nearest_miss(system, state)
     if miss is None:
         return ""

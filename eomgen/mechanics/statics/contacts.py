@@ -104,7 +104,7 @@ def resting_contacts(model: Model) -> tuple[str, ...]:
 
 @dataclass(frozen=True)
 class _StartNumbers:
-    """The start of a model in numbers, those that nobody gave drawn."""
+    """The start of a model in numbers; missing ones are drawn at random."""
 
     model: Model
 
@@ -130,7 +130,7 @@ class _StartNumbers:
         return {name: rng.uniform(0.7, 1.3) for name in self.missing}
 
     def _far(self, seed: int) -> Numbers:
-        """The same of any size."""
+        """Values drawn for the parameters without one, between 0.1 and 10."""
         rng = Random(seed)
         return {name: 10 ** rng.uniform(-1, 1) for name in self.missing}
 
@@ -246,7 +246,7 @@ class _StartNumbers:
 
 
 class _Lacking(Exception):
-    """Parameters without values decide."""
+    """Error: the result depends on parameters without values."""
 
     def __init__(self, names: tuple[str, ...]) -> None:
         self.names = names

@@ -142,7 +142,7 @@ class _Travelling:
     sizes: Sizes
 
     def spans(self, along: Sequence[str]) -> Iterable[InfluenceSpan]:
-        """Span by span."""
+        """Spans that the load passes, one after the other."""
         motion = self.structure.system.motion
         unknown = [name for name in along if name not in motion.index]
         if unknown:

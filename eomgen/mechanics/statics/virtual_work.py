@@ -217,7 +217,7 @@ class StaticReaction:
 
     @property
     def value(self) -> Scalar | None:
-        """None where it is statically indeterminate."""
+        """Value of the reaction; None where it is statically indeterminate."""
         return self.balanced if self.work is None else self.work.value
 
 
