@@ -557,7 +557,7 @@ th = { value = "th", at = "equilibrium" }
         ),
         (
             BOX.replace("y = 0", 'y = 0\nx = { motion = "2*t" }').replace('angle = "th"', 'angle = "0"') + WEIGHT,
-            "moves on at a constant rate",
+            "moves at a constant rate",
         ),
     ],
 )

@@ -278,8 +278,8 @@ acceleration = [0, -9.81]
     ("text", "actuated", "what"),
     [
         (FOUR_BAR, [], "constraints close loops, and nothing says which coordinates are actuated"),
-        (FOUR_BAR, ["alpha", "beta"], "2 actuated, and 1 degrees of freedom: how the actuators share"),
-        (FOUR_BAR, ["alpha", "alpha"], "how the actuators share"),
+        (FOUR_BAR, ["alpha", "beta"], "2 actuated, and 1 degrees of freedom: the forces of the actuators are"),
+        (FOUR_BAR, ["alpha", "alpha"], "the forces of the actuators are"),
         (FOUR_BAR, ["alhpa"], "there is no coordinate, speed, input or hinged body 'alhpa'"),
         ((MODELS / "cart_pole.toml").read_text(), ["x"], "1 would have no actuator"),
         ((MODELS / "quadrotor.toml").read_text(), ["f1", "f2", "f3", "f4"], "2 would have no actuator"),
