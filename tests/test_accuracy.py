@@ -75,7 +75,7 @@ def test_the_energy_of_a_linkage_is_kept_beside_its_ties(target):
 
 
 def test_what_does_not_keep_its_energy_is_refused():
-    with pytest.raises(UsageError, match="energy is not kept"):
+    with pytest.raises(UsageError, match="energy is not conserved"):
         eomgen.simulate(MODELS / "cart_pole.toml", time=1, stabilization="energy")
 
 

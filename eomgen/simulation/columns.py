@@ -1,4 +1,4 @@
-"""PhaseModel, formulas -> what they are worth along a phase: all of them by one program, at all states at once.
+"""PhaseModel, formulas -> their values along a phase: all of them by one program, at all states at once.
 
     y = f(q, u, a, lam, rho, t, p),   a and lam of the equations of motion,   rho of the balance, solved by rank
 
@@ -219,7 +219,7 @@ class _Columns:
 
     @cached_property
     def _multipliers(self) -> tuple[Node, ...]:
-        """Those that stand in a formula."""
+        """The multipliers that stand in a formula."""
         scalars = self._made.scalars.values()
         return tuple(lam for lam in self.system.symbols.lam if any(depends_on(x, (lam,)) for x in scalars))
 
@@ -237,7 +237,7 @@ class _Columns:
 
 
 def formulas_of(model: Model) -> dict[str, Expression]:
-    """The outputs that are functions of the state: asked at no instant, and of no linearized system."""
+    """The outputs that are functions of the state: at no given instant, and of no linearized system."""
     requested = ((name, part) for name, part in model.outputs.items() if part.at is None and part.from_ is None)
     others = (SMALL_MOTIONS, OF_A_RUN)
     return {name: part.value for name, part in requested if not any(requests_of(part.value, other) for other in others)}

@@ -41,12 +41,12 @@ class _Runs(ctypes.Structure):
 
 @dataclass(frozen=True)
 class MarchedRuns:
-    """What came of runs.
+    """Results of runs.
 
     Args:
         x: runs x instants x states.
-        is_done: of each run whether it came to its end without a look; of the others nothing is known.
-        steps: that each took.
+        is_done: True for each run that came to its end without a look; of the others nothing is known.
+        steps: the number that each took.
     """
 
     x: np.ndarray
@@ -116,7 +116,7 @@ def _runs(
 
 
 def _determined(phase: PhaseModel, x: np.ndarray, p: np.ndarray, instants: np.ndarray) -> np.ndarray:
-    """Of each run whether nothing vanishes on its way that would leave the motion open and that no march watches."""
+    """True for each run on whose way no determinant vanishes that the motion depends on and that no march watches."""
     found = np.ones(len(x), dtype=bool)
     for what in phase.undetermined:
         if what.is_watched:

@@ -1,10 +1,10 @@
 """Many steps of an integrator a call, compiled: DOP853, Radau, Taylor series.
 
-A right-hand side in C -> many steps of DOP853 or Radau a call: Python is asked where a step needs a look.
+A right-hand side in C -> many steps of DOP853 or Radau a call: Python is called where a step needs a look.
 
-`march.c` takes steps, keeps quaternions and constraints, gives states at the instants asked for, as long as no event
-can lie
-in a step and no singular position near it. Of the step at which it stops nothing but the motion has been changed.
+`march.c` takes steps, corrects quaternions and constraints, gives states at the requested instants, as long as no event
+can lie in a step and no singular position near it. Of the step at which it stops nothing but the motion has been
+changed.
 """
 
 from __future__ import annotations
@@ -49,16 +49,16 @@ from eomgen.symbolic.numeric.tolerances import SOLVED
 COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
 FEW = 8  # steps in the first call
 A_CALL = 0.03  # [s] of a call: after it Python looks whether somebody has lost patience
-BY_SERIES = 2  # what dense_of tells
+BY_SERIES = 2  # what dense_of returns
 _GOES_ON, _LOOK, _REACHED, _TOO_SMALL, _STIFF = range(5)
 
 
 Watched = tuple[DriftCorrection, EventSearch | None, Any]
-"""What keeps the states where they belong; the search for events; the lookout for singular positions."""
+"""The drift correction of the states; the search for events; the lookout for singular positions."""
 
 
 class Tolerances(Protocol):
-    """What is read of how an integrator goes."""
+    """Options of an integrator that compiled steps read."""
 
     @property
     def rtol(self) -> float: ...
@@ -74,7 +74,7 @@ class Tolerances(Protocol):
 
 
 def _in_c(functions: tuple[RightHandSide, ...]) -> tuple[Callable[[np.ndarray], Address], ...] | None:
-    """As of `compiled_functions`; None where no compiler makes them, and every step is looked at in Python."""
+    """Functions in C, as of `compiled_functions`; None where there is no compiler, and steps are watched in Python."""
     return in_c(lambda: compiled_functions(functions), "steps are watched in Python, slower")
 
 
@@ -88,7 +88,7 @@ class CompiledSteps:
         instants: where states are wanted.
         watched: what is done to the states after every step, and what may end the run; what of it is not in C leaves
             every step to Python.
-        slope: df/dx, asked for where steps are implicit.
+        slope: df/dx, used where steps are implicit.
     Raises:
         RunFailed, ToolMissing: as of `library`.
     """
@@ -234,7 +234,7 @@ class CompiledSteps:
         m.lengths, m.sizes = self._put(self._lengths), self._put(self._sizes)
 
     def _stiffen(self) -> None:
-        """From now on implicit steps."""
+        """Takes implicit steps from now on."""
         m, n = self._m, int(self._m.n)
         self.stiff_from = self.t if self.stiff_from is None else self.stiff_from
         slope = self._slope()
@@ -251,7 +251,7 @@ class CompiledSteps:
         m.is_implicit, m.has_slope_values, m.error_old = 1, 0, 0.0
 
     def _expand(self) -> None:
-        """From the start on steps along series."""
+        """Takes steps along power series, from the start on."""
         m = self._m
         m.order = order_for(m.rtol, ALONE)
         series = self._fun.rhs.series(m.order)
@@ -263,7 +263,7 @@ class CompiledSteps:
         m.X_old = m.X + 4 * rows
 
     def _room(self, projection: Any) -> int:
-        """Numbers in between: what a correction of a state takes, and what tells how near a singular position is."""
+        """Size of the work array: for the correction of a state, and for the nearness of a singular position."""
         m = self._m
         near = max(m.n_determinants, m.n_rows * m.n_columns)
         if projection is None:
@@ -296,7 +296,7 @@ class CompiledSteps:
         return taken, found in (_GOES_ON, _REACHED, _STIFF)
 
     def _reported(self) -> None:
-        """What Python knows, for C."""
+        """Copies what Python knows of events and singular positions to C."""
         if self._search is not None and self._m.n_events:
             self._signs[:], self._armed[:], self._largest[:] = (
                 self._search.signs,
@@ -326,7 +326,7 @@ class CompiledSteps:
 
     @property
     def words(self) -> str:
-        """How much of it was stiff; "" where nothing was, or all was meant to be."""
+        """Sentence on the stiff part of the run; "" where nothing was stiff, or a stiff method was requested."""
         return stiff_words(self.stiff_from if self._m.is_auto else None, self._m.implicit_steps)
 
     @property
@@ -336,7 +336,7 @@ class CompiledSteps:
         return self._track_t[:done].copy(), self._track_x[:done].copy()
 
     def rows(self) -> tuple[np.ndarray, np.ndarray]:
-        """(instants, states) asked for that have come since the last time."""
+        """(instants, states) that were requested and reached since the last call."""
         before, self._given = self._given, self._m.next
         return self._instants[before : self._given], self._rows[before : self._given]
 
@@ -389,7 +389,7 @@ class CompiledSteps:
         return between
 
     def _put(self, array: np.ndarray) -> int:
-        """Where an array lies; it stays there."""
+        """Address of an array, which is kept alive; 0 of an empty one."""
         if not array.size:
             return 0
         self._kept.append(array)
@@ -397,7 +397,7 @@ class CompiledSteps:
 
 
 def _aligned(size: int) -> np.ndarray:
-    """So many numbers, in whole lines of the cache: vectors of them lie across none."""
+    """Array of zeros that begins at a line of the processor's cache, so that no vector lies across two lines."""
     room = np.zeros(size + 8)
     return room[-(room.__array_interface__["data"][0] // 8) % 8 :][:size]
 
@@ -409,7 +409,7 @@ def _aligned(size: int) -> np.ndarray:
 
 
 PIECES = frozenset("abs sign min max less less_equal select sampled".split())
-LONG = 1000  # operations from which on heyoka is asked for code with loops: else its compiler takes long
+LONG = 1000  # operations from which on heyoka makes code with loops: else its compiler takes long
 
 
 class HeyokaSteps:

@@ -43,7 +43,7 @@ from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR
 
 STEPS = 8
 FAR = 1e-3  # of what is allowed to be open: so far it is closed
-SHORT = 400  # operations up to which a function is not worth a compiler
+SHORT = 400  # operations up to which a function runs in numpy: compiling takes longer
 ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
 
 
@@ -67,7 +67,7 @@ class Rows:
 
         Args:
             values: of the function at a state.
-            right: of the rows; those that keep quaternions on their spheres come last and have none.
+            right: of the rows; those that keep quaternions at norm 1 come last and have none.
         """
         n, k = self.n, self.k
         M, J, N = np.split(values, [n * n, n * n + k * n])
@@ -78,14 +78,14 @@ class Rows:
 
 @dataclass(frozen=True)
 class Projection:
-    """What keeps states on the constraints of a system.
+    """Projection of states onto the constraints of a system.
 
     Args:
         p: the parameters' values.
-        coordinates: how many.
-        size: of (q, u); what a state has beyond is left alone.
-        placed: how many of the gaps are phi.
-        spheres: the places of quaternions, which keep norm 1.
+        coordinates: their number.
+        size: of (q, u); further entries of a state are left alone.
+        placed: the number of the gaps that are phi.
+        unit_quaternions: the places of quaternions, which keep norm 1.
         gaps: (t, x, p) -> phi of all constraints, J u + sigma of the closing ones.
         positions, speeds: how either is put back; None where there is nothing to hold.
     """
@@ -106,7 +106,7 @@ class Projection:
         return np.column_stack([np.max(part, axis=1, initial=0.0) for part in parts])
 
     def is_open(self, t: float, x: np.ndarray, allowed: float) -> bool:
-        """Whether a constraint is open by more than is allowed, and by more than rounding."""
+        """True if a constraint is open by more than is allowed, and by more than rounding."""
         return not self._gap(t, x, slice(None)) <= max(allowed, rounding_of(x))
 
     def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
@@ -138,7 +138,7 @@ class Projection:
 
 @dataclass(frozen=True)
 class _Open:
-    """What is open of the constraints at an instant, as Newton's method sees it: places alone, or speeds alone."""
+    """Residuals of the constraints at an instant, for Newton's method: of positions alone, or of velocities alone."""
 
     projection: Projection
     rows: Rows
@@ -146,13 +146,13 @@ class _Open:
 
     @property
     def _which(self) -> slice:
-        """Of what is open."""
+        """Residuals that are driven to 0: of positions, or of velocities."""
         placed = self.projection.placed
         return slice(0, placed) if self.rows.resting else slice(placed, None)
 
     @property
     def _moved(self) -> slice:
-        """Of the state."""
+        """Entries of the state that move: coordinates, or speeds."""
         q = self.projection.coordinates
         return slice(0, q) if self.rows.resting else slice(q, self.projection.size)
 
@@ -193,11 +193,11 @@ def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 def projection_of(system: System, p: np.ndarray, target: str | None = None) -> Projection | None:
-    """What keeps states on the constraints of a system; None where none closes.
+    """Projection of states onto the constraints of a system; None where none closes.
 
     Args:
         p: the parameters' values.
-        target: in which language long functions are run.
+        target: the language in which long functions are run.
     """
     free = system if system.elimination is None else system.free or system
     symbols, closing, gaps = system.symbols, system.constraints.closing, gaps_of(free.constraints)
@@ -254,7 +254,7 @@ def _identity(n: int) -> tuple[tuple[int, ...], ...]:
 
 
 def rounding_of(x: np.ndarray) -> float:
-    """By how much constraints are open at a state whose digits end: that of a satellite holds to 1e-7 m."""
+    """Residual of constraints by rounding of the state alone: at the coordinates of a satellite it is 1e-7 m."""
     return ROUNDING * max(1.0, float(np.abs(x).max(initial=0.0)))
 
 
@@ -297,11 +297,11 @@ LOST = 100.0  # absolute tolerances of a step by which a constraint may stay ope
 
 @dataclass
 class DriftCorrection:
-    """Keeps the states of one run on the constraints, the norms of quaternions at 1, and the energy where it is asked
-    to.
+    """Keeps the states of one run on the constraints, the norms of quaternions at 1, and the energy where that is
+    requested.
 
     Args:
-        spheres: the places of quaternions.
+        unit_quaternions: the places of quaternions.
         projection: onto the constraints; None where nothing is put back.
         atol: the absolute tolerance of a step.
         every: put back at each so many steps, needed or not; None: where a constraint is open by more than atol.
@@ -353,7 +353,7 @@ class DriftCorrection:
 
     @property
     def remark(self) -> str:
-        """What could not be held, as a sentence; "" where all was."""
+        """Sentence that says since when constraints could not be closed; "" if all were."""
         if self.lost is None:
             return ""
         t, left = self.lost
@@ -392,7 +392,7 @@ class ConstraintRank:
         return np.linalg.svd(self._scaled(t, x), compute_uv=False)[:, self.rank - 1 : self.rank]
 
     def words(self, t: np.ndarray, x: np.ndarray) -> str:
-        """Which constraints depend on one another at the worst of the states."""
+        """Names the constraints that depend on one another at the worst of the states."""
         J = self._scaled(t, x)
         worst = int(np.argmin(np.linalg.svd(J, compute_uv=False)[:, self.rank - 1]))
         shares = np.abs(np.linalg.svd(J[worst])[0][:, self.rank - 1])
@@ -440,14 +440,14 @@ Measure = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
 def measured_at(measure: Measure, p: np.ndarray) -> Measure:
-    """What is measured, at other values of the parameters."""
+    """The same measured quantities at other values of the parameters."""
     assert isinstance(measure, Measured | ConstraintRank), "made by `measure`, or of such"
     return measure.at(p)
 
 
 @dataclass
 class Nearness:
-    """How far a motion is from a singular position: 1 at its farthest so far, 0 there.
+    """Distance of a motion from a singular position: 1 at its farthest so far, 0 there.
 
     Args:
         determinants: (t n, x n x states) -> n x k, each of which vanishes where dependent coordinates are not
@@ -486,7 +486,7 @@ class Nearness:
         return found[0] if len(found) == 1 else np.hstack(found)
 
     def words(self, t: float, x: np.ndarray) -> str:
-        """What is not determined at a state near a singular position."""
+        """Names what is not determined at a state near a singular position."""
         sizes = self._measured(np.array([t]), x[None, :])[0] / np.where(self.largest > 0, self.largest, 1.0)
         worst = int(np.argmin(np.abs(sizes)))
         if worst < len(self.what) or self.rows is None:
@@ -510,7 +510,7 @@ class RankLookout:
         self.slopes: deque[float] = deque(maxlen=REMEMBERED)
 
     def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Callable[[], Any]) -> Crossing | None:
-        """Where the nearness falls below what is near in a step that ends in x_new."""
+        """Crossing at which the nearness falls below its limit in a step that ends in x_new; None if it does not."""
         known = self.nearness.lengths, self.nearness.largest
         before, self.before = self.before, self.nearness.at(t_new, x_new)
         if np.any(self.nearness.lengths > known[0]) or np.any(self.nearness.largest > known[1]):
@@ -529,7 +529,7 @@ class RankLookout:
         return None if found is None else Crossing(LOOKED_OUT, found, motion(found))
 
     def _is_calm(self, before: float, step: float) -> bool:
-        """Whether it cannot have come near zero within a step, unless it changes much faster than before."""
+        """True if the nearness cannot have come near zero within a step, unless it changes much faster than before."""
         self.slopes.append(abs(self.before - before) / step)
         enough = len(self.slopes) == REMEMBERED
         return enough and min(before, self.before) > self.near + STEEP * max(self.slopes) * step
@@ -560,13 +560,13 @@ def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measu
 
 @dataclass(frozen=True)
 class Undetermined:
-    """What vanishes where something of the motion is not determined.
+    """Determinants that vanish where something of the motion is not determined.
 
     Args:
         determinants: (t n, x n x states) -> n x k.
         words: of each determinant, what is not determined where it vanishes; () of rows, which say it at states.
-        place: what such a position is called.
-        is_watched: whether the nearness of a run looks at them too.
+        place: the name of such a position.
+        is_watched: True if the nearness of a run looks at them too.
     """
 
     determinants: Measure
@@ -579,7 +579,7 @@ class Undetermined:
         return replace(self, determinants=measured_at(self.determinants, p))
 
     def what(self, t: np.ndarray, x: np.ndarray) -> Sequence[str]:
-        """Of each determinant, what is not determined where it vanishes, by the states of a run."""
+        """Names, of each determinant, what is not determined where it vanishes, at the states of a run."""
         if isinstance(self.determinants, ConstraintRank):
             return (self.determinants.words(t, x),)
         return self.words
@@ -603,7 +603,7 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
 
 
 def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> Nearness | None:
-    """How near a motion is to positions in which the constraints do not determine it; None without constraints."""
+    """Nearness of a motion to positions in which the constraints do not determine it; None without constraints."""
     system = equations.system
     blocks = singular_blocks(system.elimination, system.scope)
     determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
@@ -613,7 +613,7 @@ def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -
 
 
 def independence_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> ConstraintRank | None:
-    """How independent the rows are that close by multipliers; None without such."""
+    """Measure of the independence of the rows that close by multipliers; None without such."""
     system = equations.system
     rank = rank_of_constraints(system.constraints)
     if not rank:

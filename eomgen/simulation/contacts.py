@@ -1,4 +1,4 @@
-"""What contacts do along a motion: how they are, when they change, and which hold after it."""
+"""Contacts along a motion: their modes, the events that change them, and the modes that hold afterwards."""
 
 from __future__ import annotations
 
@@ -87,7 +87,7 @@ class EventFunction:
 
 @dataclass(frozen=True)
 class ContactEvents:
-    """What the contacts of one phase say, as functions of its symbols.
+    """Signals and events of the contacts of one phase, as functions of its symbols.
 
     Args:
         configuration: of the contacts.
@@ -199,7 +199,7 @@ class ContactEvents:
         return found
 
     def _holding(self, name: str) -> tuple[Scalar, str]:
-        """What lets a contact stick, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
+        """Friction force that holds a sticking contact, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
         held = [r for r in self.system.constraints.rows if r.constraint == name and r.component in ("t", "s")]
         forces = [self._reaction(row) for row in held]
         return forces[0] if len(forces) == 1 else _resultant(forces)
@@ -242,7 +242,7 @@ def stopped_below(contact: Contact) -> Fraction | int:
 
 
 def sliding_velocity(system: System, contact: Contact) -> Scalar:
-    """Of a closed contact with friction, along its tangent."""
+    """Sliding velocity of a closed contact with friction, along its tangent [m/s]."""
     if contact.of_joint:
         return system.motion.link(contact.name).s_rate[0]
     return next(r.sliding for r in system.constraints.rows if r.constraint == contact.name and r.tangent)
@@ -299,14 +299,14 @@ class ContactSignals:
         return found
 
     def sizes(self, t: float, x: np.ndarray) -> tuple[float, float]:
-        """How large forces and accelerations are at one state, the latter at least 1 m/s^2."""
+        """Largest force and largest acceleration at one state, the latter at least 1 m/s^2."""
         forces = [abs(v) for (_, what), v in self.look(t, x).items() if what[0] in "Nh" and np.isfinite(v)]
         found = np.abs(self._sized.many(np.array([t]), self.functions.inner(x)[None, :], self.functions.p)[0])
         n = len(self.functions.equations.symbols.u)
         return max([*forces, *found[:n]], default=0.0), max([1.0, *found[n:]])
 
     def floors(self, t: float, x: np.ndarray) -> np.ndarray:
-        """What is rounding in each of the bounds, at one state; a speed that has just come near to 0 may pass it."""
+        """Rounding error of each bound at one state; a speed may pass 0 by as much as counts as stopped."""
         n = self.functions.places
         if not self.watch.bounds:
             return np.zeros(0)
@@ -334,7 +334,7 @@ class ContactSignals:
         return Measured(self.functions.function((*values, *further)), self.functions.p)
 
     def _stands_apart(self, bound: EventFunction) -> bool:
-        """Whether a bound follows from a balance that is solved with rank, is integrated, or knows a state before."""
+        """True if a bound follows from a balance that is solved by rank, is integrated, or depends on earlier states."""
         if bound.kind == "piece":
             return False
         contact = self.watch.contact(bound.owner)
@@ -346,7 +346,7 @@ class ContactSignals:
         )
 
     def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
-        """What is left of a bound of a contact."""
+        """Margin of a bound of a contact, which is negative once the contact's mode has ended."""
         name = bound.owner
         mode = self.watch.configuration.modes[name]
         if bound.kind == "closes":
@@ -400,7 +400,7 @@ class ContactSignals:
 
 
 def divisors(value: Scalar) -> list[Scalar]:
-    """What a formula divides by, powers that are not whole among it."""
+    """Subexpressions by which a formula divides, and the bases of powers that are not whole or are negative."""
     found: list[Scalar] = []
     for x in order((value,)):
         if x.op == "div":
@@ -416,7 +416,7 @@ def divisors(value: Scalar) -> list[Scalar]:
 
 @dataclass(frozen=True)
 class Configuration:
-    """How all contacts are in one phase.
+    """Modes of all contacts in one phase.
 
     Args:
         modes: of each contact.
@@ -443,12 +443,12 @@ def by_the_law(model: Model, configuration: Configuration) -> Configuration:
 
 
 def has_phases(model: Model) -> bool:
-    """Whether the model has anything that can change as it moves."""
+    """True if the model has contacts, or bodies on a path of several pieces, that can change as it moves."""
     return bool(changing(model))
 
 
 def changing(model: Model) -> tuple[str, ...]:
-    """What can change as the model moves: contacts, and bodies on a path of several pieces."""
+    """Names of the contacts, and of the bodies on a path of several pieces, that can change as the model moves."""
     return tuple(dict.fromkeys((*(contact.name for contact in contacts_of(model)), *paths_of(model))))
 
 
@@ -476,7 +476,7 @@ def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:
 
 
 def changed(model: Model, before: Configuration, after: Configuration) -> tuple[str, ...]:
-    """What is different after, a phrase each: "the support 'wall' opens"."""
+    """Changes from one configuration to another, a phrase each: "the support 'wall' opens"."""
     contacts = {contact.name: contact for contact in contacts_of(on_pieces(model, after.pieces))}
     phrases = [_moved_on(model, name, k) for name, k in after.pieces.items() if before.pieces.get(name, k) != k]
     for name, mode in after.modes.items():

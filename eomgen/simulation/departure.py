@@ -1,4 +1,4 @@
-"""Where a motion goes from a rest or a dead centre, and along the configurations of one degree of freedom."""
+"""Departure of a motion from a rest or a dead centre, and the way along the configurations of one degree of freedom."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class RestDeparture:
 
     @property
     def is_needed(self) -> bool:
-        """Whether the motion is not determined by the time that passes."""
+        """True if the passing of time alone does not determine the motion."""
         return self._is_singular() or self._rests()
 
     @property
@@ -89,7 +89,7 @@ class RestDeparture:
         return lambda t, x: float(functions(t, x)[0])
 
     def _rests(self) -> bool:
-        """Whether time does not lead away from the start: an equilibrium, or rates without a value."""
+        """True if time does not lead away from the start: an equilibrium, or rates without a value."""
         with np.errstate(all="ignore"):
             x = self.phase.state(self.names)
             dx = self.phase.rate(self.t0, x)
@@ -106,13 +106,13 @@ class RestDeparture:
 
     @property
     def _is_moved_by_time(self) -> bool:
-        """Whether given motions, or forces that change with time, can end a rest."""
+        """True if given motions, or forces that change with time, can end a rest."""
         symbols, coordinates = self.equations.symbols, self.equations.system.scope.model.coordinates
         moving = (symbols.t, *(q for q in symbols.q if coordinates[q.name].driven))
         return any(depends_on(x, moving) for x in (*self.accelerations, *self.equations.system.scope.nu))
 
     def _is_singular(self) -> bool:
-        """Whether the constraints do not determine which way the start is left."""
+        """True if the constraints do not determine the way in which the start is left."""
         if not any(not row.identical and row.gap is not None for row in self.equations.system.constraints.rows):
             return False
         way = self._way
@@ -248,7 +248,7 @@ SensedCondition = Callable[[np.ndarray, int], float]
 
 @dataclass(frozen=True)
 class Arrival:
-    """Where a condition holds: the way to it, of the leading coordinate, and the state there."""
+    """Place where a condition holds: the way to it, of the leading coordinate, and the state there."""
 
     s: float
     x: np.ndarray
@@ -317,7 +317,7 @@ class Configurations:
         return sensed.arrival(march(sensed.rate, (abs(s), within), q, how=SEARCH, events=sensed.events))
 
     def is_regular(self, q: np.ndarray) -> bool:
-        """Whether the gaps fix the sought coordinates' rates: no branch point, as its rounded place may seem finite."""
+        """True if the gaps fix the rates of the sought coordinates; False at a branch point, also one found by rounding."""
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.direction(q))):
                 return False
@@ -401,7 +401,7 @@ class _Sensed:
         return Events(values, np.array([COMPUTED, SUMMED]), (0,))
 
     def arrival(self, run: Run) -> Arrival:
-        """Where the condition holds; it may do so just where the motion turns back.
+        """Place where the condition holds; it may do so just where the motion turns back.
 
         Raises:
             NeverReached: the way ends before.

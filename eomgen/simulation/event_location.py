@@ -19,7 +19,7 @@ MOST_PARTS = 4096  # of a step in which a function goes up and down many times
 RESOLVED = 0.02  # of a function's largest value in a step: so near a polynomial comes to what lies between looks
 NODES, DEGREE = 40, 16  # of the polynomial around an event
 SMALLER = 8  # times, the second window around an event
-ORDER = 0.05  # of the largest value nearby: the derivative that tells of which order a root is is larger
+ORDER = 0.05  # of the largest value nearby: the derivative that shows the order of a root is larger
 MOST_ORDER = 5  # of a root
 NEARBY = 0.5  # of the window: how far the root may be from where it was seen
 NEWTON_STEPS = 6
@@ -114,7 +114,7 @@ class EventSearch:
         self.signs[new] = np.sign(g[new])
 
     def _floors(self) -> np.ndarray:
-        """What is rounding: of functions that count from either side a share of the largest value so far."""
+        """Rounding errors of the functions; where both signs count, a share of the largest value so far."""
         floors, either = self.events.floors.copy(), list(self.events.either)
         floors[either] = np.minimum(floors[either], ITERATED * self.largest[either])
         return floors
@@ -186,7 +186,7 @@ def _looks(t_old: float, t_new: float, parts: int) -> np.ndarray:
 
 
 def _is_resolved(g: np.ndarray) -> bool:
-    """Whether polynomials through every second of the looks, eight parts each, tell those between."""
+    """True if polynomials through every second sample, eight parts each, give the samples between."""
     inner = np.delete(g, [1, len(g) - 2], axis=0)
     windows = np.stack([inner[i : i + PARTS + 1] for i in range(0, len(inner) - 1, PARTS)])
     guessed = np.einsum("ij,wjk->wik", _BETWEEN, windows[:, ::2])
@@ -205,7 +205,7 @@ _BETWEEN = _between()
 def _low(value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, closely: bool) -> tuple[float, float] | None:
     """(where, how low) between three positive values the middle one of which is the least; None where they are not so.
 
-    Unless one looks closely, the parabola through the three says whether it is worth it.
+    Unless `closely` is set, the search is made only where the parabola through the three comes near to 0.
     """
     if len(t) < 3 or not (g > 0).all() or not (g[1] <= g[0] and g[1] <= g[2]):
         return None
@@ -229,7 +229,7 @@ def _vertex(t: np.ndarray, g: np.ndarray) -> float:
 
 
 def _root(value: Callable[[float], float], before: float, after: float) -> float:
-    """Where the function is zero between two instants, or just past it: never where it is still above."""
+    """Root of a function between two instants, or just past it, where the function is no longer above 0."""
     from scipy.optimize import brentq
 
     if not value(before) > 0:
@@ -298,7 +298,7 @@ def _root_within(z: np.ndarray, g: np.ndarray, known: float) -> float | None:
 
 
 def _is_of_order(order: int, slopes: Sequence[float], known: float) -> bool:
-    """Whether so many roots are one, as far as a function whose largest value is 1 is known.
+    """True if `order` roots cannot be distinguished from one, where a function of largest value 1 is known to `known`.
 
     With a_k = g^(k)/k! and a_m r^m = known they lie within r, where |a_k| r^k <= known for all k < m.
     """

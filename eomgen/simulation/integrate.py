@@ -63,7 +63,7 @@ def integrate(
         samples: how many instants, evenly spaced; the instants themselves; or None: the integrator's own steps.
         energy: (t n, x n x states) -> (T, V), n each [J].
         conservative: whether T + V should stay; if not, no drift is reported.
-        gaps: (t n, x n x states) -> phi of the closing constraints, n x k; not needed beside a projection.
+        gaps: (t n, x n x states) -> phi of the closing constraints, n x k; not needed with a projection.
         events: functions that end the run where they fall to zero.
         most_steps, stabilization, every: as of Stepping.
         projection: onto the constraints; by it these are also measured.
@@ -122,7 +122,7 @@ def drift_of(T: np.ndarray, V: np.ndarray) -> float:
 
 
 def _energy(run: Run, energy: FunctionOfStates, conservative: bool) -> tuple[np.ndarray, float | None]:
-    """(T + V at the instants asked for, its drift, at the integrator's steps too)."""
+    """(T + V at the requested instants, its drift, at the integrator's steps too)."""
     T, V = _rows(energy(run.t, run.x), run.t)
     if not conservative:
         return T + V, None
@@ -136,7 +136,7 @@ def _rows(values: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def instants_of(samples: int | Sequence[Typed], start: float, end: float) -> np.ndarray:
-    """The instants asked for: so many, evenly spaced; or the instants themselves, in SI or with a unit.
+    """The requested instants: so many, evenly spaced; or the instants themselves, in SI or with a unit.
 
     Raises:
         UsageError: fewer than two, or not in order between start and end.

@@ -1,4 +1,4 @@
-"""x' = f(t, x), start -> the states of one run, step by step, and why an end is out of reach.
+"""x' = f(t, x), start -> the states of one run, step by step, and the reason if the end is out of reach.
 
 x' = f(t, x), start -> the states of one run, step by step, by scipy's integrators.
 """
@@ -34,7 +34,7 @@ class StepStates:
 
     Args:
         t, x: instants and states, one a row; of a call in C all together.
-        every: at each so many steps a state is kept.
+        every: at each so many steps a state is stored.
         steps: taken so far.
     """
 
@@ -62,7 +62,7 @@ class StepStates:
         return np.concatenate(self.t), np.concatenate(self.x)
 
     def until(self, end: float) -> StepStates:
-        """Those up to an instant."""
+        """The states up to an instant."""
         t, x = self.all
         n = int(np.searchsorted(t, end, side="right"))
         return StepStates([t[:n]], [x[:n]], self.every, self.steps, n)
@@ -88,7 +88,7 @@ Steps = CompiledSteps | ScipySteps | HeyokaSteps
 
 @dataclass(frozen=True)
 class Stepping:
-    """How an integrator goes.
+    """Options of an integrator.
 
     Args:
         method: one of METHODS; "auto" is DOP853, and Radau where a motion is stiff; "taylor" goes by power series where
@@ -96,14 +96,13 @@ class Stepping:
         rtol, atol: tolerances of one step.
         most_steps: after so many it gives up.
         most_phases: after so many changes of contacts it gives up; None: where the end is out of reach.
-        stabilization: what keeps the constraints closed, one of STABILIZATIONS: "projection" puts states back onto
-            them,
-            "energy" also onto the energy that they began with,
-            "baumgarte" lets the equations pull towards them, "none" leaves them alone.
+        stabilization: the method that keeps the constraints satisfied, one of STABILIZATIONS: "projection" puts states
+            back onto them, "energy" also onto the energy that they began with, "baumgarte" adds feedback of the gaps
+            to the equations, "none" leaves them alone.
         every: project at each so many steps; None: where a constraint is open by more than atol.
         rates: alpha and beta of Baumgarte's rows [1/s].
         breakpoints: instants across which no step goes, ascending [s].
-        keeps: whether a run keeps what it has when the user's patience is over; else nothing comes of it.
+        keeps: a run that is interrupted returns the states found so far; else it raises.
     """
 
     method: str = "DOP853"
@@ -128,18 +127,18 @@ class Stepping:
         projection: Projection | None,
         level: EnergyLevel | None = None,
     ) -> DriftCorrection:
-        """What keeps the states of one run where they belong; the norms of quaternions always."""
+        """Drift correction of the states of one run; the norms of quaternions are always corrected."""
         kept = projection if self.stabilization in ("projection", "energy") else None
         return DriftCorrection(unit_quaternions, kept, self.atol, self.every, level=level)
 
 
 @dataclass(frozen=True)
 class Run:
-    """What an integrator left behind.
+    """Result of an integration.
 
     Args:
         t, x: the instants reached and the states there, one row each.
-        end, last: how far it came [s], and the state there.
+        end, last: the instant that it reached [s], and the state there.
         crossing: the event that ended it.
         tracks: states at the integrator's steps, the start among them.
         carried: the start and the end of each crossing of a singular position.
@@ -159,7 +158,7 @@ class Run:
 
 
 class Lookout(Protocol):
-    """What ends a run by the state at the end of each step, without a look into the step where all is calm."""
+    """Condition that ends a run by the state at the end of each step; it looks into the step only where needed."""
 
     def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Dense) -> Crossing | None:
         """A crossing of index LOOKED_OUT in the step; `dense()` gives the state at instants in it."""
@@ -181,7 +180,7 @@ class _Watches:
 
 @dataclass(frozen=True)
 class _Rows:
-    """The rows of a run as they come: at the instants asked for, or (None) at the integrator's own steps."""
+    """The rows of a run as they come: at the requested instants, or (None) at the integrator's own steps."""
 
     instants: np.ndarray | None
     hold: DriftCorrection
@@ -203,7 +202,7 @@ class _Rows:
             self.x.append(self.hold.rows(t, dense()(t).T))
 
     def take(self, steps: CompiledSteps) -> None:
-        """What has come of steps in C that are done with."""
+        """Takes over the states of finished steps in C."""
         t, x = steps.track
         self.track.add(t, x)
         t, x = (t, x) if self.instants is None else steps.rows()
@@ -217,7 +216,7 @@ class _Rows:
             self._put(t, x)
 
     def kept(self) -> tuple[float, np.ndarray]:
-        """The last state that is kept and its instant, in the middle of whatever a run was stopped."""
+        """The last stored state and its instant, in the middle of whatever a run was stopped."""
         for times, states in ((self.t, self.x), (self.track.t, self.track.x)):
             whole = min(len(times), len(states))
             del times[whole:], states[whole:]
@@ -251,10 +250,10 @@ def march(
 
     Args:
         instants: where states are wanted, in order; None: at the integrator's own steps.
-        spheres: the places of quaternions in x: each is put back to norm 1 after every step.
-        projection: onto the constraints, which keep at the states between the steps too.
-        slope: df/dx, asked for where steps are implicit.
-        level: the energy that is kept.
+        unit_quaternions: the places of quaternions in x: each is put back to norm 1 after every step.
+        projection: onto the constraints; it corrects the states between the steps too.
+        slope: df/dx, used where steps are implicit.
+        level: the energy that is held constant.
     """
     start, end = span
     hold = how.hold(unit_quaternions, projection, level)
@@ -307,7 +306,7 @@ def march(
 def _stepped_outside(
     f: StateRate, span: tuple[float, float], x0: np.ndarray, how: Stepping, slope: LateSlope
 ) -> HeyokaSteps | ScipySteps:
-    """The steps of another program: heyoka's where it is asked for, else scipy's."""
+    """The steps of another program: heyoka's where it is requested, else scipy's."""
     if how.method == HEYOKA:
         program, p = (f.rhs.program, f.p) if isinstance(f, RateFunction) else (None, ())
         return HeyokaSteps(program, p, span, x0, tolerance=how.rtol, breakpoints=how.breakpoints)
@@ -316,7 +315,7 @@ def _stepped_outside(
 
 
 def _possible(how: Stepping, f: StateRate) -> tuple[Stepping, str]:
-    """(how the integrator goes, why it does not go as it was asked): series are of what has them, and in C."""
+    """(options of the integrator, reason why they are not as requested): series need equations in C that have them."""
     if how.method != TAYLOR:
         return how, ""
     if getattr(f, "address", None) is None:
@@ -428,7 +427,7 @@ def reached_words(end: float) -> str:
 
 
 def ended_words(status: str, t: float, steps: int) -> str:
-    """How a run ended, as a sentence."""
+    """Sentence that says how a run ended."""
     if status == "finished":
         return reached_words(t)
     if status == "not finite":
@@ -454,7 +453,7 @@ HELD = (0.2, 20.0)  # h |lambda| of steps that an eigenvalue holds short
 
 @dataclass
 class Pace:
-    """How fast a run comes on.
+    """Rate of progress of a run.
 
     Args:
         t: at the last look [s].
@@ -481,7 +480,7 @@ class Pace:
         return self._words(h, left, rate) if left > most else ""
 
     def words(self, steps: int, t: float, x: np.ndarray) -> str:
-        """How far it is to the end, and what holds the steps short."""
+        """Sentence on the steps left to the end, and on what holds the steps short."""
         taken = steps % LOOK or LOOK
         h = (t - self.t) / taken if steps else 0.0
         return self._words(h, (self.end - t) / h, self._fastest(t, x)) if h > 0 else ""

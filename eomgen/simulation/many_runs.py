@@ -77,7 +77,7 @@ _CONSTANTS = {
 }
 
 BATCHED = {name: _CONSTANTS[name] for name in ("LARGEST_GROWTH", "SMALLEST_GROWTH", "SAFETY", "SAME_INSTANT")}
-BATCHED |= {"HELD_SHORT": HELD_SHORT, "FORGOTTEN": FORGOTTEN, "SEEN": SEEN}  # what batch.c is told
+BATCHED |= {"HELD_SHORT": HELD_SHORT, "FORGOTTEN": FORGOTTEN, "SEEN": SEEN}  # constants of batch.c
 
 SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 
@@ -269,12 +269,12 @@ class ManyStarts:
 
     @cached_property
     def _all(self) -> RightHandSide:
-        """What vanishes at a start."""
+        """Function of the residuals that vanish at a start: phi, and J u + sigma."""
         return self._of((*self._phi, *(row.velocity for row in self._system.constraints.closing)))
 
     @cached_property
     def _places(self) -> RightHandSide:
-        """Where coordinates are declared to start; what is sought, where that begins."""
+        """Function of the declared start of the coordinates; of sought ones the guess from which the search begins."""
         scope = self._system.scope
         near = {q: scope.model.coordinates[q.name].near for q in self._sought}
         guesses = {q: scope.value(value) for q, value in near.items() if value is not None}

@@ -43,13 +43,13 @@ MOST_AT_ONCE = 20  # phases that end as soon as they begin, one after the other
 
 @dataclass(frozen=True)
 class Plan:
-    """How a motion is followed.
+    """Options of the integration of a motion.
 
     Args:
         end: the last instant [s].
-        how: the integrator's way.
-        instants: where states are wanted; None: at the integrator's own steps.
-        until: what ends it where it becomes 0.
+        how: the integrator's options.
+        instants: at which states are wanted; None: at the integrator's own steps.
+        until: the condition that ends it where it becomes 0.
     """
 
     end: float
@@ -200,7 +200,7 @@ def _finer(tolerance: float) -> float:
 
 
 def _hasty(phase: PhaseModel, hasty: int) -> str:
-    """That phases follow one another without time going on; "" where they do not."""
+    """Message that phases follow one another without time passing; "" where they do not."""
     return f"the contacts {_contacts(phase)} change without end at one instant" if hasty == MOST_AT_ONCE else ""
 
 
@@ -223,7 +223,7 @@ def _contacts(phase: PhaseModel) -> str:
 
 
 def _standstill(phase: PhaseModel, here: PhaseStart, failure: str) -> PhaseRun:
-    """Where no phase follows."""
+    """Phase of a single instant, where no phase can follow."""
     x = phase.state(here.values)
     message = f"Stopped at t = {here.t:.6g} s: {failure}."
     return PhaseRun(here, phase, Run(np.array([here.t]), x[None, :], here.t, x, "contact", message, 0, 0), None, None)
@@ -271,7 +271,7 @@ def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
     """The states of a phase between its steps.
 
     It is followed once more with other instants, which change no step; where polynomials of so low a degree are not
-    what lies between two steps (few of many steps are kept), at more of them.
+    what lies between two steps (few of many steps are stored), at more of them.
 
     Args:
         plan: by which it was run.

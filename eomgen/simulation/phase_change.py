@@ -1,4 +1,4 @@
-"""Model, start -> PhaseStart: where a motion begins, and how it goes on after each event.
+"""Model, start -> PhaseStart: the beginning of a motion, and its continuation after each event.
 
 An event that closes a contact is an impact without rebound. Then the configuration is sought that agrees with the
 forces (`settling`).
@@ -30,14 +30,14 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 @dataclass(frozen=True)
 class PhaseStart:
-    """Where the motion is, and how it goes on.
+    """State in which a phase begins, and the configuration of its contacts.
 
     Args:
         values: coordinates and rates by name.
         configuration: of the contacts from here on.
-        impact: whether velocities jump here.
-        failure: why it cannot go on, or "".
-        begun: of the first, what the start values were changed to.
+        impact: True if velocities jump here.
+        failure: the reason why it cannot go on, or "".
+        begun: of the first, the values to which the start values were changed.
     """
 
     t: float
@@ -51,7 +51,7 @@ class PhaseStart:
 def next_start(
     models: PhaseModels, phase: PhaseModel, crossing: Crossing, ended: frozenset[Configuration]
 ) -> PhaseStart:
-    """What follows the event that ended a phase.
+    """Start of the phase that follows the event which ended a phase.
 
     Args:
         ended: the configurations that ended at this instant.
@@ -83,7 +83,7 @@ def _at_rest_on_surface(
     return {**values, **held.values(t, held.projection.closed(t, held.state(values), 0.0)[0])}
 
 
-MOST_STARTS = 16  # that are kept
+MOST_STARTS = 16  # that are cached
 
 
 def at_start(
@@ -255,7 +255,7 @@ def settled(
         ended: configurations that have just ended: taken only where there is no other.
         before: the configuration so far; contacts keep what they can of it.
     Raises:
-        Indeterminate: something moves, and the balance does not tell how the contacts share what holds.
+        Indeterminate: something moves, and the balance does not determine how the contacts share the load.
     """
     contacts = contacts_of(on_pieces(phase_models.model, pieces))
     sliding = _sliding(phase_models, contacts, t, values, pieces=pieces, apart=apart)
@@ -347,7 +347,7 @@ def _modes(contact: Contact, sense: int, before: Configuration | None) -> list[C
 
 
 def agrees(phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str, int], apart: frozenset[str]) -> bool:
-    """Whether forces and accelerations are such as the configuration says; an N without one value denies nothing."""
+    """True if forces and accelerations agree with the configuration; an N without a single value contradicts none."""
     x = phase.state(values)
     found = phase.signals.look(t, x)
     forces, accelerations = phase.signals.sizes(t, x)

@@ -1,4 +1,4 @@
-"""EquationsOfMotion, parameters -> PhaseFunctions: the equations of one phase, compiled as they are asked for."""
+"""EquationsOfMotion, parameters -> PhaseFunctions: the equations of one phase, compiled when they are first used."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class PhaseFunctions:
         equations: of motion, friction included.
         p: the parameters' values.
         target: of the emitted code of the right-hand side.
-        made: the functions that have been asked for; those of other values are the same.
+        made: the functions that have been compiled so far; those of other values are the same.
     """
 
     equations: EquationsOfMotion
@@ -47,7 +47,7 @@ class PhaseFunctions:
         return self.made["energies"]
 
     def _right_hand_side(self) -> RightHandSide:
-        """x', and T and V beside it."""
+        """x', and T and V in addition."""
         refuse_massless(self.equations)
         program = right_hand_side(with_accelerations(self.equations))
         energies = program_of(
@@ -63,7 +63,7 @@ class PhaseFunctions:
 
     @property
     def places(self) -> int:
-        """How many coordinates."""
+        """Number of coordinates."""
         return len(self.equations.symbols.q)
 
     def inner(self, x: np.ndarray) -> np.ndarray:
@@ -71,7 +71,7 @@ class PhaseFunctions:
         return np.ascontiguousarray(x[..., : self.places + len(self.equations.symbols.u)])
 
     def slacks(self, x: np.ndarray) -> np.ndarray:
-        """What hangs loose of each string, as far as no formula gives it."""
+        """Slack of each string whose slack is integrated, not given by a formula."""
         return x[..., self.places + len(self.equations.symbols.u) :]
 
     def evaluated(self, t: np.ndarray, x: np.ndarray, scalars: tuple[Scalar, ...]) -> np.ndarray:

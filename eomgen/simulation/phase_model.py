@@ -135,14 +135,14 @@ class PhaseModel:
         return np.concatenate([self.functions.rhs(t, inner, self.p), slackening])
 
     def valueless(self, t: float, x: np.ndarray) -> Valueless | None:
-        """What has no value in a state, or just after it; None where everything has one."""
+        """First quantity without a value in a state, or just after it; None where everything has one."""
         with np.errstate(all="ignore"):
             after = COMPUTED * max(1.0, abs(t)) * np.nan_to_num(self.rate(t, x))
         found = (valueless(self.system, self._values(t, here)) for here in (x, x + after))
         return next((each for each in found if each is not None), None)
 
     def overlarge(self, t: float, x: np.ndarray) -> Valueless | None:
-        """What is too large in a state to be calculated with; None where nothing is."""
+        """First quantity that is too large in a state to be calculated with; None where nothing is."""
         return overlarge(self.system, self._values(t, x))
 
     def _values(self, t: float, x: np.ndarray) -> dict[Node, float]:
@@ -208,20 +208,20 @@ class PhaseModel:
         return self.functions.energies.many(t, self.functions.inner(x), self.p).T
 
     def level(self, t: float, x: np.ndarray) -> EnergyLevel:
-        """The energy of a state, to be kept from there on.
+        """The energy of a state, to be held constant from there on.
 
         Raises:
             UsageError: energy need not stay.
         """
         if not self.conservative:
-            what = f"energy is not kept: {why_not_conservative(self.equations)}"
+            what = f"energy is not conserved: {why_not_conservative(self.equations)}"
             raise UsageError(what, fix='take stabilization "projection"')
         places, size = len(self.coordinates), len(self.coordinates) + len(self.speeds)
         energy = float(self.energies(np.array([t]), x[None, :]).sum())
         return EnergyLevel(self.functions.energies, self.p, places, size, energy)
 
     def _known(self, key: str, make: Callable[[], Any]) -> Any:
-        """What is made once of the equations, for all values of the parameters."""
+        """Object that is made once of the equations, for all values of the parameters."""
         if key not in self.known:
             self.known[key] = make()
         return self.known[key]
@@ -252,7 +252,7 @@ class PhaseModel:
 
     @cached_property
     def undetermined(self) -> tuple[Undetermined, ...]:
-        """What of the motion is not determined at singular positions."""
+        """Conditions under which the motion is not determined: the determinants that vanish at singular positions."""
         known = self._known("undetermined", lambda: undetermined_of(self.equations, self.p, self.declared))
         return tuple(each.at(self.p) for each in known)
 
@@ -266,7 +266,7 @@ class PhaseModel:
 
     @cached_property
     def edges(self) -> tuple[Edge, ...]:
-        """Where the contacts that are closed no longer say at which place they hold."""
+        """Edges at which closed contacts no longer determine the place where they touch."""
         return edges_of(self.system.motion, self.configuration.open)
 
     def slowest(self, t: float, x: np.ndarray) -> float:
@@ -276,7 +276,7 @@ class PhaseModel:
         return float(np.min(self.functions.evaluated(np.array([t]), x[None, :], speeds))) if speeds else np.inf
 
     def rests(self, t: float, values: Values) -> bool:
-        """Whether nothing moves, and nothing is given that could move it later."""
+        """True if nothing moves, and nothing is given that could move it later."""
         symbols, coordinates = self.system.symbols, self.system.scope.model.coordinates
         given = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
         needed = (equation.needed for equation in self.reactions.balance.equations)
@@ -297,12 +297,12 @@ class PhaseModel:
 
 
 def smallest_speed(values: Values) -> float:
-    """What is no rounding any more, against the fastest of the rates."""
+    """Smallest speed that is larger than rounding, relative to the fastest of the rates."""
     return COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
 def slack_name(constraint: str) -> str:
-    """What the integrated slack of a string is called among the values of a state."""
+    """Name of the integrated slack of a string among the values of a state."""
     return f"{constraint} slack"
 
 
@@ -316,7 +316,7 @@ def slack_name(constraint: str) -> str:
 
 
 LONG = 60_000  # operations from which on differences are cheaper than the derivative
-SHORT = 400  # operations up to which a function is not worth a compiler
+SHORT = 400  # operations up to which a function runs in numpy: compiling takes longer
 
 
 def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> ExactSlope | None:

@@ -245,7 +245,7 @@ def _released(system: System, constraint: str) -> System:
 #
 # What is derived holds for all values of the parameters, but for what numbers have decided on the way:
 #
-#     signs        of the parameters, and of what loads and constraints asked of the start (`SystemScene.worth`)
+#     signs        of the parameters, and of what loads and constraints evaluated at the start (`SystemScene.worth`)
 #     dependence   which rows of the constraints follow from others: as before where no parameter in them has another
 # value,
 #         and
@@ -267,11 +267,11 @@ class DerivedAt:
     changes: bool
 
     def holds(self, p: np.ndarray, q: np.ndarray) -> np.ndarray:
-        """Of n runs whether equations are the same, as far as the constraints need not be closed to see it.
+        """True for each of n runs with the same equations, as far as that is known without closing the constraints.
 
         Args:
             p: n x parameters.
-            q: where the coordinates are declared to start, n x coordinates.
+            q: the declared start of the coordinates, n x coordinates.
         """
         found = np.all(np.sign(p) == np.sign(self.p), axis=1)
         if self._decided:
@@ -280,11 +280,11 @@ class DerivedAt:
         return np.asarray(found & (~self.requests(p) | self._is_independent))
 
     def requests(self, p: np.ndarray) -> np.ndarray:
-        """Of n runs whether a parameter that stands in the constraints has another value."""
+        """True for each of n runs in which a parameter of the constraints has another value."""
         return np.asarray(np.any((p != self.p)[:, self._in_constraints], axis=1))
 
     def is_regular(self, p: np.ndarray, x: np.ndarray) -> np.ndarray:
-        """Of n runs whether the rows are as independent as elsewhere at states (q, u) in which they hold.
+        """True for each of n runs whose rows have their usual rank at states (q, u) in which they hold.
 
         Rows that the coordinates were found to satisfy by themselves must hold there too.
         """
@@ -346,7 +346,7 @@ class DerivedAt:
 
     @cached_property
     def declared(self) -> RightHandSide:
-        """Where the coordinates are declared to start, by the parameters."""
+        """Function of the parameters that gives the declared start of the coordinates."""
         scope = self.system.scope
         return self._of(self.system, tuple(with_unit_quaternions(scope, start_values(scope)).values()))
 
@@ -374,7 +374,7 @@ class DerivedAt:
 
 
 def _singular_value(J: np.ndarray, rank: int) -> np.ndarray:
-    """That number of the singular values of each matrix, its rows of length 1; 1 where nothing is asked."""
+    """The rank-th singular value of each matrix, its rows scaled to length 1; 1 where the rank is 0."""
     if not rank:
         return np.ones(len(J))
     if rank > min(J.shape[1:]):

@@ -39,7 +39,7 @@ from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SystemCondition = Callable[[System], Scalar]
-"""What is asked to become 0, over the symbols, accelerations and multipliers of a system."""
+"""A function that is to become 0, over the symbols, accelerations and multipliers of a system."""
 
 
 def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
@@ -89,7 +89,7 @@ class PhaseRun:
 
     @cached_property
     def measured(self) -> tuple[np.ndarray, np.ndarray]:
-        """(instants, states) asked for and at the integrator's steps, in the order of time."""
+        """(instants, states) as requested and at the integrator's steps, in the order of time."""
         return measured(self.run.t, self.run.x, self.run.tracks)
 
     def tracked(self) -> tuple[np.ndarray, np.ndarray]:
@@ -98,16 +98,16 @@ class PhaseRun:
 
     @property
     def is_met(self) -> bool:
-        """Whether a condition ended it."""
+        """True if a condition ended it."""
         return self.bound is None and self.run.status == "event"
 
 
 PhaseCondition = Callable[[PhaseModel], Scalar]
-"""What is asked to become 0, over the symbols, accelerations and multipliers of a phase."""
+"""A function that is to become 0, over the symbols, accelerations and multipliers of a phase."""
 
 
 def met(phase_run: PhaseRun, until: PhaseCondition) -> bool:
-    """Whether the condition holds where a phase ends, and did not hold all along."""
+    """True if the condition holds where a phase ends, and did not hold all along."""
     sizes = _sizes(phase_run, until)
     largest = float(np.max(sizes))
     return bool(sizes[-1] <= COMPUTED * max(1.0, largest) < largest)
@@ -128,7 +128,7 @@ def ended(runs: Iterable[PhaseRun], until: PhaseCondition) -> Iterator[PhaseRun]
 
 
 def _begins(before: PhaseRun, phase_run: PhaseRun, until: PhaseCondition) -> bool:
-    """Whether the condition holds where a phase begins, and did not at the end of the one before."""
+    """True if the condition holds where a phase begins, and did not at the end of the one before."""
     last, largest = (float(find(_sizes(before, until))) for find in (lambda sizes: sizes[-1], np.max))
     enough = COMPUTED * max(1.0, largest)
     return last > enough and bool(_sizes(phase_run, until)[0] <= enough)
@@ -252,7 +252,7 @@ def _of_phase(s: PhaseRun, columns: ReactionColumns) -> Iterator[tuple[str, np.n
 
 
 def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
-    """Those of a phase, made once for all values of the parameters."""
+    """Reaction columns of a phase, made once for all values of the parameters."""
     if "reactions" not in phase.known:
         phase.known["reactions"] = ReactionColumns(phase.reactions, phase.functions.rhs)
     found: ReactionColumns = phase.known["reactions"]
@@ -328,7 +328,7 @@ def _at_rows(table: Mapping[str, np.ndarray], kept: np.ndarray) -> Mapping[str, 
 
 
 def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
-    """What ended a phase, and when."""
+    """Text that says what ended a phase, and when."""
     after = phase_run.after
     if phase_run.bound is None or after is None:
         return phase_run.run.message
@@ -344,7 +344,7 @@ def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
 
 
 def _gaps(t: np.ndarray, found: Mapping[str, np.ndarray], always: tuple[str, ...]) -> str:
-    """What is nan though not always, and since when."""
+    """Names the columns that are nan at some instants but not always, and since when; "" if there are none."""
     at_times = {name: np.isnan(column) for name, column in found.items() if name not in always}
     singular = [name for name, gone in at_times.items() if gone.any()]
     if not singular:

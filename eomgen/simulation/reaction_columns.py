@@ -1,9 +1,9 @@
 """Reactions, RightHandSide -> the reactions along a motion: the bodies' equations solved at every state, with rank.
 
-    A(q) rho = b(q, u, a),   a of the right-hand side,   asked = C(q) rho + d(q, u)
+    A(q) rho = b(q, u, a),   a of the right-hand side,   requested = C(q) rho + d(q, u)
 
 Where the columns of A are independent, A = Q R gives rho, body by body. Where they are not (a singular position), the
-null space of A says which of the reactions asked have a single value all the same; the others are nan there.
+null space of A says which of the requested reactions have a single value all the same; the others are nan there.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ class ReactionColumns:
 
     @cached_property
     def requested(self) -> tuple[NamedReaction, ...]:
-        """What the columns are, in their order."""
+        """The reactions of the columns, in their order."""
         return named_reactions(self.reactions.balance) if self.given is None else self.given
 
     @cached_property
@@ -96,7 +96,7 @@ class ReactionColumns:
 
     @cached_property
     def _equations(self) -> list[BodyEquation]:
-        """Those in which something is solved for."""
+        """The equations in which something is solved for."""
         columns = set(self._columns)
         return [e for e in self.reactions.balance.equations if not columns.isdisjoint(e.coefficients)]
 
@@ -244,7 +244,7 @@ def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]])
 
 
 def _gives(A: np.ndarray, stands: np.ndarray, group: np.ndarray, open_: np.ndarray) -> bool:
-    """Whether the rows determine what is open in them."""
+    """True if the rows determine the unknowns that are open in them."""
     columns = np.flatnonzero(stands[group].any(axis=0) & open_)
     if not 0 < len(columns) <= len(group):
         return False
@@ -272,7 +272,7 @@ def balanced_from_leaves(A: np.ndarray, b: np.ndarray, steps: Iterable[BodyBalan
 
 
 def _regular(R: np.ndarray, block: np.ndarray) -> np.ndarray:
-    """Of each system whether no column follows from those before it."""
+    """True for each system in which no column follows from those before it."""
     size = block.shape[2]
     pivots = np.abs(np.diagonal(R[:, :size, :size], axis1=1, axis2=2))
     if pivots.shape[1] < size:

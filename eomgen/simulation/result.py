@@ -1,4 +1,4 @@
-"""What a simulation gives: states over time, how well the laws were kept, and how it ended."""
+"""Results of a simulation: states over time, errors of the conservation laws and constraints, and how it ended."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ class Phase:
         rows: its first row in the trajectory, and the one after its last; where it ends and another begins the row is
             that of the other, in the state after.
         model: its equations, contacts and reactions, where contacts are that change; else None.
-        tracked: -> `track`, put together where somebody asks for it.
+        tracked: -> `track`, put together on demand.
         edges: -> `first`, `last`: every column at its beginning and at its end, where contacts are that change.
     """
 
@@ -90,7 +90,7 @@ class Phase:
 
     @cached_property
     def track(self) -> tuple[np.ndarray, np.ndarray] | None:
-        """(instants, states) of the phase: those asked for and the integrator's steps, in order; None where unknown."""
+        """(instants, states) of the phase: those requested and the integrator's steps, in order; None where unknown."""
         return None if self.tracked is None else self.tracked()
 
     @cached_property
@@ -108,7 +108,7 @@ class Phase:
         return self._edges[1]
 
     def __getstate__(self) -> dict[str, Any]:
-        """What there is in numbers; equations and compiled code do not go into a pickle."""
+        """State to be pickled: the numbers, without equations and compiled code."""
         own = {name: self.__dict__[name] for name in ("start", "end", "ended_by", "rows")}
         made = {"tracked": self.track, "edges": self._edges if self.edges is not None else None}
         return own | {"model": None} | {name: None if x is None else Pickled(x) for name, x in made.items()}
@@ -116,7 +116,7 @@ class Phase:
 
 @dataclass(frozen=True)
 class Kept:
-    """How well the laws were kept, at the instants given and at the integrator's steps.
+    """Errors of energy and constraints, at the instants given and at the integrator's steps.
 
     Args:
         drift: largest |E - E(0)| over the largest T and |V - V(0)|; None where energy need not be constant.
@@ -136,8 +136,8 @@ class Trajectory:
         t: times, n [s], one row each: strictly later from row to row.
         x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
         coordinates, speeds: the names.
-        energies: -> `energy`, found where somebody asks for it; None where nobody gave it.
-        measure: -> how well the laws were kept, found where somebody asks for it.
+        energies: -> `energy`, found on demand; None where nobody gave it.
+        measure: -> the errors of energy and constraints, found on demand.
         phases: in order.
         ended: "finished" or what stopped it.
         words: the same as a sentence.
@@ -146,12 +146,12 @@ class Trajectory:
             none.
         units: of the reactions, by name.
         outputs: of the model, n each [SI]: nan where one has no value; one that has no column is in the remark.
-        told: what is missing among them whatever the state is, and why; or "".
-        gaps: -> the same of single states, found where somebody asks for it.
+        reported: what is missing among them whatever the state is, and why; or "".
+        gaps: -> the same of single states, found on demand.
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
         assembled: what was changed of the start values so that the constraints hold there, and of which; or "".
         proof: the run -> its certificate; None where nobody knows its equations.
-        whole: text -> what it asks of the whole run (a RunValue); None where nobody knows its equations.
+        whole: text -> its value over the whole run (a RunValue); None where nobody knows its equations.
         quantities: of the model's outputs those that are of the whole run, each a RunValue.
         estimate: the run -> its Accuracy, by another run; None where nobody knows its equations.
         watch: the run -> the checks of what it watches anyway: energy against power, constraints, norms; None: nobody
@@ -183,7 +183,7 @@ class Trajectory:
     watch: Callable[[Trajectory], tuple[Any, ...]] | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
-        """All its numbers. What asks the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
+        """All its numbers. What needs the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         own |= {"energies": None if self.energies is None else Pickled(self.energy), "measure": Pickled(self.kept)}
         own["gaps"] = Pickled(self.gaps())
@@ -196,27 +196,27 @@ class Trajectory:
 
     @cached_property
     def kept(self) -> Kept:
-        """How well the laws were kept."""
+        """Errors of energy and constraints."""
         return self.measure()
 
     @property
     def drift(self) -> float | None:
-        """Of the energy, as of `Kept`."""
+        """Drift of the energy, as of `Kept`; None where energy need not be constant."""
         return self.kept.drift
 
     @property
     def gap(self) -> float | None:
-        """Of the constraints, as of `Kept`."""
+        """Largest gap of the constraints, as of `Kept`; None where none closes."""
         return self.kept.gap
 
     @property
     def gap_rate(self) -> float | None:
-        """Of their velocities, as of `Kept`."""
+        """Largest gap rate of the constraints, as of `Kept`; None where none closes."""
         return self.kept.gap_rate
 
     @cached_property
     def remark(self) -> str:
-        """What is missing among the reactions and outputs, and why; or ""."""
+        """Text that names the missing reactions and outputs, and the reason; or ""."""
         return " ".join(filter(None, (self.reported, self.gaps())))
 
     @cached_property
@@ -227,7 +227,7 @@ class Trajectory:
             UsageError: as of `certify`.
         """
         if self.estimate is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
         return self.estimate(self)
 
     def certify(self) -> Any:
@@ -237,11 +237,11 @@ class Trajectory:
             UsageError: it was integrated without the equations of a model.
         """
         if self.proof is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
         return self.proof(self)
 
     def ask(self, text: Any) -> Any:
-        """What is asked of the whole run: "max(reaction_x(A))", "mean(power())", "theta' at theta = 0, event 2".
+        """Value over the whole run: "max(reaction_x(A))", "mean(power())", "theta' at theta = 0, event 2".
 
         A RunValue, also of an Output: value in SI, the instants t at which it is, the message where there is none.
 
@@ -249,7 +249,7 @@ class Trajectory:
             UsageError: it cannot be read; or the run is of no model.
         """
         if self.whole is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that asks")
+            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
         return self.whole(text)
 
     def plot(self, path: str | Path | None = None, view: str = "time") -> Any:
@@ -276,19 +276,19 @@ class Trajectory:
 
     @cached_property
     def watched(self) -> tuple[Any, ...]:
-        """Checks of what a run watches anyway, made when somebody asks how it ended."""
+        """Checks of what a run watches anyway, made when `status` is read."""
         return () if self.watch is None else self.watch(self)
 
     @property
     def contradiction(self) -> str:
-        """What of its energy, constraints and norms contradicts a run that came to its end, in words; ""."""
+        """First check of energy, constraints or norms that fails in a run that reached its end, in words; "" if none."""
         if self.ended not in ("finished", "event"):
             return ""
         return next((f"{check.name}: {check.detail}" for check in self.watched if check.ok is False), "")
 
     @property
     def status(self) -> RunStatus:
-        """How it ended: "finished", "event", what stopped it; "contradicted" where what it watches says so."""
+        """Status of the run: "finished", "event", what stopped it; "contradicted" if a check of the run fails."""
         return "contradicted" if self.contradiction else self.ended
 
     @property
@@ -313,7 +313,7 @@ class Trajectory:
         return columns[name]
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Every column by name: t, coordinates, speeds, energy, reactions, outputs ("theta (output)" beside theta)."""
+        """Every column by name: t, coordinates, speeds, energy, reactions, outputs ("theta (output)" next to theta)."""
         named = {"t": self.t} | dict(zip(self.coordinates + self.speeds, self.x.T, strict=True))
         named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
         return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
@@ -384,7 +384,7 @@ class Trajectory:
         return import_module("eomgen").animate(self, path, **how)  # the package's front door: pictures come later
 
     def summary(self) -> str:
-        """How it went, in a line or two."""
+        """Summary of the run in a line or two."""
         parts = [f"{self.message} {self.steps} steps, {self.evaluations} evaluations."]
         if self.carried:
             parts.append(f"Carried across {_singular_positions(self.carried)}.")
@@ -399,11 +399,11 @@ class Trajectory:
 
     @property
     def still(self) -> str:
-        """That the start is a rest, and what to do, in a sentence; "" where something moves."""
+        """Sentence that the start is an equilibrium, with what to do; "" where something moves."""
         if len(self.t) < 2 or not self.coordinates or np.max(np.abs(self.x - self.x[0])) > SOLVED:
             return ""
         near = f"--start {self.coordinates[0]}=..."
-        return f"From this start nothing moves: it is an equilibrium. Start beside it ({near}), or with a speed."
+        return f"From this start nothing moves: it is an equilibrium. Start near it ({near}), or with a speed."
 
     def __repr__(self) -> str:
         names = ", ".join((*self.coordinates, *self.speeds))

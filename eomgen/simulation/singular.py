@@ -3,7 +3,7 @@
 Run -> the same, ended where constraints no longer said how the motion goes on, and the constraint named.
 
 Dependent coordinates follow the independent ones as long as det J_d is not zero. Across an instant where it vanishes
-(a change point, a dead centre) the integrator's own estimate of its error is worth nothing. So a run that came by one
+(a change point, a dead centre) the integrator's own estimate of its error is useless. So a run that came by one
 is integrated again from before it until after it, much finer: where both agree it has passed, else it ends there.
 """
 
@@ -70,13 +70,13 @@ def vanishing_after(values: np.ndarray) -> list[int]:
 
 
 def _carried(run: Run, i: int) -> bool:
-    """Whether the motion after the i-th instant was carried across a singular position."""
+    """True if the motion after the i-th instant was carried across a singular position."""
     start, end = float(run.t[i]), float(run.t[min(i + 2, len(run.t) - 1)])
     return any(first <= end and last >= start for first, last in run.carried)
 
 
 def _passed_the_same(run: Run, i: int, again: Again, allowed: float) -> bool:
-    """Whether the motion from the i-th instant to two later comes out the same by a finer integration."""
+    """True if the motion from the i-th instant to two later comes out the same by a finer integration."""
     j = min(i + 2, len(run.t) - 1)
     if j == i:
         return True
@@ -86,7 +86,7 @@ def _passed_the_same(run: Run, i: int, again: Again, allowed: float) -> bool:
 
 
 def _instant(t: np.ndarray, values: np.ndarray, i: int) -> float:
-    """Where a straight line between two instants is zero; the later one where it is not."""
+    """Instant at which a straight line between two instants is zero; the later one where it is not."""
     if i + 1 >= len(t):
         return float(t[i])
     if values[i] * values[i + 1] > 0:
@@ -150,14 +150,14 @@ class SingularCrossing:
 
 @dataclass(frozen=True)
 class Flow:
-    """What a motion follows.
+    """Differential equation of a motion, with the options of its integration.
 
     Args:
         f: x' = f(t, x).
         how: the integration.
         projection: onto the constraints.
-        slope: df/dx, asked for where steps are implicit.
-        level: the energy that is kept.
+        slope: df/dx, used where steps are implicit.
+        level: the energy that is held constant.
     """
 
     f: StateRate

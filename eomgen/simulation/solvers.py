@@ -1,4 +1,4 @@
-"""scipy's integrators, one step at a time, and how many digits of a run hold.
+"""scipy's integrators, one step at a time, and the number of correct digits of a run.
 
 scipy's integrators, one step at a time: how each is begun, never across a breakpoint, and how a state is replaced.
 
@@ -71,13 +71,13 @@ LateSlope = Callable[[], Slope | None]
 
 @dataclass
 class StiffnessWatch:
-    """Whether stability alone holds the steps of scipy's DOP853 short."""
+    """Detects that stability alone holds the steps of scipy's DOP853 short."""
 
     seen: int = 0
     easy: int = 0
 
     def step(self, solver: Any) -> bool:
-        """After a step: whether it is time for an implicit method."""
+        """True if it is time for an implicit method, after a step."""
         moved = float(np.linalg.norm((solver.B - solver.A[-1]) @ solver.K[:12]))  # two stages look at one instant
         rate = float(np.linalg.norm(solver.K[12] - solver.K[11])) / moved if moved > 0 else 0.0
         if rate > HELD_SHORT:
@@ -148,7 +148,7 @@ class ScipySteps:
         span, x0: the first and the last instant, and the state at the first.
         rtol, atol: of one step.
         breakpoints: instants across which no step goes.
-        slope: df/dx, asked for where steps are implicit.
+        slope: df/dx, used where steps are implicit.
     """
 
     def __init__(
@@ -222,7 +222,7 @@ class ScipySteps:
 
 
 def stiff_words(since: float | None, steps: int) -> str:
-    """How much of a run was stiff; "" where nothing was."""
+    """Sentence on the stiff part of a run; "" where nothing was."""
     return "" if since is None else f"Stiff from t = {since:.3g} s on: {steps} steps by Radau's method."
 
 
@@ -240,13 +240,13 @@ LOST = 0.1  # of the largest value of a coordinate or speed: a digit that does n
 
 @dataclass(frozen=True)
 class Accuracy:
-    """How well the states of a run are known.
+    """Accuracy of the states of a run.
 
     Args:
         error: of the last state, of each column against its largest value in the run; the largest. Infinite where one
             of the two runs has left the numbers.
         until: the first instant at which no digit holds any more [s]; None where some hold to the end.
-        parts: whether digits were lost at a steady pace until then: neighbouring motions part exponentially.
+        parts: True if digits were lost at a steady pace until then: neighbouring motions part exponentially.
     """
 
     error: float
@@ -255,7 +255,7 @@ class Accuracy:
 
     @property
     def digits(self) -> int:
-        """So many hold at the end."""
+        """Number of correct digits at the end."""
         return max(0, math.floor(-math.log10(max(self.error, BEST)))) if self.until is None else 0
 
     def as_dict(self) -> dict[str, float | None]:
@@ -274,7 +274,7 @@ def finer(tolerance: float) -> float:
 
 
 def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | None:
-    """How well a run is known by another of the same motion; None where they have no instant in common.
+    """Accuracy of a run by another of the same motion; None where they have no instant in common.
 
     Args:
         other: at the same instants.
@@ -298,7 +298,7 @@ def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | 
 
 
 def _part_steadily(errors: np.ndarray) -> bool:
-    """Whether errors grow exponentially: their digits go one after the other, not most of them at one instant."""
+    """True if errors grow exponentially: digits are lost one after the other, not most of them at one instant."""
     digits = np.log10(np.maximum.accumulate(errors[errors > 0]))
     if len(digits) < FEWEST:
         return False
