@@ -334,7 +334,7 @@ class ContactSignals:
         return Measured(self.functions.function((*values, *further)), self.functions.p)
 
     def _stands_apart(self, bound: EventFunction) -> bool:
-        """True if a bound follows from a balance that is solved by rank, is integrated, or depends on earlier states."""
+        """True if a bound follows from a balance solved by rank, is integrated, or depends on earlier states."""
         if bound.kind == "piece":
             return False
         contact = self.watch.contact(bound.owner)

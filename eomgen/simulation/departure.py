@@ -317,7 +317,7 @@ class Configurations:
         return sensed.arrival(march(sensed.rate, (abs(s), within), q, how=SEARCH, events=sensed.events))
 
     def is_regular(self, q: np.ndarray) -> bool:
-        """True if the gaps fix the rates of the sought coordinates; False at a branch point, also one found by rounding."""
+        """True if the gaps fix the rates of the sought coordinates; False at a branch point, rounded or not."""
         with np.errstate(all="ignore"):
             if not np.all(np.isfinite(self.direction(q))):
                 return False

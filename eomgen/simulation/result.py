@@ -281,7 +281,7 @@ class Trajectory:
 
     @property
     def contradiction(self) -> str:
-        """First check of energy, constraints or norms that fails in a run that reached its end, in words; "" if none."""
+        """First failed check of energy, constraints or norms in a run that reached its end, in words; "" if none."""
         if self.ended not in ("finished", "event"):
             return ""
         return next((f"{check.name}: {check.detail}" for check in self.watched if check.ok is False), "")
