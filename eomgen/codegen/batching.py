@@ -27,15 +27,15 @@ _SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 
 @dataclass(frozen=True)
 class Requested:
-    """What is asked of all runs alike.
+    """Options that are the same for all runs.
 
     Args:
         span: the first and the last instant [s].
-        instants: where states are wanted, ascending.
+        instants: at which states are wanted, ascending.
         rtol, atol: of one step.
         most_steps: of one run.
         stops: instants across which no step goes.
-        spheres: the places of quaternions in x.
+        unit_quaternions: the places of quaternions in x.
     """
 
     span: tuple[float, float]
@@ -49,7 +49,7 @@ class Requested:
 
 @dataclass(frozen=True)
 class FoundRuns:
-    """What came of runs: states runs x instants x n, which of STATUS, how far each came, its steps."""
+    """Results of runs: states, runs x instants x n; of each run its STATUS, the instant that it reached, its steps."""
 
     x: np.ndarray
     status: np.ndarray
@@ -123,7 +123,7 @@ class Batch:
 
     Args:
         program: the right-hand side.
-        defined: numbers that batch.c is told.
+        defined: constants of batch.c.
         order: of the power series by which steps go; None: they are those of DOP853.
     Raises:
         RunFailed, ToolMissing: as of `library`.
@@ -224,7 +224,7 @@ def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callabl
 
 
 def _aligned(count: int) -> np.ndarray:
-    """So many zeros at a place that vectors can be read from at once."""
+    """Array of zeros at an address that is aligned for vectors."""
     room = np.zeros(count + 8)
     first = -room.ctypes.data % 64 // 8
     return room[first : first + count]

@@ -1,4 +1,4 @@
-"""C text -> a library in memory: compiled once, kept by its content in the user's cache."""
+"""C text -> a library in memory: compiled once, cached by its content in the user's cache."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ SHARE = 0.5  # of the time that a user still waits, for one compilation: what ru
 LOOK = 0.1  # seconds between two looks at a compiler at work
 IDLE = 20  # seconds in which a compiler that does nothing has stopped; a loaded machine gives each its turn sooner
 ENDING = 2.0  # seconds in which what was killed is gone: on a loaded machine it takes its turn
-ENDED = "ZX"  # states of processes that only wait to be asked how they ended
+ENDED = "ZX"  # states of processes that have ended and only wait for their exit code to be read
 TURN = 0.05  # seconds of work that are something
 _GIVEN_UP: dict[str, str] = {}  # what took a compiler too long in this process, and why: nobody waits for it twice
 MOST_SAID = 2000  # characters of a compiler
@@ -42,10 +42,10 @@ IN_THE_TEXT = re.compile(r"program\.\w+:\d+:\d+")  # a place that a compiler nam
 
 @dataclass(frozen=True)
 class Compiler:
-    """What makes a library of a text.
+    """A compiler, which makes a library of a text.
 
     Args:
-        language: as it is told.
+        language: its name in messages.
         suffix: of the text's file.
         variable: of the environment, which names another command line.
         names: of the programs, the first that is there.
@@ -116,13 +116,13 @@ _EXTENSIONS = {"avx512f": "-mavx512f", "avx512dq": "-mavx512dq", "avx2": "-mavx2
 
 @cache
 def of_this_machine() -> Compiler:
-    """The C compiler, told which registers this machine has; every operation is rounded as without them."""
+    """The C compiler, with flags for the registers of this machine; every operation is rounded as without them."""
     flags = [flag for name, flag in _EXTENSIONS.items() if name in _processor()]
     return replace(C, flags=(*C.flags, *flags, "-fno-math-errno", "-ffp-contract=off"))
 
 
 def _processor() -> frozenset[str]:
-    """What the processor says that it can do; nothing where it does not say so."""
+    """Instruction sets that the processor reports; empty where it reports none."""
     if platform.machine() not in ("x86_64", "AMD64"):
         return frozenset()
     try:
@@ -167,7 +167,7 @@ def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDL
 
 
 def binary(text: str, by: Compiler) -> bytes:
-    """What the compiler makes of a text.
+    """Bytes of the library that the compiler makes of a text.
 
     Raises:
         ToolMissing, RunFailed: as of `library`.
@@ -176,7 +176,7 @@ def binary(text: str, by: Compiler) -> bytes:
 
 
 def _compiled_file(text: str, by: Compiler, quickly: bool) -> Path:
-    """What the compiler makes of a text, in the cache."""
+    """Library that the compiler makes of a text, as a file in the cache."""
     command, flags = by.command(), by.flags_of(text, quickly)
     key = "\0".join((text, *command, *flags, platform.platform(), platform.machine()))
     folder, name = disk_cache.cache_place(), disk_cache.digest(key.encode())
@@ -205,7 +205,7 @@ def function_of(made: ctypes.CDLL, name: str, by: Compiler = C) -> Any:
 
 
 def _compile(text: str, command: list[str], folder: Path, name: str, by: Compiler) -> Path:
-    """Compile beside the target and rename: another process sees all of the library or nothing."""
+    """Compile next to the target and rename: another process sees all of the library or nothing."""
     try:
         with beside(folder) as place:
             source, made = place / f"program{by.suffix}", place / "program.so"
@@ -229,7 +229,7 @@ def _compile(text: str, command: list[str], folder: Path, name: str, by: Compile
 
 
 def _works(by: Compiler) -> bool:
-    """Whether it makes something of a text of nothing."""
+    """True if the compiler makes a library of a trivial text."""
     try:
         return bool(_compiled_file(by.trial, by, quickly=True))
     except (RunFailed, ToolMissing):
@@ -261,7 +261,7 @@ def _ran(command: list[str], by: Compiler, place: Path) -> tuple[int, str]:
 
 
 def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
-    """What a compiler says until it ends.
+    """Output of a compiler until it ends.
 
     Raises:
         TimeoutError: why nobody waits for it any longer.
@@ -275,7 +275,7 @@ def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
         except subprocess.TimeoutExpired:
             now = time.monotonic()
         work = _work_of(started.pid)
-        if work is None:  # nobody tells: what passes on the clock stands for it
+        if work is None:  # not reported by the system: the time on the clock stands for it
             work = now - begun
         if work >= worked + TURN:
             worked, since = work, now
@@ -288,7 +288,7 @@ def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
 
 
 def _work_of(session: int) -> float | None:
-    """CPU seconds of all processes of a session, ended ones included; None where the system does not tell."""
+    """CPU seconds of all processes of a session, ended ones included; None where the system does not report them."""
     ticks = [sum(map(int, fields[11:15])) for fields in _stats_of(session)]
     return sum(ticks) / os.sysconf("SC_CLK_TCK") if ticks else None
 
@@ -311,12 +311,12 @@ def _end(started: subprocess.Popen[str]) -> None:
 
 
 def _is_running(session: int) -> bool:
-    """Whether a process of a session has not ended, as far as the system tells."""
+    """True if a process of a session has not ended, as far as the system reports it."""
     return any(fields[0] not in ENDED for fields in _stats_of(session))
 
 
 def _stats_of(session: int) -> Iterator[list[str]]:
-    """What the system tells of each process of a session, from its state on; nothing where it does not tell."""
+    """Fields that the system reports of each process of a session, from its state on; none where it reports nothing."""
     for stat in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError, IndexError):
             fields = stat.read_text().rpartition(")")[2].split()

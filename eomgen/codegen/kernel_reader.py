@@ -88,7 +88,7 @@ def _parsed() -> dict[str, ast.FunctionDef]:
 
 @cache
 def _called_from(entry: str) -> tuple[str, ...]:
-    """What a function calls, and what that calls, before itself."""
+    """Names of the functions that a function calls, directly or indirectly, before its own name."""
     calls = [x.func.id for x in ast.walk(_parsed()[entry]) if isinstance(x, ast.Call) and isinstance(x.func, ast.Name)]
     before = [name for call in calls if call in _parsed() for name in _called_from(call)]
     return tuple(dict.fromkeys([*before, entry]))

@@ -1,8 +1,8 @@
 """The algorithms with loops that emitted code calls, written once: every language prints them, Python runs them.
 
-A function here is made of what a lowered program has: a name for a value that stays, arrays that change (a number that
-changes is an array of one), `for` over range, `if`, calls, `return`. The kinds of its arguments are named; sizes and
-lists are constants of each program; arithmetic is + - * /, so that it runs over any scalar.
+A function here is made of the statements of emitted programs: a name for a value that stays, arrays that change (a
+number that changes is an array of one), `for` over range, `if`, calls, `return`. The kinds of its arguments are named;
+sizes and lists are constants of each program; arithmetic is + - * /, so that it runs over any scalar.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def solve(M: Reals, J: Reals, f: Work, g: Work) -> None:
 
 
 def solve_factors(M: Reals, J: Reals, L: Work, weight: Work, mobility: Work, Y: Work, S: Work, order: Places) -> None:
-    """What any f, g are solved by.
+    """Factors by which the system is solved for any f, g.
 
     M = L D L^T,  Y = L^-1 J^T,  S = Y^T D^-1 Y
 
@@ -352,7 +352,10 @@ def eliminated(w: Int, S: Work, order: Places) -> Int:
 
 
 def cleared(w: Int, c: Int, S: Work, column: Work) -> None:
-    """Column c of S below the diagonal, 0 beside what is not zero: a row that waits meets all that come after it."""
+    """Sets to 0 the entries of column c of S below the diagonal that are not in its pattern.
+
+    A row that waits for its pivot meets all rows that come after it, so that others may have been filled.
+    """
     first = NEXT[w * (K + 1) + c]
     last = NEXT[w * (K + 1) + c + 1]
     for e in range(first, last):

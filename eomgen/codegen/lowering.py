@@ -1,6 +1,6 @@
 """Program, Language -> a program's functions in the small language, its scalars in the language's own text.
 
-Program, Language -> Lowered: a program's functions in the small language, its scalars in the language's words.
+Program, Language -> Lowered: a program's functions as statements, its scalars in the text of the language.
 
 constants(p) -> c            what the parameters alone determine, and the reciprocals that are multiplied by
 evaluate(t, x, p, c, inputs) -> the outputs
@@ -62,7 +62,7 @@ class Statements:
     bodies: tuple[Function, ...]
 
     def texts(self, language: Language) -> list[str]:
-        """What the language lacks and the tables, as one text; then each function."""
+        """Texts of the operations that the language lacks and of the tables, in one; then of each function."""
         heads = [language.defined[op] for op in sorted(self.ops & language.defined.keys())]
         heads += map(language.holds, self.tables)
         functions = ["\n".join(language.defines(f)) for f in (*self.kernels, *self.bodies)]
@@ -98,7 +98,7 @@ def _functions(layout: Layout) -> list[Function]:
 
 
 def _constants(layout: Layout) -> tuple[Statement, ...]:
-    """What the parameters alone determine."""
+    """Statements for the constants that the parameters alone determine."""
     writer = ExpressionWriter(layout.called, layout.language.number, layout.names, {}, "v")
     read = stripped([*(a for x in layout.hoisted for a in x.args), *layout.inverted])
     lines: list[Statement] = [*_loads(layout, read), *_lets(writer, layout.hoisted, layout.once)]
@@ -215,7 +215,7 @@ def _computed(layout: Layout, writer: ExpressionWriter, nodes: tuple[Node, ...],
 
 
 def _part(layout: Layout, i: int) -> tuple[Statement, ...]:
-    """What one part computes; what is read elsewhere goes into the array."""
+    """Statements of one part; values that other parts read go into the array."""
     nodes, places = layout.parts.nodes[i], layout.parts.places
     own = frozenset(nodes)
     writer = layout.writer({x: layout.between(x) for x in places if x not in own})
@@ -268,7 +268,7 @@ def _lets(writer: ExpressionWriter, nodes: Iterable[Node], once: frozenset[Node]
 # Program, Language -> Layout: what is computed where, what its text reads, and by which names.
 #
 # A constant that is divided by at every call is stored as its reciprocal. A long program is cut into parts where the
-# language asks for it: a compiler's time grows faster than the length of one function. What one part computes and
+# language sets a limit: a compiler's time grows faster than the length of one function. What one part computes and
 # another reads stands in an array between them.
 
 
@@ -316,7 +316,7 @@ class Layout:
 
     @cached_property
     def stretches(self) -> tuple[tuple[Node, ...], ...]:
-        """What is computed at every call before the first solve, from each to the next, and after the last."""
+        """Nodes that are computed at every call before the first solve, from each to the next, and after the last."""
         statements = self.program.statements
         at = [-1, *(k for k, s in enumerate(statements) if type(s) is Solve), len(statements)]
         made = tuple(_nodes(statements[a + 1 : b]) for a, b in pairwise(at))
@@ -324,7 +324,7 @@ class Layout:
 
     @property
     def is_long(self) -> bool:
-        """Whether it is cut into parts."""
+        """True if the program is cut into parts."""
         return self.language.longest is not None and len(self.moving) > self.language.longest
 
     def _scheduled(self, stretches: Sequence[tuple[Node, ...]]) -> tuple[tuple[Node, ...], ...]:
@@ -382,7 +382,7 @@ class Layout:
         return dict.fromkeys(x for x in divided if x in fixed)
 
     def reads(self, nodes: Iterable[Node]) -> list[Scalar]:
-        """What the text of nodes reads, computed at every call: a reciprocal is multiplied by."""
+        """Scalars that the text of nodes reads at every call; a stored reciprocal takes the place of its divisor."""
         return [a for x in nodes for a in (x.args[:1] if x.op == "div" and x.args[1] in self.inverted else x.args)]
 
     @cached_property
@@ -437,7 +437,7 @@ class Layout:
         return (("t", REAL), ("x", READ), *a, ("p", READ))
 
     def writer(self, more: Mapping[Node, str] | None = None, letter: str = "v") -> ExpressionWriter:
-        """For a body that reads the array of constants."""
+        """Writer of expressions for a body that reads the array of constants."""
         kept = {x: self.language.place("c", k) for k, x in enumerate(self.kept)}
         inverse = {x: self.language.place("c", len(kept) + k) for k, x in enumerate(self.inverted)}
         return ExpressionWriter(

@@ -58,7 +58,7 @@ class Solve:
 
     @property
     def kind(self) -> Literal["dense", "kkt"]:
-        """With closing rows "kkt", without "dense"; a small system without them is written out and is no `Solve`."""
+        """Kind of the system: "kkt" with closing rows, "dense" without; a small one without them is no `Solve`."""
         return "kkt" if self.border else "dense"
 
     @property
@@ -69,7 +69,7 @@ class Solve:
 
     @cached_property
     def plain(self) -> Zeros:
-        """What may not be zero in the factors of the matrix."""
+        """Entries that may not be zero in the factors of the matrix."""
         return zeros_of(self.matrix, self.border)
 
     @property
@@ -79,7 +79,7 @@ class Solve:
 
     @property
     def places(self) -> tuple[frozenset[int], frozenset[int]]:
-        """Where the kernels read the matrix, n x n, and the border, k x n: what may not be zero in its factors."""
+        """Places at which the kernels read the matrix, n x n, and the border, k x n: those not zero in its factors."""
         n, own = len(self.matrix), self.plain
         M = {j * n + i for j, rows in enumerate(own.partners) for i in (j, *rows)}
         return frozenset(M), frozenset(m * n + i for m, row in enumerate(own.reach) for i in row)
@@ -153,7 +153,7 @@ class Program:
 
     @property
     def moving(self) -> tuple[Node, ...]:
-        """What a caller gives anew at every call beside t and inputs: x, and a where it is an argument."""
+        """Arguments that change at every call in addition to t and inputs: x, and a where it is an argument."""
         return self.states + self.accelerations
 
 
@@ -195,7 +195,7 @@ def _explicit_accelerations(equations: EquationsOfMotion) -> list[ScalarRow]:
 
 
 def is_short(equations: EquationsOfMotion) -> bool:
-    """Whether M is factored by operations that are written out."""
+    """True if M is factored by operations that are written out."""
     return factorization.operation_count(equations.M) <= UNROLLED_AT_MOST
 
 
@@ -312,7 +312,7 @@ _CONSTANT, _FIXED, _MOVING = 0, 1, 2  # what a node depends on at most: exact nu
 
 
 def _depths(nodes: Iterable[Node], parameters: frozenset[Node]) -> dict[Node, int]:
-    """What each node depends on at most; the nodes come arguments first."""
+    """Depth of each node: constant, of parameters alone, or moving; the nodes come arguments first."""
     depth: dict[Node, int] = {}
     for x in nodes:
         if x.op == "symbol":
@@ -331,7 +331,7 @@ def _is_computed(x: Node, depth: Mapping[Node, int]) -> bool:
 
 
 def _scheduled(moving: Sequence[Node], rounds: Sequence[Sequence[Solve]]) -> tuple[ProgramStatement, ...]:
-    """In index order, but what the solves of a round need, then these, then the next; the rest last."""
+    """Statements in index order, but for each round of solves the nodes that it needs come first; the rest last."""
     statements: list[ProgramStatement] = []
     done: set[Node] = set()
     for solves in rounds:
@@ -356,7 +356,7 @@ def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence
 #
 # A long straight program has far more values that wait than a machine has registers: most are stored and loaded
 # again. Here a statement comes soon after the newest of its arguments; before them comes what calls functions, with
-# what these need, for no value stays in a register across a call. How much the place of the arguments weighs beside
+# what these need, for no value stays in a register across a call. How much the place of the arguments weighs against
 # the order of making is tried, and how often values go to memory and back is counted: of all orders the best is
 # taken, that of making among them. What is computed is the same, bit for bit.
 
@@ -385,7 +385,7 @@ def scheduled(needs: Needs, later: Set[Node]) -> Sequence[Node]:
 
 
 def _users(needs: Needs) -> dict[Node, list[Node]]:
-    """Of each statement those that read it."""
+    """{statement: the statements that read it}."""
     found: dict[Node, list[Node]] = {x: [] for x in needs}
     for x, needed in needs.items():
         for a in needed:
@@ -398,10 +398,10 @@ def _mean(places: Sequence[int]) -> float:
 
 
 def _close_together(needs: Needs, of: Callable[[Sequence[int]], float], weight: float) -> list[Node]:
-    """What calls take, then each as soon as its arguments are there, those of the newest first.
+    """Order of the statements: arguments of calls first, then each soon after the newest of its arguments.
 
     Args:
-        of: the places of the arguments, how new they are.
+        of: places of the arguments -> one place that stands for them.
     """
     rank, early = {x: k for k, x in enumerate(needs)}, set[Node]()
     for x in reversed(list(needs)):
@@ -429,7 +429,7 @@ def _close_together(needs: Needs, of: Callable[[Sequence[int]], float], weight: 
 
 
 def traffic(order: Sequence[Node], needs: Needs, later: Set[Node]) -> int:
-    """How many loads and stores it takes, where that value leaves the registers which is used last (Belady)."""
+    """Number of loads and stores, if the value whose next use is farthest leaves the registers (Belady's rule)."""
     place = {x: k for k, x in enumerate(order)}
     again = {x: sorted((place[u] for u in users), reverse=True) for x, users in _users(needs).items()}
     for x in later & again.keys():
@@ -465,7 +465,7 @@ OWN_WORDS = frozenset(
     "rhs reactions inverse outputs matrices jacobian".split()
 )
 RESERVED = MATH_WORDS | OWN_WORDS
-# our own variables, functions and macros, and what C keeps for itself
+# our own variables, functions and macros, and reserved names of C
 LOCAL = re.compile(
     r"[vi][0-9]+|samples[0-9]+|.*part[0-9]+|solve.*|.*_(rhs|reactions|inverse|outputs|matrices|jacobian).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
 )
@@ -506,7 +506,7 @@ def identifier(name: str) -> str:
 
 
 def stem_of(name: str) -> str:
-    """What files and functions of a model are called by, with `_rhs` and the like after it."""
+    """Stem of the names of a model's files and functions; `_rhs` and the like follow it."""
     return identifier(name)[:LONGEST_STEM]
 
 
@@ -524,7 +524,7 @@ def _plain(letter: str) -> str:
     return bare if bare.isascii() and bare.isalnum() else f"u{ord(letter):04x}"
 
 
-# -------- spheres ---------------------------------------------------------------------------------------------
+# -------- unit quaternions ------------------------------------------------------------------------------------
 # Program -> the places in its state of quaternions, and states in which these have norm 1.
 
 
@@ -532,7 +532,7 @@ QuaternionPlaces = tuple[int, ...]
 
 
 def unit_quaternions_of(program: Program) -> tuple[QuaternionPlaces, ...]:
-    """Of every quaternion among the states, the places of its four numbers."""
+    """Places of the four numbers of every quaternion among the states."""
     place = {node: k for k, node in enumerate(program.states)}
     unit_quaternions = program.symbols.graph.unit_quaternions
     return tuple(tuple(place[x] for x in symbols) for symbols in unit_quaternions if all(x in place for x in symbols))

@@ -1,4 +1,4 @@
-"""Programs beside the right-hand side: outputs, inverse dynamics, matrices, reactions."""
+"""Programs in addition to the right-hand side: outputs, inverse dynamics, matrices, reactions."""
 
 from __future__ import annotations
 
@@ -28,8 +28,8 @@ from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, ScalarRows,
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.factorization import factor_solution
 
-# -------- asked outputs ---------------------------------------------------------------------------------------
-# System -> what its model asks in [outputs] as functions of the state, for emitted code.
+# -------- requested outputs -----------------------------------------------------------------------------------
+# System -> the [outputs] of its model as functions of the state, for emitted code.
 
 
 @dataclass(frozen=True)
@@ -67,7 +67,7 @@ def outputs_of_state(system: System) -> RequestedOutputs:
 def _of_an_instant(output: Output) -> str:
     """Why an output is no function of the state, "" where it may be one."""
     if output.at is not None or output.from_ is not None or output.side is not None or output.event is not None:
-        return "it is asked at an instant"
+        return "it is requested at an instant"
     if requests_of(output.value, SMALL_MOTIONS):
         return "it is of the linearized system"
     return "it is of a whole run" if requests_of(output.value, OF_A_RUN) else ""
@@ -90,17 +90,17 @@ class InverseFunction:
     function: RightHandSide
 
     def __call__(self, t: float, x: Any, a: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
-        """At one state [N, N m]."""
+        """Values at one state [N, N m]."""
         return self.function(t, [*x, *a], p, inputs)
 
     def many(self, t: Any, x: Any, a: Any, p: Any, inputs: Any = ()) -> np.ndarray:
-        """At n states at once: t n or one number, x n x states, a n x speeds -> n x names."""
+        """Values at n states at once: t n or one number, x n x states, a n x speeds -> n x names."""
         return self.function.many(t, np.hstack([x, a]), p, inputs)
 
 
 @dataclass(frozen=True)
 class InverseDynamics:
-    """What moves a system with given accelerations: A tau + J^T lam = M a + c - Q.
+    """Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q.
 
     Args:
         graph: the same as graph scalars.
@@ -126,7 +126,7 @@ class InverseDynamics:
         """{actuator: its force or torque} as sympy expressions in q, u, a, t, parameters and inputs.
 
         Raises:
-            DerivationError: too many constraints hang together for formulas, or they share their forces.
+            DerivationError: too many coupled constraints for formulas, or indeterminate constraint forces.
         """
         from eomgen.symbolic.print.sympy_form import to_sympy
 
@@ -200,7 +200,7 @@ def matrices_of(equations: EquationsOfMotion) -> dict[str, ScalarRows]:
 
 @dataclass(frozen=True)
 class RateSlopes:
-    """Of the right-hand side.
+    """Slopes of the right-hand side.
 
     Args:
         blocks: A = d x'/d x and, where there are inputs, B = d x'/d inputs.
@@ -247,14 +247,14 @@ def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> RateSlopes:
 
 
 def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
-    """What A and B are slopes in."""
+    """Variables with respect to which A and B are derivatives, by the name of the block."""
     symbols = equations.symbols
     columns: dict[str, tuple[Node, ...]] = {"A": (*symbols.q, *symbols.u)}
     return columns | ({"B": tuple(symbols.inputs.values())} if symbols.inputs else {})
 
 
 def _solved(equations: EquationsOfMotion) -> RateSlopes:
-    """By the `Solve` of the motion, and one of its right sides for each column that is not zero."""
+    """Slopes by the `Solve` of the motion, with one more right-hand side for each column that is not zero."""
     symbols, rates, motion = equations.symbols, kinematic_rates(equations), bordered(equations)
     left = dict(zip((*symbols.a, *symbols.lam), (x for rows in equations.residual for x in rows), strict=True))
     solves: dict[Node, Solve] = {}
@@ -306,16 +306,16 @@ class ReactionFunction:
     function: RightHandSide
 
     def __call__(self, t: float, x: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
-        """At one state [N, N m]."""
+        """Values at one state [N, N m]."""
         return self.function(t, x, p, inputs)
 
     def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
-        """At n states at once: n x names."""
+        """Values at n states at once: n x names."""
         return self.function.many(t, x, p, inputs)
 
 
 def determinate(reactions: Reactions) -> dict[str, Scalar]:
-    """{name as an output asks for it: value in q, u and the accelerations}; what has no single value is left out."""
+    """{name as in an output: value in q, u and the accelerations}; a reaction without a single value is left out."""
     found: dict[str, Scalar] = {}
     for named in named_reactions(reactions.balance):
         try:

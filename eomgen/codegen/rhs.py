@@ -113,7 +113,7 @@ class RightHandSide:
 
     @cached_property
     def without_series(self) -> str:
-        """What of it has no power series, as `without_series` of its program."""
+        """First part of its program without a power series; "" if all have one."""
         return without_series(self.program)
 
     def series(self, order: int) -> Series | None:
@@ -128,7 +128,7 @@ class RightHandSide:
         return target_named(self.target).text(self.program, "eomgen", RHS)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """As its program, which is compiled where the pickle is read: in C where there is a compiler."""
+        """Pickles its program, which is compiled again where the pickle is read: in C where there is a compiler."""
         return _compiled_again, (self.program, None if self.target == "c" else self.target, self.x0, self.p0)
 
     def __repr__(self) -> str:
@@ -175,7 +175,7 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
 
 
 def in_c(make: Callable[[], _Made], otherwise: str) -> _Made | None:
-    """What a compiler makes; None where there is none, or it fails: that, and what is done otherwise, is said once."""
+    """Result of a compiler; None where there is none, or it fails: that, and what is done instead, is said once."""
     try:
         return make()
     except (RunFailed, ToolMissing) as error:

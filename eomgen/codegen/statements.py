@@ -1,4 +1,4 @@
-"""What every language can say, and how one says it: statements over text of scalars -> lines of a language.
+"""Statements that every language has, over text of scalars -> lines of a language.
 
 A name for a value that stays, an array and what is put into it, a table, `for` over a range, `if`, a call, `return`:
 no more. A number that changes is an array of one. Indices count from 0.
@@ -52,7 +52,7 @@ class Array:
 
 @dataclass(frozen=True)
 class For:
-    """For name = first, ..., last - 1; from the end where it goes down."""
+    """Loop over name = first, ..., last - 1; from the end where it goes down."""
 
     name: str
     first: str

@@ -35,7 +35,7 @@ _ANALYTIC = frozenset((*_PAIRS, *_PARTS, "add", "sub", "mul", "div", "pow", "sqr
 
 
 def without_series(program: Program) -> str:
-    """What of a program has no power series here, by its name in models; "" where all has one."""
+    """First part of a program without a power series here, by its name in models; "" where all have one."""
     for statement in (*program.statements, *program.preamble):
         if type(statement) is Assign:
             x = statement.node
@@ -156,7 +156,7 @@ class _Writer:
         self.rest += [(None, rest)] if rest else []
 
     def row(self, key: object) -> str:
-        """Where a series lies."""
+        """Index of the row of a series."""
         return str(self.rows.setdefault(key, len(self.rows)))
 
     def define(self, key: object, name: str, first: str, rest: str) -> None:
@@ -169,12 +169,12 @@ class _Writer:
         self.rest += [(key, f"SERIES_PUT({{}}, j, {name})"), (("rate", key), f"SERIES_PUT({{}}, j, whole*{name})")]
 
     def key(self, x: Scalar) -> object:
-        """By what its row is known."""
+        """Key of the row of a scalar's series."""
         x = self.same.get(x, x) if type(x) is Node else x
         return (x.op, x.args[0]) if type(x) is Node and x.op in _PAIRS else x
 
     def moves(self, x: Scalar) -> bool:
-        """Whether more than the first coefficient may not be zero."""
+        """True if more than the first coefficient may not be zero."""
         key = self.key(x)
         return key in self.named or (type(key) is Node and key.op == "neg" and self.moves(key.args[0]))
 
@@ -183,7 +183,7 @@ class _Writer:
         return self.texts.factor(x) if self.moves(x) else self.number(0)
 
     def of(self, x: Scalar) -> str:
-        """Where the series of what moves lies."""
+        """Row of the series of a scalar that moves."""
         key = self.key(x)
         if key not in self.named:  # what is negative has none yet
             text = self.texts.factor(x)
@@ -191,18 +191,18 @@ class _Writer:
         return self.row(key)
 
     def rate(self, x: Scalar) -> str:
-        """Where the i x_i lie."""
+        """Row of the numbers i x_i."""
         self.of(x)
         return self.row(("rate", self.key(x)))
 
     @property
     def summed(self) -> int:
-        """How many sums there are, in whole vectors of them."""
+        """Number of sums, rounded up to whole vectors."""
         return -(-max(len(self.sums), 1) // WIDTH) * WIDTH
 
     @property
     def summed_at(self) -> int:
-        """Where the series that they are over lie, in whole vectors too."""
+        """Place at which the sums begin, after the series, rounded up to whole vectors."""
         return -(-((self.order + 1) * len(self.rows) + self.kept) // WIDTH) * WIDTH
 
     def below(self, a: str, b: str) -> str:
@@ -384,8 +384,8 @@ class _Writer:
 # Program -> the power series of its motion, compiled, and the order to which they go.
 
 
-LEAST, MOST = 3, 20  # orders: the highest is what 1e-16 asks for
-ALONE = 24.0  # products beside its sums that a coefficient takes where one motion is followed: measured at equal error
+LEAST, MOST = 3, 20  # orders: the highest is what 1e-16 needs
+ALONE = 24.0  # products in addition to its sums that a coefficient takes where one motion is followed: measured
 
 
 @dataclass(frozen=True)
@@ -395,7 +395,7 @@ class Series:
     Args:
         address: of that which gives the coefficients; along: of that which gives x and x' by them.
         size: the first works in so many numbers.
-        kept: what keeps it there.
+        kept: object that keeps it alive.
     """
 
     address: int
@@ -424,8 +424,8 @@ def series_of(program: Program, order: int) -> Series | None:
 def order_for(rtol: float, beside: float = 0.0) -> int:
     """The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least.
 
-    A step goes as far as exp(ln(rtol)/p), and takes p^2 products in its sums, and beside them p times so much as
-    `beside` of them: then 1/p + 1/(p + beside) = -ln(rtol)/p^2, where nothing is beside them p = -ln(rtol)/2.
+    A step goes as far as exp(ln(rtol)/p), and takes p^2 products in its sums, and in addition p times so much as
+    `beside` of them: then 1/p + 1/(p + beside) = -ln(rtol)/p^2, which is p = -ln(rtol)/2 where `beside` is 0.
 
     Source: Jorba & Zou, Experimental Mathematics 14 (2005), 99-117.
     """

@@ -80,7 +80,7 @@ def vectors(
 
 
 def _special(program: Program, like: TestVector, x0: Any) -> list[TestVector]:
-    """Where pieces and singular positions are met: the start itself, and at rest there; without one, all zero."""
+    """Vectors at states where pieces and singular positions are met: the start, and at rest there; or all zero."""
     x = tuple([0.0] * len(program.states) if x0 is None else [float(v) for v in x0])
     nq = len(program.symbols.q)
     states = dict.fromkeys([x, (*x[:nq], *(0.0 for _ in x[nq:]))])
@@ -121,7 +121,7 @@ def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
 
 
 def _contradicts(program: Program, vector: TestVector) -> bool:
-    """Whether J a = g has no solution there: one of two dependent rows is left open by the accelerations."""
+    """True if J a = g has no solution there: one of two dependent rows is left open by the accelerations."""
     solves = [s for s in program.statements if type(s) is Solve]
     if not any(solve.border for solve in solves):
         return False
@@ -138,7 +138,7 @@ def _contradicts(program: Program, vector: TestVector) -> bool:
 
 
 def _is_left_open(solve: Solve, entries: Sequence[Any], found: Mapping[Node, Any]) -> bool:
-    """Whether the accelerations of a solution leave a row of J a = g open."""
+    """True if the accelerations of a solution leave a row of J a = g open."""
     _, J, _, g = _blocks(solve, entries)
     n = len(solve.matrix)
     a = [found[x] for x in solve.unknowns[:n]]
@@ -174,7 +174,7 @@ def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestV
 
 
 def _exact(program: Program, state: TestVector) -> dict[Node, Fraction]:
-    """What a vector gives to a program, as the exact values of its doubles."""
+    """Arguments that a vector gives to a program, as the exact values of its doubles."""
     symbols = program.symbols
     arguments = [symbols.t, *program.moving, *symbols.parameters.values()]
     numbers = [state.t, *state.x, *state.a, *state.p]
@@ -192,7 +192,7 @@ def _right(program: Program, exact: dict[Node, Fraction]) -> tuple[float, ...]:
 
 
 def _is_partial_nearby(program: Program, exact: dict[Node, Fraction], result: Sequence[float]) -> bool:
-    """Whether the same outputs have no value a little before and after: not at an edge, nor by a division by zero."""
+    """True if the same outputs have no value a little before and after: not at an edge, nor by a division by zero."""
     missing = [value != value for value in result]
     near = ({node: x * (1 + away) + away for node, x in exact.items()} for away in (NEAR, -NEAR))
     return all([value != value for value in _right(program, state)] == missing for state in near)
@@ -207,7 +207,7 @@ GROWN = 8  # times what the arguments' rounding does: that of all operations
 
 
 def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[TestVector, ...]:
-    """The vectors with the tolerances of single precision, measured at states that rounding cannot tell apart."""
+    """The vectors with the tolerances of single precision, measured at states that differ by rounding only."""
     rhs, rng = compiled(program, "numpy"), random.Random(1)
 
     def beside(values: Sequence[float]) -> list[float]:
@@ -262,10 +262,10 @@ def texts_of(
 
     Args:
         name: of the functions: the model file's stem; what is no identifier is made one.
-        emitted: the right-hand side first, then reactions and whatever else is asked for.
+        emitted: the right-hand side first, then reactions and whatever else is requested.
         targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
         notes: what is not in the code, and why, a line each.
-        uses: by language, how files are used that lie beside its own.
+        uses: by language, how further files are used.
     """
     answers, stem = vectors_text(emitted), stem_of(name)
     texts: dict[str, FileContent] = {}
@@ -283,7 +283,7 @@ def texts_of(
 def readme(
     target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequence[str], uses: Sequence[str] = ()
 ) -> str:
-    """What lies beside it: the functions, the order of their arguments, how they are used and tested."""
+    """README of the emitted files: the functions, the order of their arguments, their use and test."""
     lines = [f"# {stem}: {target.about}", ""]
     for line in (*target.use, *uses):
         lines.append(f"    {line.format(stem=stem)}")
@@ -321,7 +321,7 @@ def vectors_text(emitted: Sequence[Emitted]) -> str:
 
 
 def _other(program: Program, reported: Description) -> list[str]:
-    """The vectors of a function beside the right-hand side."""
+    """The vectors of a function other than the right-hand side."""
     own: dict[str, object] = {"names": reported.outputs}
     if reported.blocks:
         meant = reported.columns or ((),) * len(reported.blocks)

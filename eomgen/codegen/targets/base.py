@@ -1,7 +1,4 @@
-"""What a language gives: the text of a program, its files, and that text made callable.
-
-What a target gives: the text of a program in its language, and that text made callable.
-"""
+"""Target languages: the text of a program, its files, and that text made callable."""
 
 from __future__ import annotations
 
@@ -22,7 +19,7 @@ from eomgen.symbolic.expression.formula import NAMES
 
 @dataclass(frozen=True)
 class Address:
-    """Where a compiled right-hand side and its constants lie; `kept` keeps them there.
+    """Addresses of a compiled right-hand side and its constants; `kept` keeps them alive.
 
     Args:
         evaluate: of the function (t, x, p, c, inputs, dx).
@@ -74,7 +71,7 @@ class TestVector:
 
 @dataclass(frozen=True)
 class Role:
-    """What a program is for, and what its text is called.
+    """Role of a program, and the names in its text.
 
     Args:
         name: of the files and the main function: NAME_rhs.
@@ -102,7 +99,7 @@ REACTIONS = Role(
 )
 
 
-OUTPUTS = Role("outputs", "_outputs", "out", "out = f(t, x, p), what the model asks in [outputs], in SI")
+OUTPUTS = Role("outputs", "_outputs", "out", "out = f(t, x, p), the model's [outputs], in SI")
 MATRICES = Role(
     "matrices",
     "_matrices",
@@ -120,17 +117,17 @@ JACOBIAN = Role("jacobian", "_jacobian", "out", "out = f(t, x, p), A = d x'/d x 
 
 @dataclass(frozen=True)
 class Description:
-    """What emitted files say about themselves.
+    """Description of a program in its emitted files.
 
     Args:
         title: the model's name.
         origin: who made the file from what, one line.
         remarks: of the name of an argument or output: its unit and what it is.
         vectors: right answers, for the self-test.
-        role: what the program is for.
+        role: of the program.
         outputs: names of the outputs, () where they are in the order of x.
         blocks: (name, rows, columns) of matrices that are the outputs, one after the other, each row after row.
-        columns: of each block what its columns stand for; () of none, or of all.
+        columns: of each block the names of its columns; () where it has none, or all.
     """
 
     title: str
@@ -192,12 +189,12 @@ class Target:
     single: Single | None = None
 
     def writes(self, role: Role) -> bool:
-        """Whether a function is among its files."""
+        """True if a function is among its files."""
         return self.roles is None or role.name in self.roles
 
 
 Many = Callable[[np.ndarray, np.ndarray, np.ndarray, "np.ndarray | None"], np.ndarray]
-"""(t n, x n x states with a beside it, p, inputs None or n x inputs) -> n x outputs."""
+"""(t n, x n x states with a after it, p, inputs None or n x inputs) -> n x outputs."""
 
 
 def functions_by(many: Many) -> Functions:
@@ -256,10 +253,10 @@ class FileForm:
         module: of the functions of a program.
         path: of the file in which they stand; `test_path` of its test's, with "" there is none.
         top: what stands around {text}, those functions, in a file of their own.
-        told: a line of the head.
+        reported: a line of the head.
         prefix: of the names of the functions that are not the main one.
-        given: words that hang on whether accelerations are an argument: where they are, and where they are not.
-        fixed: words that hang on nothing.
+        given: words that depend on whether accelerations are an argument: where they are, and where they are not.
+        fixed: words that are always the same.
         marked: (mark, text): words that are there only where the functions have a mark.
         body: words that are made of the functions.
         named: the lines that hold names of x, p and inputs, by the three keys; or one line with {key}, {count}, and the
@@ -296,7 +293,7 @@ class FileForm:
     finished: Callable[[str], str] = str
 
     def words(self, program: Program, stem: str, role: Role) -> dict[str, Any]:
-        """What stands in templates: names, and how many there are of each."""
+        """Values that templates take: names, and how many there are of each."""
         symbols, without = program.symbols, not program.accelerations
         counts = {
             "states": len(program.states),
@@ -338,7 +335,7 @@ class FileForm:
         return self.written(*self.statements(program, stem, role, remarks), [role.about])
 
     def written(self, made: Statements, words: Mapping[str, Any], head: Sequence[str] = ()) -> str:
-        """Lowered functions with what stands around them."""
+        """Emitted functions with the text around them."""
         own = self.body(made) if self.body else {"functions": "\n\n".join(made.texts(self.language))}
         there = {word: text * (mark in own["functions"]) for word, (mark, text) in self.marked.items()}
         return self.finished(self.module.format(**{"head": self.head(head), **words, **own, **there}))
@@ -379,11 +376,11 @@ class FileForm:
         return {self.path_of(program, stem, reported.role): text, **test}
 
     def path_of(self, program: Program, stem: str, role: Role) -> str:
-        """Where a function stands."""
+        """Path of the file of a function."""
         return self.path.format(**self.words(program, stem, role))
 
     def tested(self, program: Program, stem: str, reported: Description) -> str:
-        """What holds the function against its test vectors."""
+        """Text of the test that compares a function with its test vectors."""
         words = self.words(program, stem, reported.role)
         lines = "\n".join(self.checked(v, words) for v in reported.vectors)
         return self.finished(self.test.format(**words, lines=lines))
@@ -501,11 +498,11 @@ SUFFIXED = (r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+|\.\d+(?:e[+-]?\d+)?
 
 @dataclass(frozen=True)
 class SingleWords:
-    """What becomes of the words of a language; what they became stays as it is.
+    """Replacements of words of a language in single precision; a replaced text is not replaced again.
 
     Args:
         changes: (pattern, replacement), one after the other.
-        kept: remarks and strings.
+        kept: pattern of the remarks and strings, which stay.
         paths: of the files that are changed, a pattern.
     """
 

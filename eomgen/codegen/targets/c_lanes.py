@@ -48,7 +48,7 @@ LANES: Language = replace(
 
 @cache
 def text_of(name: str) -> str:
-    """One of the fixed texts that lie beside this package's modules."""
+    """One of the fixed texts that are files of this package."""
     from importlib import resources
 
     return resources.files("eomgen.codegen").joinpath(name).read_text(encoding="utf-8")
@@ -63,7 +63,7 @@ def lanes_text(program: Program) -> tuple[int, str]:
 
 
 def constants_of(program: Program) -> int:
-    """How many numbers the parameters determine."""
+    """Number of the constants that the parameters determine."""
     return statements(program, C, "dx", "eomgen_").constants
 
 
@@ -116,7 +116,7 @@ RUN_USE = "cc -O2 -D{stem}_MAIN {stem}_run.c {stem}_rhs.c -lm -o {stem}_run && .
 def integrator_files(
     stem: str, program: Program, start: Sequence[float] | None, values: Sequence[float] | None, rtol: float
 ) -> dict[str, str]:
-    """The files beside NAME_rhs.c and NAME_rhs.h.
+    """The files in addition to NAME_rhs.c and NAME_rhs.h.
 
     Args:
         start, values: of the states and parameters in `main`, None where one is missing.

@@ -47,7 +47,7 @@ from fmpy.validation import validate_fmu
 
 HERE = pathlib.Path(__file__).parent
 PATH = str(HERE / "{stem}.fmu")
-TOLD = json.loads((HERE / "test_vectors.json").read_text(encoding="utf-8"))
+EXPECTED = json.loads((HERE / "test_vectors.json").read_text(encoding="utf-8"))
 
 
 def test_the_fmu_is_valid():
@@ -59,7 +59,7 @@ def test_the_rates_and_outputs_are_those_of_the_test_vectors():
     states, parameters, inputs = (range(1, 1 + {states}), range(1 + 2*{states}, 1 + 2*{states} + {parameters}),
         range(1 + 2*{states} + {parameters}, 1 + 2*{states} + {parameters} + {inputs}))
     for kind, first in {kinds}:
-        for v in (TOLD if kind == "rhs" else TOLD[kind])["vectors"]:
+        for v in (EXPECTED if kind == "rhs" else EXPECTED[kind])["vectors"]:
             fmu = FMU3Model(guid=found.guid, modelIdentifier="{stem}", unzipDirectory=folder)
             fmu.instantiate()
             fmu.enterInitializationMode(startTime=v["t"])
@@ -154,7 +154,7 @@ def _start(reported: Description, program: Program) -> tuple[Sequence[float], Se
 
 
 def token(stem: str, emitted: Sequence[Emitted]) -> str:
-    """What belongs to this model alone."""
+    """Token that identifies the model: a digest of its code."""
     text = "\n".join(c_text(program, stem, reported.role) for program, reported in _kept(emitted))
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
@@ -219,7 +219,7 @@ def description(stem: str, emitted: Sequence[Emitted]) -> str:
 
 
 def _plain(text: str) -> str:
-    """What XML may hold."""
+    """Text with only the characters that XML may hold."""
     return "".join(x if x.isprintable() else " " for x in text)
 
 
@@ -251,7 +251,7 @@ def fmu_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
 
 
 def _jumps(program: Program) -> bool:
-    """Whether something in it may jump, as friction where the sliding turns over; in space it is v/max(|v|, tiny)."""
+    """True if a value may jump, as friction does where sliding reverses; in space it is v/max(|v|, tiny)."""
     ops = [each.node.op for each in program.statements if isinstance(each, Assign)]
     return not (JUMPS | {"max"}).isdisjoint(ops)
 
@@ -273,7 +273,7 @@ SUFFIX = {"win32": ".dll", "darwin": ".dylib"}.get(sys.platform, ".so")
 
 
 def platform_name() -> str:
-    """As FMI 3 has it: x86_64-linux."""
+    """Name of the platform in FMI 3: x86_64-linux."""
     machine = {"amd64": "x86_64", "arm64": "aarch64"}.get(platform.machine().lower(), platform.machine().lower())
     return f"{machine}-{ {'win32': 'windows', 'darwin': 'darwin'}.get(sys.platform, 'linux') }"
 

@@ -31,7 +31,7 @@ def _number(a: Number) -> RankedText:
 
 
 def _spelled(name: str) -> str:
-    """Capitals are small letters: what the kernels tell apart by them has another name."""
+    """Capitals are small letters: names of the kernels that differ only by them are changed."""
     return f"big_{name}" if name.isupper() else name
 
 

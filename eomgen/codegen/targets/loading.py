@@ -1,4 +1,4 @@
-"""Compiled functions behind ctypes, and languages that run in a process beside us."""
+"""Compiled functions behind ctypes, and languages that run in a process of their own."""
 
 from __future__ import annotations
 
@@ -100,8 +100,8 @@ def compiled_target(
     return Target(name, language, form.text, files or form.files, use, load or loaded, run, single=in_single)
 
 
-# -------- beside ----------------------------------------------------------------------------------------------
-# A language that runs in a process beside us: states go there as doubles, results come back.
+# -------- other processes -------------------------------------------------------------------------------------
+# A language that runs in a process of its own: states go there as doubles, results come back.
 #
 # First go the sizes (states, accelerations, parameters, inputs, outputs); then, again and again, (n, whether inputs
 # are given), p, and n rows of t, x, a and the inputs; back come n rows of outputs.
@@ -162,7 +162,7 @@ def many_beside(language: str, command: Sequence[str], program: Program, first: 
     """The function that a process serves.
 
     Args:
-        language: as it is told.
+        language: its name in messages.
         first: what it reads before the sizes.
     Raises:
         RunFailed: when called: it does not take the text.

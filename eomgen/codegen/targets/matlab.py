@@ -164,12 +164,12 @@ FORM = FileForm(
 
 
 def octave() -> str | None:
-    """Where Octave is."""
+    """Path of Octave; None where it is not installed."""
     return shutil.which("octave-cli") or shutil.which("octave")
 
 
 def _many(text: str, main: str, program: Program) -> Many:
-    """The function file, run by Octave beside us."""
+    """The function file, run by Octave in a process of its own."""
     path = octave()
     if path is None:
         raise ToolMissing("there is no Octave to run MATLAB code", fix="install octave, or choose another target")

@@ -1,4 +1,4 @@
-"""What targets that are ECMAScript modules share: their head, their test, and how node runs them beside us.
+"""Common parts of targets that are ECMAScript modules: their head, their test, and their run by node.
 
 A module exports `constants(p)`, `evaluate(t, x, p, c, inputs)` and the role's function.
 """
@@ -37,10 +37,10 @@ import {{ readFileSync }} from "node:fs";
 import {{ test }} from "node:test";
 import {{ {role} }} from "./{main}.mjs";
 
-const told = JSON.parse(readFileSync(new URL("test_vectors.json", import.meta.url), "utf8"));
+const expected = JSON.parse(readFileSync(new URL("test_vectors.json", import.meta.url), "utf8"));
 
 test("{main} gives the values of its test vectors", () => {{
-    for (const [place, v] of told{of_role}.vectors.entries()) {{
+    for (const [place, v] of expected{of_role}.vectors.entries()) {{
         const found = {role}(v.t, v.x, {a_of_v}v.p, v.inputs);
         assert.equal(found.length, v.{result}.length);
         const largest = Math.max(1, ...v.{result}.map(Math.abs));
@@ -117,7 +117,7 @@ def node_form(language: Language, module: str, **words: Any) -> FileForm:
 
 
 FilesBeside = Callable[[str, Program, Role, "Mapping[str, str] | None"], dict[str, FileContent]]
-"""(stem, program, role, remarks) -> files beside a module."""
+"""(stem, program, role, remarks) -> files that a module needs."""
 
 
 def node_target(
@@ -136,8 +136,8 @@ def node_target(
     Args:
         use: how it is imported, and what runs its tests.
         text: of a program in the language, where that is not the module.
-        beside: what the module needs beside it.
-        alone: (files, STEM_ROLE) -> the module as it needs no file beside it.
+        beside: the files that the module needs.
+        alone: (files, STEM_ROLE) -> the module as it needs no other file.
         single: the files in doubles -> in single precision, where there are such.
     """
 

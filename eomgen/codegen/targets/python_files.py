@@ -1,7 +1,4 @@
-"""What targets that are Python modules share.
-
-What targets that are Python modules share: their head, their test, and how they are run here.
-"""
+"""Common parts of targets that are Python modules: their head, their test, and their run in this process."""
 
 from __future__ import annotations
 
@@ -37,8 +34,8 @@ from {module} import {main}
 
 
 def test_{main}_gives_the_values_of_its_test_vectors():
-    told = json.loads((pathlib.Path(__file__).parent / "test_vectors.json").read_text(encoding="utf-8"))
-    for v in told{of_role}["vectors"]:
+    expected = json.loads((pathlib.Path(__file__).parent / "test_vectors.json").read_text(encoding="utf-8"))
+    for v in expected{of_role}["vectors"]:
         found = np.asarray({main}(v["t"], v["x"], {a_of_v}v["p"], v["inputs"]), dtype=float).ravel()
         right = np.array(v["{result}"], dtype=float)  # null: not a number
         assert found.shape == right.shape
@@ -89,7 +86,7 @@ def python_target(
 
 
 def executed(text: str, name: str, package: str = "") -> dict[str, Any]:
-    """What a module holds: our own text, from the graph.
+    """Names that a module defines; its text is our own, from the graph.
 
     Raises:
         ToolMissing: the package that it needs is not there.

@@ -4,10 +4,10 @@ import { readFileSync } from "node:fs";
 import { test } from "node:test";
 import { rhs } from "./cart_pole_rhs.mjs";
 
-const told = JSON.parse(readFileSync(new URL("test_vectors.json", import.meta.url), "utf8"));
+const expected = JSON.parse(readFileSync(new URL("test_vectors.json", import.meta.url), "utf8"));
 
 test("cart_pole_rhs gives the values of its test vectors", () => {
-    for (const [place, v] of told.vectors.entries()) {
+    for (const [place, v] of expected.vectors.entries()) {
         const found = rhs(v.t, v.x, v.p, v.inputs);
         assert.equal(found.length, v.dx.length);
         const largest = Math.max(1, ...v.dx.map(Math.abs));
