@@ -19,7 +19,7 @@ def rendered(document: Document, format: str = "text") -> str:
 
 
 def drawn(document: Document, format: str) -> str:
-    """As of `rendered`, what steers terminals in it as it is: what is read back."""
+    """Document in a format, as of `rendered` but with control characters left in; this text is read back."""
     formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
     if format not in formats:
         raise UsageError(f"unknown format '{format}'", fix=f"one of {', '.join(formats)}")

@@ -11,7 +11,7 @@ from eomgen.documents.text import side_text
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.print.text import text_size
 
-WIDE = 96  # characters of a table, all columns beside one another
+WIDE = 96  # characters of a table, all columns side by side
 PAGE = 5000  # characters of formulas in one step
 FULL = Code("eomgen derive MODEL --full")
 
@@ -31,7 +31,7 @@ def page(reader: Reader, pairs: Iterable[tuple[Side, Scalar]], *, then: tuple[Si
 
 
 def tabled(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]]) -> tuple[Statement, ...]:
-    """A table; where its columns do not fit beside one another a formula for each of its cells."""
+    """A table; where its columns do not fit side by side a formula for each of its cells."""
     lines = [head, *([cell if isinstance(cell, str) else side_text(cell) for cell in row] for row in rows)]
     if sum(max(map(len, column)) + 2 for column in zip(*lines, strict=True)) <= WIDE:
         return (Grid(head, tuple(rows)),)
@@ -44,7 +44,7 @@ def tabled(head: tuple[str, ...], rows: Sequence[tuple[Cell, ...]]) -> tuple[Sta
 
 
 def _named(first: Cell, what: str) -> Law:
-    """What a cell is, by its row and its column."""
+    """Name of a cell, by its row and its column."""
     if isinstance(first, Law):
         return Law(f"{first.text}, {what}", rf"{first.latex},\ \text{{{latex_escaped(what)}}}")
     words = f"{first if isinstance(first, str) else side_text(first)}, {what}"
@@ -58,7 +58,7 @@ def _rest(left_out: int, kept: int) -> tuple[Statement, ...]:
 
 
 def elsewhere(operations: int) -> Prose:
-    """Where to get what is too long to print."""
+    """Remark that equations are too long to print, with the commands that give them."""
     return prose(
         f"The equations take {operations} operations and are too long to print here: ",
         FULL,

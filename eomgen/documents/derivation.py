@@ -101,7 +101,7 @@ def _by_method(
 
 
 def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
-    """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations.
+    """Derivation by the energies; by Maggi's equations where dependent rates make those long or are nonholonomic.
 
     Speeds that are no rates have no equation of Lagrange's: there the balances are projected (Kane's way).
     """
@@ -118,8 +118,7 @@ def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step,
 
 
 def _is_integrable(equations: EquationsOfMotion) -> bool:
-    """Whether Lagrange's equations hold in the independent speeds alone, as they do where constraints are ones of
-    position."""
+    """True if Lagrange's equations hold in the independent speeds alone, as they do with holonomic constraints."""
     _, c = inertia_by_energies(equations.system.motion, kinetic_energy(equations.system.motion))
     return equal_at_random_states(zip(c, equations.c, strict=True)).equal
 

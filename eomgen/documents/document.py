@@ -1,4 +1,4 @@
-"""What a verb gives, as one value: sections for people, quantities for machines, the proof; each format draws it."""
+"""The result of a verb as one value: sections for people, quantities for machines, the proof; each format draws it."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def _nothing() -> Mapping[str, Any]:
 
 @dataclass(frozen=True)
 class Document:
-    """What a verb gives.
+    """The result of a verb.
 
     Args:
         title: the model's name.
@@ -39,12 +39,12 @@ class Document:
         steps: its sections, in order.
         equations: the equations of motion as printed; empty where they are too long.
         definitions: sub-expressions with a name of their own, in the order of their use.
-        entries: gives what machines get by name, with quantities as leaves; made when they are asked.
+        entries: gives what machines get by name, with quantities as leaves; made on demand.
         failed: what is wrong with the result, or open in it; "" as it must be.
-        notes: what else is worth a line on stderr.
+        notes: further remarks, a line each on stderr.
         certificate: the proof; None where none was made.
         interrupted: it holds what there was when somebody stopped it.
-        cautions: what is allowed in the model and hardly meant.
+        cautions: warnings of what is allowed in the model but probably a mistake.
         taken: what was made of values that a person typed.
         notation: how its symbols are set in LaTeX.
         parameters: the values of those that have one, exact constants.
@@ -71,7 +71,7 @@ class Document:
     answer_code: int = 0
 
     def __getstate__(self) -> dict[str, Any]:
-        """With its entries as they are."""
+        """State to be pickled: the entries take the place of the function that makes them."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         return own | {"entries": Pickled(self.entries())}
 
@@ -80,13 +80,13 @@ class Document:
 
     @property
     def nomenclature(self) -> tuple[Meaning, ...]:
-        """What every symbol stands for."""
+        """Meanings of all symbols of the tables."""
         tables = (s for step in self.steps for s in step.statements if isinstance(s, Table))
         return tuple(row for table in tables for row in table.rows)
 
     @property
     def has_heads(self) -> bool:
-        """Whether its sections have titles: then it has one too."""
+        """True if its sections have titles: then it has one too."""
         return any(step.title for step in self.steps)
 
     @property
@@ -96,7 +96,7 @@ class Document:
 
     @property
     def distrust(self) -> str:
-        """That the proof contradicts the result, in words; "" as it must be."""
+        """Sentence that the proof contradicts the result; "" if it does not."""
         return DISTRUST if self.certificate is not None and self.certificate.ok is False else ""
 
     @property
@@ -106,7 +106,7 @@ class Document:
 
     @property
     def warnings(self) -> tuple[Problem, ...]:
-        """What a user should know before the result is used."""
+        """Warnings that a user should read before using the result."""
         unchecked = self.certificate is not None and self.certificate.ok is None
         return (*self.cautions, *((NOTHING_CHECKED,) if unchecked else ()))
 

@@ -1,6 +1,6 @@
 """System, values -> a drawing of it in one configuration, with matplotlib.
 
-System, values -> a drawing of a plane model in one configuration, from its scene; arrows stand beside it.
+System, values -> a drawing of a plane model in one configuration, from its scene; arrows are added by the caller.
 """
 
 from __future__ import annotations
@@ -61,7 +61,7 @@ class Sketch:
     values: Mapping[Node, float]
 
     def numbers(self, scalars: Iterable[Scalar]) -> list[float]:
-        """What scalars are worth there."""
+        """Values of scalars in this configuration."""
         return numbers_of(scalars, self.values)
 
     def place(self, point: Vector) -> PagePoint:
@@ -70,7 +70,7 @@ class Sketch:
         return x, y
 
     def position(self, place: tuple[str | None, Vector]) -> PagePoint:
-        """Where a place of a body is."""
+        """Position on the page of a place of a body."""
         return self.place(self.system.motion.position(place))
 
     @cached_property
@@ -81,7 +81,7 @@ class Sketch:
         return plane_drawing(SceneNumbers(scene, np.array([self.numbers(scene.values)], dtype=float)))
 
     def lines(self, link: BodyLink) -> list[np.ndarray]:
-        """What is drawn of a body."""
+        """Lines of the drawing of a body."""
         return [s.path[0] for s in self.drawing.strokes if s.of == link.name and s.role in ("body", "hole")]
 
     @property
@@ -114,7 +114,7 @@ def draw_model(panel: Any, sketch: Sketch, *, names: bool = True, colors: Mappin
     panel.dataLim.set_points(corners)
     if before is not None:
         panel.dataLim.update_from_data_xy(before, ignore=False)
-    panel.autoscale(True)  # what is drawn beside it is held, too
+    panel.autoscale(True)  # what is drawn outside of it is included
     panel.margins(0.0)
 
 
@@ -309,7 +309,7 @@ def arrow(panel: Any, tip: PagePoint, vector: PagePoint, *, color: str, label: s
 
 
 def is_freer_outward(lines: Iterable[np.ndarray], at: PagePoint, vector: PagePoint) -> bool:
-    """Whether an arrow meets fewer lines where it begins at its place than where it ends there."""
+    """True if an arrow that begins at its place meets fewer lines than one that ends there."""
     pieces = [piece for line in lines for piece in pairwise(line)]
     place, stroke = np.array(at), np.array(vector)
     begun, ended = (sum(_meets(a, b, place, s) for a, b in pieces) for s in (stroke, -stroke))
@@ -317,7 +317,7 @@ def is_freer_outward(lines: Iterable[np.ndarray], at: PagePoint, vector: PagePoi
 
 
 def _meets(a: np.ndarray, b: np.ndarray, at: np.ndarray, stroke: np.ndarray) -> bool:
-    """Whether a stroke from a place runs along the piece a b, or crosses it further on."""
+    """True if a stroke from a place runs along the piece a b, or crosses it further on."""
     along, away = b - a, at - a
     turn = along[0] * stroke[1] - along[1] * stroke[0]
     sizes = float(np.hypot(*along) * np.hypot(*stroke))

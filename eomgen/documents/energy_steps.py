@@ -243,7 +243,7 @@ def twists_step(system: System, reader: Reader) -> Step:
             if not is_still(velocity):
                 formulas += component_pairs(system, "v", f"{link.name}.center", velocity)
         formulas += spins(system, link.name, link.twist.w)
-    words = "Each body moves with the one it hangs on and by its joint:"
+    words = "Each body moves with the body that carries it and by its own joint:"
     return Step("velocities", "Velocities", (prose(words), *page(reader, formulas)))
 
 

@@ -74,7 +74,7 @@ class EquationSteps:
 
     @property
     def coefficients(self) -> dict[Node, Scalar]:
-        """What the names of coefficients stand for."""
+        """Scalars for which the names of coefficients stand."""
         return {symbol: x for symbol, x in self.definitions if any(row.symbol is symbol for row in self.meanings)}
 
 
@@ -191,7 +191,7 @@ def _named(
 
 
 def _is_beyond_names(equations: EquationsOfMotion) -> bool:
-    """Whether no form is short enough: every operation on what moves is written at least once, an operand beside it.
+    """True if no form is short enough: each operation on moving symbols is written at least once, with an operand.
 
     Roots of sums are not: a symbol stands for each.
     """
@@ -223,7 +223,7 @@ def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
 
 
 def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
-    """By what both sides were multiplied and divided, and that the divisor must not vanish where it can."""
+    """Words on the factors by which both sides were multiplied and divided, and that a divisor must not vanish."""
     found = factors(divisor)
     number, graph = found.coefficient, system.scope.graph
     above, below = (_product(graph, part) for part in (found.numerator, found.denominator))
@@ -318,7 +318,7 @@ def _without(x: Scalar, accelerations: Sequence[Node]) -> Scalar:
 
 
 def _determinant(M: Sequence[Sequence[Scalar]]) -> Scalar:
-    """By the first row; for the few rows that are solved here."""
+    """Determinant by expansion along the first row; for the few rows that are solved here."""
     if not M:
         return 1
     total: Scalar = 0
@@ -348,7 +348,7 @@ WORDS = (
 
 @dataclass(frozen=True)
 class FrictionTerms:
-    """What contacts with friction add to a derivation.
+    """Terms that contacts with friction add to a derivation.
 
     Args:
         forces: generalized force of all friction, written with the normal reactions' symbols, nu.

@@ -151,7 +151,7 @@ class Scale:
 
 
 def scale_of(values: Iterable[float]) -> Scale:
-    """The scale that the largest of some values asks for: kN from 10 kN on; units without prefix where all are 0."""
+    """The scale for the largest of some values: kN from 10 kN on; units without prefix where all are 0."""
     largest = max((abs(value) for value in values), default=0.0)
     if not largest or ROOMY > largest >= 0.1:
         return Scale()
@@ -165,7 +165,7 @@ def figures(value: float) -> str:
 
 
 # -------- plots -----------------------------------------------------------------------------------------------
-# Trajectory -> a picture of it: coordinates over time, one panel a unit, how well the energy was kept, reactions.
+# Trajectory -> a picture of it: coordinates over time, one panel a unit, the error of the energy, reactions.
 
 
 PLAIN = Unit("")
@@ -177,7 +177,7 @@ DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension
 
 
 def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
-    """Coordinates over time, one panel a unit, how well the energy was kept, reactions.
+    """Coordinates over time, one panel a unit, the error of the energy, reactions.
 
     Args:
         title: above the picture, the model's name.
@@ -210,7 +210,7 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
     """
     if not trajectory.outputs:
         raise RunFailed(
-            "the run has no outputs: the model asks none that is a function of the state",
+            "the run has no outputs: the model requests none that is a function of the state",
             fix="ask for one in [outputs], or draw coordinates",
         )
     columns = trajectory.columns()
@@ -235,7 +235,7 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
 
 
 def notation_of_run(run: Trajectory) -> Notation:
-    """What the model of a run declares of its names; nothing where nobody knows it."""
+    """Notation that the model of a run declares; the default where the run has no model."""
     known = run.phases[0].model if run.phases else None
     return Notation() if known is None else notation_of(known.declared.scope.model)
 
@@ -297,7 +297,7 @@ def _energy(panel: Any, trajectory: Trajectory) -> None:
 
 
 def reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
-    """Those that have a value at some instant; of a unit of which all are 0, none."""
+    """{unit: reactions that have a value at some instant}; units whose reactions are all 0 are left out."""
     groups: dict[str, list[str]] = {}
     for name, column in trajectory.reactions.items():
         if not np.isnan(column).all():
@@ -381,7 +381,7 @@ def component_of(name: str) -> str:
 
 
 # -------- run pictures ----------------------------------------------------------------------------------------
-# Trajectory -> pictures of it beside those over time: phase portraits, resultants of reactions, their polar curves.
+# Trajectory -> further pictures of it: phase portraits, resultants of reactions, their polar curves.
 
 
 SIDE = 3.6  # of one panel [inches]

@@ -1,4 +1,4 @@
-"""Document -> JSON; what `derive --json` carries.
+"""Document -> JSON; the content of `derive --json`.
 
 Document -> JSON: its entries, its steps; formulas as text that the grammar of the model file reads back.
 """
@@ -43,7 +43,7 @@ def as_dict(document: Document) -> dict[str, Any]:
 
 
 def taken_as_dict(taken: Iterable[Taken]) -> dict[str, dict[str, Any]]:
-    """What was taken, by its name; of a name that was typed twice, as a start and an instant, by all that was said."""
+    """Typed values by name; a name that was typed twice, as a start and an instant, has its whole text as the key."""
     found: dict[str, dict[str, Any]] = {}
     for each in taken:
         found[str(each) if each.name in found else each.name] = each.as_dict()
@@ -136,12 +136,12 @@ class Texts:
 
     @property
     def scalars(self) -> Iterator[tuple[str, Scalar]]:
-        """(entry, scalar), as they stand beside the texts."""
+        """(entry, scalar), as they belong to the texts."""
         return ((name, x) for name, field in self.fields.items() for x in field.scalars)
 
 
 def payload_texts(equations: EquationsOfMotion) -> Texts:
-    """What the payload says of the equations of motion, the reactions left out."""
+    """Texts of the equations of motion in the payload, the reactions left out."""
     fields = _fields(equations)
     definitions, texts = _texts(
         [x for field in fields.values() for x in field.scalars], equations.system.scope.positive, _taken(equations)

@@ -212,7 +212,7 @@ def quantity_sides(graph: Graph, found: Quantity) -> tuple[Side, ...]:
 
 
 def _read_back(graph: Graph, exact: str) -> Side:
-    """What a text of the grammar says, as a formula."""
+    """Formula that a text of the grammar states."""
     expression = parse(exact, longest=len(exact))
     symbols = {name: graph.symbol(name) for kind, name in expression.code if kind == "name"}  # as they stand in it
     read: Scalar = expression.evaluate(symbols | {"pi": graph.pi})
@@ -265,7 +265,7 @@ def _side(setter: Setter, side: Side) -> Set | Scalar:
 
 
 def _matrix(setter: Setter, matrix: Matrix) -> Set:
-    """In parentheses; as wide as its columns beside one another."""
+    """Matrix in parentheses; as wide as its columns side by side."""
     rows = [[_whole(setter, entry) for entry in row] for row in matrix.rows]
     width = sum(max(entry.width for entry in column) + 2 for column in zip(*rows, strict=True))
     lines = r" \\ ".join(" & ".join(entry.tex for entry in row) for row in rows)

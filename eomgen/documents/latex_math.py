@@ -58,7 +58,7 @@ _SILENT = re.compile(r"[{}_^\\ ]")
 
 @dataclass(frozen=True, slots=True)
 class Set:
-    """A formula as set: its LaTeX, about how many characters wide it is, and how it hangs together."""
+    """A typeset formula: its LaTeX, its approximate width in characters, the precedence of its outermost operation."""
 
     tex: str
     width: float
@@ -124,7 +124,7 @@ class Setter:
         return Set(f"{sign} {body.tex}".strip(), body.width + (3 if sign else 0), hold)
 
     def product(self, product: Product, *, one_fraction: bool = False) -> Set:
-        """|coefficient| * numerator / denominator; the number beside it has a fraction of its own, or none."""
+        """|coefficient| * numerator / denominator; the number in front has a fraction of its own, or none."""
         c = max(product.coefficient, -product.coefficient)
         if not product.denominator and not (one_fraction or is_part_of_turn(product) or is_part_of_letter(product)):
             return self._juxtaposed(c, product.numerator)
@@ -215,7 +215,7 @@ def width_of(tex: str) -> float:
 
 
 def bracketed(inside: Set) -> Set:
-    """In parentheses."""
+    """Formula in parentheses."""
     return Set(_in_brackets(inside.tex), inside.width + 2)
 
 
@@ -240,7 +240,7 @@ def _is_function(node: Node) -> bool:
 
 
 def _between(before: str, after: str) -> str:
-    """Between two factors: nothing to see, but words keep apart and numbers are multiplied by a dot."""
+    """Separator of two factors: a blank, a wider one next to words, a dot before a number."""
     if after[0].isdigit():
         return r" \cdot "
     return r" \, " if r"\mathrm" in before or r"\mathrm" in after else " "
@@ -345,7 +345,7 @@ def _set(setter: Setter, side: Set | Scalar) -> Set:
 
 
 def pieces(setter: Setter, side: Set | Scalar, room: float) -> list[Set]:
-    """What may not be broken further, each piece but the first with its sign in front."""
+    """Pieces of a side that are not broken further, each but the first with its sign in front."""
     whole = _set(setter, side)
     if isinstance(side, Set) or type(side) is not Node or whole.width <= room:
         return [whole]
@@ -416,7 +416,7 @@ def _filled(parts: list[Set], room: float) -> list[str]:
 
 
 # -------- latex names -----------------------------------------------------------------------------------------
-# Names of a document -> LaTeX: those that a model declares, else by their own letters, each told from the others.
+# Names of a document -> LaTeX: those that a model declares, else by their own letters, each distinct from the others.
 
 
 SPECIAL = {
@@ -443,18 +443,18 @@ _MULTIPLIER = re.compile(r"lam\((?P<constraint>.*), (?P<row>\d+)\)")
 
 @dataclass(frozen=True)
 class Notation:
-    """How the names of a model are set.
+    """Typesetting of the names of a model.
 
     Args:
         symbols: the symbols that are declared, by name without primes.
-        indices: how bodies and constraints are called in an index, where they declare it.
+        indices: the names of bodies and constraints in an index, where they declare one.
     """
 
     symbols: Mapping[str, Symbol] = field(default_factory=dict)
     indices: Mapping[str, str] = field(default_factory=dict)
 
     def with_symbols(self, symbols: Mapping[str, Symbol]) -> Notation:
-        """With more of them, the model's own first."""
+        """The notation with further symbols; the model's own take precedence."""
         return replace(self, symbols={**symbols, **self.symbols})
 
     def latex(self, name: str) -> str:
@@ -473,7 +473,7 @@ class Notation:
         return f"{found}{dot}{index_latex(point)}" if dot else found
 
     def reported_apart(self, names: Iterable[str]) -> Notation:
-        """With every name set by itself: where two would look alike (theta1, theta_1) the later one is spelt out."""
+        """The notation with distinct names: where two would look alike (theta1, theta_1) the later one is spelt out."""
         bare = list(dict.fromkeys(name.rstrip("'") for name in names))
         taken: dict[str, str] = {}
         spelt: dict[str, Symbol] = {}
@@ -484,7 +484,7 @@ class Notation:
 
 
 def notation_of(model: Model) -> Notation:
-    """What a model declares of it."""
+    """Notation that a model declares."""
     tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns)
     symbols = {name: part.symbol for table in tables for name, part in table.items() if part.symbol is not None}
     indices = {name: body.symbol.tex for name, body in model.bodies.items() if body.symbol is not None}

@@ -1,6 +1,6 @@
 """Names of a picture, each where it covers no other and as little as may be.
 
-Names of a picture, each beside its place where it covers no other name and as little as may be of what is drawn.
+Names of a picture, each next to its place where it covers no other name and as little as may be of what is drawn.
 
 Where they stand is found when the picture is drawn: only then is it known how many dots a metre has.
 """
@@ -34,7 +34,7 @@ class PlacedName:
     Args:
         at: data coordinates.
         rank: those with a smaller one choose first; what finds no room is left out.
-        along: the other end of the line along which it is written, from `at`; None: it is upright, beside its place.
+        along: the other end of the line along which it is written, from `at`; None: it is upright, next to its place.
     """
 
     text: str
@@ -71,13 +71,13 @@ class PageBox:
         return PageBox(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def covered(self, dots: np.ndarray) -> int:
-        """How many of some dots lie in it."""
+        """Number of the dots that lie in the box."""
         x, y = dots.T
         return int(np.count_nonzero((x > self.left) & (x < self.right) & (y > self.bottom) & (y < self.top)))
 
 
 def _beside(at: tuple[float, float], size: tuple[float, float], away: float, turn: float) -> PageBox:
-    """A box of a size beside a place, so far away in a direction that its edge or corner is turned to it."""
+    """A box of a size next to a place, so far away in a direction that its edge or corner is turned to it."""
     c, s = math.cos(turn), math.sin(turn)
     x = at[0] + away * c + 0.5 * size[0] * max(-1.0, min(1.0, 1.6 * c))
     y = at[1] + away * s + 0.5 * size[1] * max(-1.0, min(1.0, 1.6 * s))
@@ -92,7 +92,7 @@ def room_for(
     inside: tuple[PageBox, PageBox],
     point: float,
 ) -> PageBox | None:
-    """The best box of a size beside a place, which meets none that is taken; None where there is no room.
+    """The best box of a size next to a place, which meets none that is taken; None where there is no room.
 
     Args:
         dots: what should not be covered.

@@ -57,7 +57,7 @@ def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str
 
 
 def listing_markdown(rows: Sequence[Found], model: Model | None = None) -> str:
-    """Quantities in a table, a row each: name, formula and number typeset; what is longer than a line is told short."""
+    """Quantities in a table, a row each: name, formula and number typeset; what is longer than a line is shortened."""
     setter = Setter(Notation() if model is None else notation_of(model))
     return "\n".join(["| | |", "|---|---|", *(f"| `{row.name}` | {_reported(setter, row.quantity)} |" for row in rows)])
 

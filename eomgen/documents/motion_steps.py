@@ -43,7 +43,7 @@ def axes(system: System) -> str:
 
 
 def positions_step(system: System, reader: Reader) -> Step:
-    """Where the mass centres are, how the bodies stand, where given forces act."""
+    """Step with the positions of the mass centres, the angles of the bodies, and the places of given forces."""
     motion = system.motion
     formulas: list[Pair] = []
     for link in motion.links:
@@ -107,7 +107,7 @@ def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
     statements: list[Statement] = [prose("The speeds are combinations of the rates:"), *page(reader, meant)]
     for each in quaternions_of(model):
         words = f"{', '.join(each.coordinates)} is a unit quaternion, and {', '.join(each.speeds)} "
-        statements.append(prose(words, f"is the angular velocity of {each.body} against what it hangs on."))
+        statements.append(prose(words, f"is the angular velocity of {each.body} relative to the body that carries it."))
     return (Step("speeds", "Speeds", (*statements, prose("Solved for the rates:"), *page(reader, rates))),)
 
 
@@ -119,7 +119,7 @@ def is_still(velocity: Vector) -> bool:
 def spins(system: System, body: str, spin: Vector) -> list[Pair]:
     """The angular velocity of a body: one number in the plane; in space its components about the axes of the body.
 
-    They are numbered: omega_x of a body is, wherever it is asked for, the component along the ground's axis.
+    They are numbered: omega_x of a body is, wherever it is an output, the component along the ground's axis.
     """
     if len(axes(system)) == 2:
         return [] if is_zero(spin[2]) else [(Name("omega", body), spin[2])]
@@ -149,7 +149,7 @@ def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
 
 
 def _held(system: System) -> list[Pair]:
-    """Of each row that closes its gap or its rate, every coordinate free."""
+    """Equation of each closing row, of its gap or its rate, with every coordinate free."""
     free = system.free or system
     return [_closing(row) for row in free.constraints.closing]
 
@@ -198,7 +198,7 @@ def setting_steps(system: System) -> tuple[Step, ...]:
 
 
 def assumption_steps(assumptions: Sequence[str]) -> tuple[Step, ...]:
-    """What had to be assumed, as a first step; none where nothing was."""
+    """First step, with the assumptions; none where nothing was assumed."""
     reported = tuple(prose(f"{what}.") for what in assumptions)
     return (Step("assumptions", "Assumptions", reported),) if reported else ()
 
@@ -217,7 +217,7 @@ def count(number: int, noun: str, plural: str = "") -> str:
 
 
 def data_step(system: System) -> Step:
-    """What is given."""
+    """Step with the given data."""
     model, symbols = system.scope.model, system.symbols
     values = exact_parameters(model)
     rows = []
@@ -251,7 +251,7 @@ def _in_unit(value: Any, part: Quantified) -> str:
 
 
 def _freedom(system: System) -> Step:
-    """How many coordinates, how many of them are driven, how many rows close."""
+    """Step with the numbers of coordinates, driven coordinates, closing rows and degrees of freedom."""
     symbols, closing = system.symbols, system.constraints.closing
     dependent = len(dependent_coordinates(system.scope))
     driven = sum(part.driven for part in system.scope.model.coordinates.values())
@@ -303,7 +303,7 @@ def _freedom(system: System) -> Step:
 
 
 def _velocities(system: System) -> list[Statement]:
-    """Which conditions on velocities are holonomic, and what these keep at zero."""
+    """Statements on velocity constraints: the holonomic ones with the functions that they hold at zero."""
     try:
         found = integrability_of((system.free or system).constraints)
     except (
@@ -363,7 +363,7 @@ def _coordinates(system: System) -> Step:
 
 
 def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
-    """How a driven coordinate moves: formulas, or through how many samples."""
+    """Law of a driven coordinate: formulas, or the samples through which it passes."""
     part = scope.model.coordinates[q.name]
     of = {"": part.motion, "The rate of ": part.rate, "The acceleration of ": part.acceleration}
     for what, law in of.items():
@@ -376,7 +376,7 @@ def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
 
 
 def _begun(system: System) -> dict[str, str]:
-    """Of each coordinate and speed that does not start as it is written where it does, so that the constraints hold."""
+    """Start, in words, of each coordinate and speed that was changed so that the constraints hold, by name."""
     start = ExactStart(system)
     try:
         moved = start.moved

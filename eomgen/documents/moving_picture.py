@@ -65,7 +65,7 @@ class Stage:
             panel.set_title(movie.title, fontsize=9)
 
     def _plane_artists(self) -> None:
-        """What stays and lies under all that moves is part of the ground; the rest is drawn anew."""
+        """Makes the artists: still strokes under all moving ones are part of the ground, the rest is drawn anew."""
         self.panel.set_aspect("equal")
         self.panel.axis("off")
         low, high = limits(self.movie.drawing)
@@ -83,7 +83,7 @@ class Stage:
 
     @property
     def artists(self) -> list[Any]:
-        """What is drawn anew in every frame."""
+        """Artists that are drawn anew in every frame."""
         own = [artist for artist, _, _ in self.moving] if self.space is None else [self.space.pieces]
         return [*own, *(artist for artist, _ in self.trails)]
 
@@ -273,7 +273,7 @@ class Movie:
         times: of each frame in the motion [s].
         trails: name of a point -> its places, FINE of them a frame, d each.
         title: what is said above it.
-        timed: the times of frames are told.
+        timed: the times of frames are shown.
         scene: of which it is a drawing.
     """
 
@@ -287,12 +287,12 @@ class Movie:
 
     @property
     def stands_still(self) -> bool:
-        """Whether all frames show the same."""
+        """True if all frames show the same."""
         return bool(self.as_at_first.all())
 
     @property
     def as_at_first(self) -> np.ndarray:
-        """Which frames show what the first does."""
+        """True for each frame that shows the same as the first."""
         found = np.ones(len(self.times), dtype=bool)
         for path in (stroke.path for stroke in self.drawing.strokes if stroke.path.size):
             away = np.abs(path - path[:1]).reshape(len(path), -1)
@@ -410,7 +410,7 @@ def reference_state(modes: Modes) -> DrawnState:
 
 
 def swing(scene: Scene, at: DrawnState, swung: np.ndarray) -> float:
-    """How far a mode is swung out: so that what moves most moves by a part of the picture."""
+    """Amplitude of a mode's picture: the body that moves most moves by a part of the picture."""
     states = np.vstack([at.x[None, :], at.x + WIDE_STEP * swung])
     numbers = SceneNumbers(scene, frames_along(scene, np.full(len(states), at.t), states, at.p))
     return swing_of(numbers, WIDE_STEP)

@@ -30,14 +30,14 @@ from eomgen.symbolic.print.text import to_text
 
 NAME = "formulas, read back as they are printed, are what they stand for"
 HOW = "50 digits"
-SHOWN = 60  # characters of a formula that is told
+SHOWN = 60  # characters of a formula in a message
 TRIES = 12  # random values of the symbols of a formula, for one with a value
 CASE = re.compile(r"(?P<if_true>.*?)(?: else)? where (?P<left>.*) (?P<relation><=?) (?P<right>.*)")
 RELATION = {"<": "less", "<=": "less_equal"}
 
 
 def proven(document: Document, certificate: Certificate | None) -> Document:
-    """The document with the proof of what was found, and of what is printed of it; None: none was asked for."""
+    """The document with the proof of what was found, and of what is printed of it; None: none was requested."""
     entries = document.entries
     if certificate is not None:
         certificate = _joined(certificate, _printed_as_found(document))
@@ -72,7 +72,7 @@ def proven_as(document: Document, form: str) -> Document:
 
 
 def _joined(certificate: Certificate, more: Iterable[Check]) -> Certificate:
-    """With further checks; where nothing of the result could be checked its texts do not stand for it."""
+    """Certificate with further checks; where none of the result's checks could be made, only failed ones are added."""
     return certificate + (x for x in more if certificate.ok is not None or x.status == "fails")
 
 
@@ -101,7 +101,7 @@ def _parts(statement: Statement) -> list[Any]:
 
 
 def _misread(x: Node) -> str:
-    """What a formula says as it is printed, where that is not what it stands for; ""."""
+    """Message if a formula, read back as printed, is not what it stands for; else ""."""
     try:
         read = [(_read(text, meant), meant) for text, meant in _as_printed(x)]
     except NumberBeyond as error:
@@ -178,7 +178,7 @@ def _compared(
 
 
 def _off(expression: Expression, unit: str, right: float, values: Mapping[str, Any]) -> str:
-    """What the text is worth, where that is not the number; ""."""
+    """Message if the value of the text is not the number; else ""."""
     graph, digits = Graph(), fifty_digits()
     symbols = {name: graph.symbol(name) for name in sorted(expression.names - {"pi"})}
     scalar = expression.evaluate({**symbols, "pi": graph.pi})

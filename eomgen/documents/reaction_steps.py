@@ -148,7 +148,7 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
 
 
 def _is_clear(x: Scalar) -> bool:
-    """Whether it is short, and the sense of the motion, which is open, does not stand in it by a root."""
+    """True if the formula is short and has no root, whose sign would depend on the sense of the motion."""
     return length_in_print(x) <= SHORT and all(node.op != "sqrt" for node in order((x,)))
 
 
@@ -248,7 +248,7 @@ def reactions_table_step(letters: Lettered) -> Step:
 
 
 def body_steps(reader: Reader, letters: Lettered) -> tuple[Step, ...]:
-    """Of each body its inertia force and couple, and its equations; as many bodies as a reader can take."""
+    """Step of each body, with its inertia force and couple and its equations; as many bodies as a reader can take."""
     by_body: dict[str, list[BodyEquation]] = {}
     for equation in letters.balance.equations:
         by_body.setdefault(equation.body, []).append(equation)
@@ -367,7 +367,7 @@ def kinetostatic_steps(
 
 
 def _multipliers(system: System, letters: Lettered) -> tuple[Step, ...]:
-    """What the multipliers are of the constraints that the coordinates do not satisfy: their reactions."""
+    """Step that gives the multipliers of the closing constraints by their reactions."""
     statements: list[Statement] = []
     for row, lam in zip(system.constraints.closing, system.symbols.lam, strict=True):
         reaction = letters.of_row(row)

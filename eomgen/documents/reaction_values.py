@@ -1,4 +1,4 @@
-"""Every reaction by its name: a symbol, its shortest readable form, and what machines get.
+"""Every reaction by its name: a symbol, its shortest readable form, and its JSON entries.
 
 System -> every reaction in its shortest readable form, with the accelerations in it and without them.
 
@@ -72,12 +72,12 @@ class Readings:
 
     @cached_property
     def ways(self) -> tuple[Reactions, ...]:
-        """Of the shown system, the one from few equations first."""
+        """Solutions for the reactions of the shown system, the one from few equations first."""
         return _ways(self.shown)
 
     @cached_property
     def sides(self) -> dict[int, Scalar]:
-        """Of the shown system, the components that the balance of one side of their joint gives."""
+        """Components of the shown system that follow from the balance of one side of their joint."""
         return reactions_by_sides(self.ways[0].balance)
 
     @cached_property
@@ -128,7 +128,7 @@ class Readings:
 
     @cached_property
     def _divisors_of_loads(self) -> frozenset[Node]:
-        """What the forces on the bodies divide by themselves, as a spring by its length."""
+        """Divisors in the applied forces themselves, as the length of a spring."""
         loads = [e.needed for e in self.ways[0].balance.equations if holds_op(e.needed, "div")]
         return frozenset().union(*(vanishing_divisors(x) for x in self.forms(loads)))
 
@@ -156,7 +156,7 @@ def readings_of(equations: EquationsOfMotion, reader: Reader, *, free: bool = Fa
     Args:
         free: dependent coordinates have accelerations of their own in the form with accelerations.
     Raises:
-        DerivationError: a body is held by nothing; a force acts at no place.
+        DerivationError: a body is unsupported; a force acts at no place.
     """
     system = equations.system
     found = short_accelerations(equations)
@@ -240,7 +240,7 @@ class Lettered:
         return frozenset(symbol.name for symbol in (*self.symbols, *(x for each in self.frictions for x in each)))
 
     def table(self, shown: Container[object] | None = None) -> Table:
-        """What the symbols stand for, all or those that are shown, in the order of the components."""
+        """Table of the meanings of the symbols, all or those that are shown, in the order of the components."""
         rows = []
         named = {contact.component: symbols for contact, symbols in zip(self.contacts, self.frictions, strict=True)}
         for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
@@ -300,10 +300,10 @@ def reaction_name(label: str, owner: str, *more: str) -> str:
 
 
 def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[str], *, alone: bool) -> Symbol | None:
-    """How a joint or a constraint calls a reaction in LaTeX; None where it does not say so.
+    """Symbol that a joint or a constraint declares for a reaction in LaTeX; None where it declares none.
 
     Args:
-        more: what its name has behind the owner: a side, a number.
+        more: the parts of its name after the owner: a side, a number.
         alone: it is the only one there.
     """
     kind = label.partition(" ")[0]
@@ -341,14 +341,14 @@ def _declared(balance: Balance, component: Component, label: str, more: tuple[st
 
 
 def _owner(balance: Balance, component: Component) -> str:
-    """In whose name it is: of the only truss there is nobody's."""
+    """Owner in the name of a reaction; "" for members of the only truss."""
     if component.label != "tension" or not component.side:
         return component.owner
     return component.owner if len(trusses_of(balance.system.scope.model.constraints)) > 1 else ""
 
 
 def _more(balance: Balance, component: Component) -> tuple[str, ...]:
-    """What the name has behind its owner: the side of a hinge, the ends of a member, a number."""
+    """Parts of the name after its owner: the side of a hinge, the ends of a member, a number."""
     if component.label in AXES:
         return (component.side,) if component.side else ()
     kind, _, number = component.label.partition(" ")
@@ -366,7 +366,7 @@ def _strand(balance: Balance, component: Component) -> str:
 
 
 def _couple(balance: Balance, component: Component) -> str:
-    """Of a constraint with several couples x, y, z where all are along axes of the body, else the number; else ""."""
+    """Index of a couple of a constraint: x, y, z where all are along body axes, else its number; "" of a single one."""
     if component.label != "couple" or component.kind != "constraint":
         return ""
     couples = [
@@ -380,7 +380,7 @@ def _couple(balance: Balance, component: Component) -> str:
 
 
 def meaning(balance: Balance, component: Component) -> str:
-    """What a component is, on which body, and in which sense, in words."""
+    """Meaning of a component in words: its kind, its body and its sense."""
     kind = component.label.partition(" ")[0]
     on = _on(balance, component)
     if kind == "tension" and component.side:
@@ -389,7 +389,7 @@ def meaning(balance: Balance, component: Component) -> str:
         strand = _strand(balance, component)
         return f"tension of {component.owner}" + (f", strand {strand}" if strand else "")
     if kind == "drive":
-        return f"what drives {component.side or component.owner}, {on}"
+        return f"drive of {component.side or component.owner}, {on}"
     if kind in AXES:
         return f"force {on}, along {_axis(balance, component, kind)}"
     if kind == "couple":
@@ -404,7 +404,7 @@ def meaning(balance: Balance, component: Component) -> str:
 
 
 def said(balance: Balance, named: NamedReaction) -> str:
-    """What a reaction is that an output asks for by name, in words."""
+    """Meaning in words of a reaction that an output names."""
     kind, _, rest = named.name.removeprefix("reaction_").partition("(")
     axis = kind.removeprefix("couple_")
     of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
@@ -456,7 +456,7 @@ def _sense(balance: Balance, component: Component) -> str:
 
 
 def _direction(balance: Balance, component: Component) -> str:
-    """Along the constraint's own normal; of a joint across the way on which it slides."""
+    """Direction of a component in words: along the constraint's normal, or across the way of a sliding joint."""
     if component.kind == "constraint":
         return ", along the normal"
     if balance.system.scope.model.space == "plane":
@@ -476,7 +476,7 @@ def _named(direction: Vector) -> str:
 
 
 def _is_turned(row: Row, component: Component) -> bool:
-    """Whether the component is minus the multiplier: the force on another body than the row's first one."""
+    """True if the component is minus the multiplier: the force on another body than the row's first one."""
     first = row.pushes[0]
     if row.component not in AXES or not isinstance(first, PointForce):
         return False
@@ -487,7 +487,7 @@ def _is_turned(row: Row, component: Component) -> bool:
 # System -> every reaction by its name, for machines: with accelerations, without them where that is short.
 
 
-LONGEST_SUM = 200  # characters of a sum of reactions that is told
+LONGEST_SUM = 200  # characters of a sum of reactions that is reported
 LARGEST = 2_000_000  # characters of all reactions together that are written out in full
 NAMED_PART = 200  # characters of a text in which long parts have names
 
@@ -520,7 +520,7 @@ def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> di
 
 
 def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
-    """What may be added to indeterminate reactions without a trace: for each free one {name: coefficient}."""
+    """Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}."""
     readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
     spaces = _null_space(readings, named_reactions(readings.ways[0].balance))
     texts = iter(_texts(readings, [x for space in spaces for x in space.values()], frozenset())[1])
@@ -528,7 +528,7 @@ def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
 
 
 def sums_of_open(equations: EquationsOfMotion) -> tuple[tuple[str, str], ...]:
-    """(text as an output asks it, unit) of sums of indeterminate reactions that have one value, as far as short."""
+    """(text as in an output, unit) of sums of indeterminate reactions that have one value, as far as short."""
     readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
     names = named_reactions(readings.ways[0].balance)
     units, graph = {named.name: named.unit for named in names}, equations.system.scope.graph
@@ -555,7 +555,7 @@ def _null_space(readings: Readings, names: Sequence[NamedReaction]) -> list[dict
 
 
 def _share(readings: Readings, names: Sequence[NamedReaction], free: int) -> dict[str, Scalar]:
-    """What a unit of one free component adds to each reaction; those to which it adds nothing are left out."""
+    """Change of each reaction by a unit of one free component; reactions without a change are left out."""
     shares = readings.ways[0].solution.shares
     found = {}
     for named in names:
@@ -604,7 +604,7 @@ def reaction_formulas(equations: EquationsOfMotion) -> dict[str, ReactionFormula
     """The formula of every reaction.
 
     Raises:
-        DerivationError: a body is held by nothing; a force acts at no place.
+        DerivationError: a body is unsupported; a force acts at no place.
     """
     readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
     return {named.name: _formula(readings, named) for named in named_reactions(readings.ways[0].balance)}

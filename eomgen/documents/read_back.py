@@ -1,4 +1,4 @@
-"""A document and the page that was made of it -> whether the page, read back, says what the document holds.
+"""A document and the page that was made of it -> checks that the page, read back, says what the document holds.
 
 The page is read by a reader of its own. What is compared is what stands there: every formula in numbers, every entry of
 a table under its head, every word, in their order; not how it was made.
@@ -71,7 +71,7 @@ from eomgen.symbolic.numeric.work import READ_BACK
 
 NAME = "the page, read back, says what was found"
 HOW = "a reader of its own, 50 digits"
-SHOWN = 60  # characters of what is told
+SHOWN = 60  # characters of a quoted text
 TRIES = 12  # random states, for one at which a formula has a value
 LETTERED = frozenset("sin cos tan arcsin arccos arctan sinh cosh tanh ln min max det".split())
 _SCALED = re.compile(r"(-?\d+(?:\.\d+)?)(?:·10(-?\d+))?")  # 5 · 10^-5
@@ -79,19 +79,19 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
 class Unlike(Exception):
-    """What stands on a page is not what the document holds."""
+    """Raised where a page does not say what the document holds."""
 
 
 @dataclass(frozen=True)
 class Wanted:
-    """What a block of a page is to say.
+    """Required content of one block of a page.
 
     Args:
         kind: as that of the block.
         pieces: of a heading and a paragraph.
         sides: of a formula.
         rows: of a table, its head first.
-        lines: what stands as it is.
+        lines: verbatim text.
     """
 
     kind: str
@@ -102,7 +102,7 @@ class Wanted:
 
 
 def page_read_back(document: Document, text: str, form: str) -> Iterator[Check]:
-    """Whether a page of LaTeX or Markdown says what its document holds.
+    """Checks that a page of LaTeX or Markdown says what its document holds.
 
     Args:
         text: the page, without its proof.
@@ -113,7 +113,7 @@ def page_read_back(document: Document, text: str, form: str) -> Iterator[Check]:
 
 
 def _wanted(document: Document, form: str) -> Iterator[Wanted]:
-    """What a page is to say, in order."""
+    """Required blocks of a page, in order."""
     if document.distrust:
         yield Wanted("words", (document.distrust,))
     yield Wanted("heading", (document.title,))
@@ -170,14 +170,14 @@ def columns_of(table: Table) -> Grid:
 
 @dataclass
 class PageComparison:
-    """What is compared of one document.
+    """Comparison of one document with its page.
 
     Args:
-        values: what is compared in numbers: (where, what stands there, what it is to be).
-        left: {why: what could not be compared}.
-        named: quantities that have a letter, by what stands there, and the other way round.
-        read: how much was read so far.
-        laws: whether general laws stand in sentences as they are set, letter by letter.
+        values: to be compared in numbers: (place on the page, formula read there, formula of the document).
+        left: {reason: places that could not be compared}.
+        named: quantities that have a letter, by the letter, and the other way round.
+        read: the number of parts read so far.
+        laws: True if general laws stand in sentences as they are set, letter by letter.
     """
 
     document: Document
@@ -189,7 +189,7 @@ class PageComparison:
 
     @cached_property
     def notation(self) -> Notation:
-        """How its symbols are set."""
+        """Notation of the document, with distinct names."""
         return self.document.notation.reported_apart(_names_in(self.document))
 
     @cached_property
@@ -198,7 +198,7 @@ class PageComparison:
         names = _names_in(self.document)
         letters = SetLetters({(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}, tuple(names))
         if letters.alike:
-            raise Unlike(f"nobody can tell apart {letters.alike[0]}")
+            raise Unlike(f"these names look alike: {letters.alike[0]}")
         if wrong := misspelt(letters.bare, self.document.notation):
             raise Unlike(wrong)
         return letters
@@ -210,7 +210,7 @@ class PageComparison:
         return SetLetters(bare, self.letters.names)
 
     def checks(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> Iterator[Check]:
-        """Whether each thing on the page is what is to stand there, and what could not be read."""
+        """Checks that each block of the page is the required one; with unmade checks of what could not be read."""
         try:
             self.of_all(wanted, blocks)
             self.of_values()
@@ -362,7 +362,7 @@ class PageComparison:
             raise Unlike(f"{where}: {error.what}") from error
 
     def _text(self, text: str, tokens: Tokens, where: str) -> None:
-        """What a text of the grammar says."""
+        """Compares a formula on the page with a text of the grammar."""
         if len(text) > LONGEST:
             self.left.setdefault("too long to be read back", []).append(where)
             return
@@ -445,10 +445,10 @@ class PageComparison:
             raise Unlike(f"{where}: '{''.join(tokens)}' for {name}")
 
     def of_values(self) -> None:
-        """What stands there in numbers, against what it is to be, at random values of the symbols.
+        """Compares the formulas of the page with those of the document at random values of the symbols.
 
         Raises:
-            Unlike: it is another number.
+            Unlike: one has another value.
         """
         random, arithmetic = Random(0), fifty_digits()
         names = {name for _, tree, meant in self.values for name in (*names_of_tree(tree), *_leaves(meant))}
@@ -465,10 +465,10 @@ InNumbers = tuple[str, Tree, Scalar]
 
 
 def _valueless(todo: Sequence[InNumbers], state: Mapping[str, Any]) -> Iterator[InNumbers]:
-    """What has no value at a state.
+    """Comparisons without a value at a state, to be tried at another.
 
     Raises:
-        Unlike: what stands on the page is another number there.
+        Unlike: the page gives another number there.
     """
     for each, right in zip(todo, _rights([meant for *_, meant in todo], state), strict=True):
         where, tree, _ = each
@@ -484,7 +484,7 @@ def _valueless(todo: Sequence[InNumbers], state: Mapping[str, Any]) -> Iterator[
 
 
 def _rights(scalars: Sequence[Scalar], state: Mapping[str, Any]) -> list[Any]:
-    """What scalars are worth, those of each graph together; nan where one has no value."""
+    """Values of scalars, those of each graph together; nan where one has no value."""
     arithmetic = fifty_digits(partial=True)
     found = [arithmetic.number(x) if type(x) is not Node else None for x in scalars]
     graphs: dict[Any, list[int]] = {}
@@ -500,7 +500,7 @@ def _rights(scalars: Sequence[Scalar], state: Mapping[str, Any]) -> list[Any]:
 
 
 def _leaf_nodes(scalars: Iterable[Scalar]) -> Iterator[tuple[str, Node]]:
-    """What stands in formulas by its name: symbols, and functions of time given by samples."""
+    """Named leaves of formulas: symbols, and functions of time given by samples."""
     for x in order(tuple(scalars)):
         if x.op == "symbol":
             yield x.name, x
@@ -549,7 +549,7 @@ def _digits(text: str) -> list[str]:
 
 
 def _reported(wanted: Wanted) -> str:
-    """What is wanted, for a message."""
+    """Beginning of a required block, quoted for a message."""
     pieces = wanted.pieces or wanted.sides or (wanted.rows[0] if wanted.rows else ()) or wanted.lines[:1]
     return f"'{' '.join(map(_said, pieces))[:SHOWN]}'"
 
@@ -586,12 +586,12 @@ def _leaning(tokens: Tokens) -> Tokens:
 
 
 def _unworded(tokens: Tokens) -> Tokens:
-    """Without what says where words begin and end."""
+    """Tokens without those that mark where words begin and end."""
     return tuple(x for x in tokens if x not in ("$", r"\text", "{", "}"))
 
 
 def _split(tokens: Tokens, between: str) -> list[Tokens]:
-    """What stands between, braces and brackets not looked into."""
+    """Parts between the separators that are outside of all braces and brackets."""
     found: list[list[str]] = [[]]
     depth = 0
     for x in tokens:
@@ -622,7 +622,7 @@ def misspelt(letters: Mapping[str, str], notation: Notation) -> str:
 
 
 def _spells(tokens: Tokens, name: str) -> bool:
-    """Whether the letters of an index are those of a name."""
+    """True if the letters of an index are those of a name."""
     said = "".join(spoken(said_by(x)) or x for x in tokens if x not in (r"\mathrm", r"\,"))
     return _alone(name) in _alone(said)
 
@@ -640,7 +640,7 @@ def _begin(kind: str, command: str) -> Tokens:
 
 
 def _after_partial(tokens: Tokens, where: str) -> int:
-    r"""Where the lower half of \frac{\partial T}{\partial q} begins, at its brace."""
+    r"""Index of the brace at which the lower half of \frac{\partial T}{\partial q} begins."""
     if tokens[:2] != (r"\frac", "{"):
         raise Unlike(f"{where}: no derivative stands there")
     k = closing_brace(tokens, 1)

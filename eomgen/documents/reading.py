@@ -214,7 +214,7 @@ def common_sums(*sides: Scalar) -> Scalar:
 
 
 def conditions_in(x: Scalar) -> list[Node]:
-    """The conditions of the cases in x, each once; before those that are asked only where it fails."""
+    """The conditions of the cases in x, each once; one comes before those that are evaluated only where it fails."""
     if not holds_op(x, "select"):
         return []
     deep: dict[Node, int] = {}
@@ -225,7 +225,7 @@ def conditions_in(x: Scalar) -> list[Node]:
 
 
 def _chain(node: Scalar) -> int:
-    """How many conditions are asked one after the other."""
+    """Number of conditions that are evaluated one after the other."""
     length = 0
     while type(node) is Node and node.op == "select":
         length, node = length + 1, node.args[2]
@@ -284,7 +284,7 @@ def length_in_print(*expressions: Scalar) -> int:
 
 
 def omitted(*expressions: Scalar) -> Omitted:
-    """That the expressions are too long to print."""
+    """Statement that the expressions are too long to print."""
     return Omitted((expressions,))
 
 
@@ -402,7 +402,7 @@ def _constants(x: Scalar) -> Iterator[Node]:
 
 
 def _unit(scope: Scope, x: Node) -> str:
-    """Of a coefficient, as the model's units and places say; "" where they do not."""
+    """Unit of a coefficient, inferred from the units of the model; "" where they do not determine it."""
     found = inferred(Catalog(scope.model, ())).names
     text = to_text(x)
     dimension = found.inference.reduced(found.walk().of(parse(text, longest=len(text))))
@@ -420,12 +420,12 @@ LONGEST_ROOT = 24  # characters of a root without a name
 
 @dataclass(frozen=True)
 class Written:
-    """What a derivation prints, while parts of it get names.
+    """Content of a derivation, while parts of it get names.
 
     Args:
         steps: in order.
         equations: the equations of motion, printed in the steps too.
-        definitions: (symbol, what it stands for), printed in the steps too, each before its use.
+        definitions: (symbol, its expression), printed in the steps too, each before its use.
     """
 
     steps: tuple[Step, ...]
@@ -471,7 +471,7 @@ def _with_multiples(x: Node, coefficients: Mapping[Node, Scalar]) -> Scalar:
 
 
 def _product(graph: Owner, term: Product, *, still: bool) -> Scalar:
-    """What of a term is made of parameters alone, with its number; or the rest."""
+    """Factors of a term that are made of parameters alone, with its number; or the other factors."""
     total: Scalar = term.coefficient if still else 1
     for base, e in term.numerator:
         total = graph.mul(total, graph.pow(base, e)) if graph.is_constant(base) == still else total

@@ -15,7 +15,7 @@ from eomgen.proof.reports_read import DrawnPanel
 
 
 class Result:
-    """What can be shown of what a verb finds: a derivation, entries for machines, where it has one a picture."""
+    """Result of a verb that can be shown: a derivation, entries for JSON, and a picture where it has one."""
 
     @property
     def derivation(self) -> Document:
@@ -24,16 +24,16 @@ class Result:
 
     @property
     def picture(self) -> Picture:
-        """As it is drawn."""
+        """Picture of the result."""
         raise NotImplementedError
 
     @property
     def failed(self) -> str:
-        """What is wrong with it, or open in it, in words; "" as it must be."""
+        """Errors or open questions of the result, in words; "" if there are none."""
         return ""
 
     def certify(self) -> Certificate:
-        """The proof of it, made when it is asked for."""
+        """The proof of it, made on demand."""
         raise NotImplementedError
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
@@ -41,7 +41,7 @@ class Result:
         return ()
 
     def entries(self) -> Mapping[str, Any]:
-        """What machines get, with quantities as leaves."""
+        """Entries of the JSON document, with quantities as leaves."""
         raise NotImplementedError
 
     @property
@@ -50,11 +50,11 @@ class Result:
         return replace(self.derivation, entries=self.entries, failed=self.failed)
 
     def render(self, format: str = "text") -> str:
-        """In one of the formats text, latex, markdown, json."""
+        """Text of the document in one of the formats text, latex, markdown, json."""
         return rendered(self.document, format)
 
     def as_dict(self) -> dict[str, Any]:
-        """As `--json` gives it."""
+        """Content of the output of `--json`."""
         return json_form.as_dict(self.document)
 
     def latex(self) -> str:

@@ -70,16 +70,16 @@ class _Layer(ABC):
 
     @abstractmethod
     def at(self, frame: int, view: np.ndarray) -> _Facets:
-        """What is seen of them at a frame."""
+        """Visible facets of the strokes at a frame."""
 
     @cached_property
     def counts(self) -> np.ndarray:
-        """How many faces, or points, each stroke has."""
+        """Number of faces, or points, of each stroke."""
         return np.array([stroke.path.shape[1] for stroke in self.strokes])
 
     @cached_property
     def owner(self) -> np.ndarray:
-        """Of which stroke each face, or point, is."""
+        """Index of the stroke to which each face, or point, belongs."""
         return np.repeat(np.arange(len(self.strokes)), self.counts)
 
     def _places(self, frame: int) -> np.ndarray:
@@ -104,7 +104,7 @@ class _Faces(_Layer):
         return found
 
     def _towards_the_eye(self, middle: np.ndarray, normal: np.ndarray, eye: np.ndarray) -> np.ndarray:
-        """Whether the side of a face that looks away from the middle of all faces of its stroke looks to the eye."""
+        """True for each face whose outer side, away from the middle of its stroke's faces, looks to the eye."""
         first = np.concatenate([[0], np.cumsum(self.counts)[:-1]])
         inside = np.add.reduceat(middle, first) / self.counts[:, None]
         found: np.ndarray = np.einsum("fi,fi->f", normal, middle - inside[self.owner]) * (normal @ eye) >= 0
@@ -134,7 +134,7 @@ class _Dots(_Layer):
 
 
 def _normals(corners: np.ndarray) -> np.ndarray:
-    """Of faces f x c x 3, of length 1; of those without an area 0."""
+    """Unit normals of faces f x c x 3; 0 for those without an area."""
     found = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
     flat = ~found.any(axis=1)
     if corners.shape[1] > 3 and flat.any():
@@ -231,7 +231,7 @@ class SpacePicture:
         return _Lines(tuple(strokes), np.array(inks), self._near(strokes))
 
     def names(self, frame: int, notation: Notation) -> list[PlacedName]:
-        """The names beside their places on the page, as a notation has them."""
+        """The names next to their places on the page, as a notation has them."""
         found: dict[tuple[str, str, int, int], PlacedName] = {}
         for letter in self.drawing.letters:
             at = letter.at[frame] @ self.view.T
@@ -247,7 +247,7 @@ class SpacePicture:
         return list(found.values())
 
     def lines(self, frame: int) -> list[np.ndarray]:
-        """What names should not cover."""
+        """Lines that names should not cover."""
         paths = [s.path[frame].reshape(-1, 3) @ self.view.T[:, :2] for s in self.drawing.strokes if not s.faces]
         return paths
 

@@ -1,6 +1,4 @@
-"""What a derivation is made of: steps of typed statements, in which formulas are graph scalars.
-
-What a derivation is made of: steps of typed statements, in which formulas are graph scalars until they are printed.
+"""Elements of a derivation: steps of typed statements, in which formulas are graph scalars until they are printed.
 
 Plain strings are plain text in every format: each format escapes them in its own way.
 """
@@ -70,7 +68,7 @@ class Law:
 
 @dataclass(frozen=True)
 class Omitted:
-    """What is too long to be printed.
+    """Expressions that are too long to be printed.
 
     Args:
         parts: of each its expressions.
@@ -80,7 +78,7 @@ class Omitted:
 
     @cached_property
     def operations(self) -> int:
-        """How many it has, part by part."""
+        """Number of operations, summed over the parts."""
         return sum(operations(part).total for part in self.parts)
 
 
@@ -123,7 +121,7 @@ class Formula:
 
 @dataclass(frozen=True)
 class Meaning:
-    """What a symbol stands for.
+    """Meaning of a symbol.
 
     Args:
         symbol: a symbol of the formulas, or a quantity.
@@ -201,7 +199,7 @@ Statement = Prose | Formula | Table | Grid | Listing | Lines
 
 
 def parts_of(statement: Statement) -> list[Piece | Side]:
-    """What stands in a statement: words, symbols, quantities, formulas."""
+    """Parts of a statement: words, symbols, quantities, formulas."""
     if isinstance(statement, Formula):
         return list(statement.sides)
     if isinstance(statement, Prose):
@@ -265,7 +263,7 @@ MEANINGS = {
     "Fy": ("force along y, ground axes", "N"),
     "Fz": ("force along z, ground axes", "N"),
     "couple": ("couple on a body, counter-clockwise", "N*m"),
-    "gap": ("what a constraint keeps at zero", ""),
+    "gap": ("function that a constraint holds at zero", ""),
     "Fin_x": ("inertia force of a body along x, minus mass times acceleration of the mass centre", "N"),
     "Fin_y": ("inertia force of a body along y, minus mass times acceleration of the mass centre", "N"),
     "Fin_z": ("inertia force of a body along z, minus mass times acceleration of the mass centre", "N"),
@@ -314,7 +312,7 @@ def quantities(statement: Statement) -> Iterator[Name]:
 
 
 # -------- quantity --------------------------------------------------------------------------------------------
-# What was found of one quantity, and how it is told: exact, as a number, by which way; else what is missing.
+# The results for one quantity: exact, as a number, the method; or the reason why they are missing.
 
 
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -328,15 +326,15 @@ def unit_text(unit: str) -> str:
 
 @dataclass(frozen=True)
 class Quantity:
-    """One thing that was found: exact, as a number, by which way; else what is missing.
+    """One result: exact, as a number, with the method; or the reason why it is missing.
 
     Args:
         exact: text of the grammar with every parameter as a symbol, or None: an equation between quantities.
         value: a number in the unit, parameters and start (or instant) put in, or None.
         unit: of the number; "" for SI, None where nobody names one.
-        method: the way on which it was found.
+        method: by which it was found.
         message: what is missing, or None.
-        beside: what else machines get of it, by name: the way of its proof, its work.
+        beside: further JSON entries by name: the way of its proof, its work.
     """
 
     exact: str | None = None
@@ -365,7 +363,7 @@ class Quantity:
         return [*found, f"({self.message})"] if self.message else found
 
     def as_dict(self) -> dict[str, Any]:
-        """For `--json`; without what nobody says: unit, method and message."""
+        """Entries for `--json`; unit, method and message only where they are given."""
         reported: dict[str, Any] = {"exact": self.exact, "value": self.value}
         reported |= {} if self.unit is None else {"unit": self.unit}
         reported |= {"method": self.method, "message": self.message} if self.method or self.message else {}

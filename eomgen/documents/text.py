@@ -35,7 +35,7 @@ from eomgen.symbolic.print.text import to_text
 name = "text"
 
 RELATIONS = {"less": "<", "less_equal": "<="}
-KEPT = 4096  # texts of formulas that may be asked again
+KEPT = 4096  # texts of formulas that may be needed again
 WIDTH = 100
 INDENT = "    "
 MEANING = 20  # characters that a column of meanings has at least
@@ -131,7 +131,7 @@ def side_text(side: Side) -> str:
 
 @lru_cache(maxsize=KEPT, typed=True)
 def formula_as_text(x: Scalar) -> str:
-    """A formula as the grammar reads it: asked when it is printed, and when that is read back."""
+    """A formula as the grammar reads it: used when it is printed, and when that is read back."""
     return to_text(without_cases((x,))[0])
 
 
@@ -141,7 +141,7 @@ def is_piecewise(side: Side) -> TypeGuard[Node]:
 
 
 def cases_text(x: Scalar) -> list[str]:
-    """["m*g*sin(alpha) where s <= L", "0 otherwise"], each case asked where those before it do not hold."""
+    """["m*g*sin(alpha) where s <= L", "0 otherwise"], each case evaluated where those before it do not hold."""
     cases: list[str] = []
     while is_piecewise(x):
         condition, if_true, x = x.args
@@ -157,7 +157,7 @@ def _name_text(quantity: Name) -> str:
 
 
 def _listing_lines(listing: Listing) -> list[str]:
-    """Each name and what is known of it beside it; below it where words stand there."""
+    """Each name and its value to its right; below it where it is explained in words."""
     width = max((len(row.name) for row in listing.rows), default=0)
     lines: list[str] = []
     for row in listing.rows:
@@ -188,7 +188,7 @@ def _cell(head: str, cell: Cell) -> str:
 
 
 def _column_lines(grid: Grid, wrapped: int, least: int) -> list[str]:
-    """Columns as wide as what stands in them; one is wrapped where they do not fit beside one another.
+    """Columns as wide as what stands in them; one is wrapped where they do not fit side by side.
 
     Args:
         least: the width that is left to that column.
@@ -225,7 +225,7 @@ def broken(text: str, indent: str, width: int) -> list[str]:
 
 
 def _break(text: str, start: int, end: int) -> int | None:
-    """Where to break: the last sign of the least depth before `end`, not too near the start; else the next one."""
+    """Place to break a line: the last sign of least depth before `end`, not too near the start; else the next one."""
     within: list[tuple[int, int]] = []
     for sign in _signs(text, start):
         if sign[1] > end:

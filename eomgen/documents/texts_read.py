@@ -1,4 +1,4 @@
-"""A document and the text or JSON that was made of it -> whether that says, read again, what the document says."""
+"""A document and the text or JSON that was made of it -> checks that this, read again, says what the document says."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ HOW = "entry by entry"
 
 
 def json_read_back(document: Document, entries: Mapping[str, Any], text: str) -> Iterable[Check]:
-    """Whether a text for machines says what the document holds.
+    """Checks that the JSON text says what the document holds.
 
     Args:
         entries: those of the document.
@@ -62,10 +62,10 @@ def json_read_back(document: Document, entries: Mapping[str, Any], text: str) ->
 
 
 def _same(entry: Any, reported: Any, where: str) -> int:
-    """How many leaves an entry has that is told as it is.
+    """Number of leaves of an entry, all of which are reported as they are.
 
     Raises:
-        Unlike: one is told otherwise.
+        Unlike: one is reported otherwise.
     """
     if isinstance(entry, Quantity):
         return _quantity(entry, reported, where)
@@ -144,14 +144,14 @@ def _statement(statement: Statement, reported: Mapping[str, Any], where: str) ->
 
 
 LINES = "line by line, cells by their places"
-SHOWN = 60  # characters of what is told
+SHOWN = 60  # characters of a quoted text
 _RAISED = re.compile(r"\^\((-?\d+)\)")
 _CELL = re.compile(r"\S+(?: \S+)*")
 _FLAT = str.maketrans({"^": "", "·": "*", "\u2212": "-"})
 
 
 def flat(text: str) -> str:
-    """Without blanks; exponents as digits, raised or not."""
+    """Text without blanks; exponents as digits, raised or not."""
     return "".join(unicodedata.normalize("NFKC", _RAISED.sub(r"\1", text)).translate(_FLAT).split())
 
 
@@ -237,7 +237,7 @@ class TextRead:
                 rest = {k: text for k, text in rest.items() if text}
         inner = sorted(begins.items())
         if [begin for _, begin in inner] != sorted({begin for _, begin in inner}):
-            raise Unlike("columns of a table are not beside one another")
+            raise Unlike("columns of a table are not side by side")
 
 
 def _placed(line: str, rest: dict[int, str]) -> Iterator[tuple[int, int, str]]:
@@ -312,7 +312,7 @@ def side_said(side: Side) -> str:
 
 
 def text_read_back(document: Document, text: str) -> Iterable[Check]:
-    """Whether a text says what its document holds.
+    """Checks that a text says what its document holds.
 
     Args:
         text: without its proof.

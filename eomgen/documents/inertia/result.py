@@ -76,15 +76,15 @@ TEXTBOOK = Law("J_xy = + integral x y dm", r"J_{xy} = +\int x y\,dm")
 
 @dataclass(frozen=True)
 class Inertia(Result):
-    """What is asked of the inertia of a model's bodies.
+    """Masses, mass centres and tensors of inertia of a model's bodies.
 
     Args:
         system: whose bodies they are.
         results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
         axes: the principal axes in numbers, the rows of R, by "plate" or "O".
         steps: how they are found.
-        stated: all of it, by the bodies of which it is said.
-        start: where moving bodies are taken in numbers; {}: parameters or the start have none.
+        stated: all stated values, with the bodies to which they belong.
+        start: the state of moving bodies in the numbers; {}: parameters or the start have none.
     """
 
     system: System
@@ -102,7 +102,7 @@ class Inertia(Result):
 
     @property
     def derivation(self) -> Document:
-        """How they are found."""
+        """Document with the steps by which the results are found."""
         return document_of(self.system.scope.model, "inertia", self.steps)
 
     @property
@@ -127,7 +127,7 @@ class Inertia(Result):
         return Certificate((*checks, *other_parameters(self.system.scope)))
 
     def entries(self) -> dict[str, Any]:
-        """For machines."""
+        """Entries of the JSON document."""
         return {"name": self.system.scope.model.name, "results": self.results, "principal_axes": self.axes}
 
 
@@ -169,19 +169,19 @@ class _Report:
 
     @cached_property
     def stated(self) -> list[Stated]:
-        """What was said so far."""
+        """Values stated so far, for the proof."""
         return []
 
     @cached_property
     def start(self) -> State:
-        """Where moving bodies are taken in numbers; empty where the start is not known."""
+        """State of moving bodies in the numbers; empty where the start is not known."""
         try:
             return values_at_start(self.system)
         except (MissingValues, DerivationError):
             return {}
 
     def _when(self, section: Section) -> Iterable[Statement]:
-        """Where the numbers are taken, if what is asked moves."""
+        """Sentence that names the state of the numbers, if the requested bodies move."""
         moving = set(self.system.scope.symbols.q) & set(symbols_of((*section.point, *chain(*section.tensor))))
         if moving and self.start:
             where = ", ".join(f"{q.name} = {self.start[q]:.6g}" for q in self.system.scope.symbols.q if q in moving)
@@ -262,7 +262,7 @@ class _Report:
         return Step(key, title, (*statements, *principal)), results, (section.of, rows)
 
     def _state(self, section: Section, results: Sequence[InertiaEntry], rows: Any, axis: Any) -> None:
-        """What a section says, for its proof."""
+        """Records the values that a section states, for its proof."""
         values = {result.name.partition("(")[0]: result.value for result in results}
         in_ground = not (section.centroidal and section.of)
         self.stated.append(Stated(section.of, section.bodies, in_ground, section.point, values, rows, axis))
@@ -303,7 +303,7 @@ class _Report:
         return point, first, (point, along)
 
     def _place(self, name: str) -> Vector:
-        """Where a named point is, ground axes."""
+        """Position of a named point, ground axes."""
         known = self.system.scope.model.named_points
         if name not in known:
             raise UsageError(f"there is no point '{name}'", fix=nearest(name, known))

@@ -41,13 +41,13 @@ from eomgen.symbolic.print.text import text_size
 AXES = "xyz"
 LONGEST = 24  # characters of an exact entry of a table; where one is longer, all are numbers
 LONGEST_LINE = 300  # of an exact side of a formula, where it has a number too; of a formula in a table
-MOST_PRINTED = 4000  # of one without a number; of a longer one its size is told, machines get it whole
+MOST_PRINTED = 4000  # of one without a number; of a longer one its size is stated, the JSON entries hold it whole
 PRODUCTS = ((0, 1), (1, 2), (2, 0))
 
 
 @dataclass(frozen=True)
 class InertiaEntry:
-    """One result by name: how it is printed, and what it is worth."""
+    """One result by name: its printed label and its value."""
 
     name: str
     label: Law
@@ -143,7 +143,7 @@ def mass_results(section: Section) -> list[InertiaEntry]:
 
 
 def masses_grid(section: Section) -> Iterator[Statement]:
-    """Of each piece its mass and where its centre is."""
+    """Table of the pieces with their masses and mass centres."""
     if len(section.sum.rows) == 1:
         return
     count = 2 if section.plane else 3
@@ -156,7 +156,7 @@ def masses_grid(section: Section) -> Iterator[Statement]:
 
 
 def moments_grid(section: Section) -> Iterator[Statement]:
-    """Of each row its own moments and what the parallel axes add; the products with the textbook's plus."""
+    """Table of each row's own moments and its parallel-axis terms; products of inertia have the textbook's plus."""
     columns = _columns(section)
     if all(is_zero(x) for row in section.sum.rows for line in row.shift(section.point) for x in line):
         return
@@ -339,7 +339,7 @@ class InertiaSum:
     start: State
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
-        """What scalars are worth at the start, those not met before in one go; None where one has no value."""
+        """Values of scalars at the start, new ones evaluated together; None where one has no value."""
         fresh = [x for x in dict.fromkeys(scalars) if x not in self._value]
         found = numbers_in(fresh, self.motion.scope, self.start) if fresh else []
         if found is None:

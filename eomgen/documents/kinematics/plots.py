@@ -68,7 +68,7 @@ def _in_ground(system: System, body: str, places: np.ndarray, values: State) -> 
 
 
 def _cut(places: np.ndarray, size: float) -> np.ndarray:
-    """What is too far away breaks the line."""
+    """Places of a line with nan for those too far away, so that the line breaks there."""
     near = places[np.isfinite(places).all(axis=1)]
     middle = np.median(near, axis=0) if len(near) else np.zeros(2)
     far = ~np.isfinite(places).all(axis=1) | (np.abs(places - middle).max(axis=1) > FAR * size)
@@ -96,7 +96,7 @@ def _configurations(system: System, body: str, values: State) -> list[State]:
 
 
 def _reach(system: System, values: State) -> float:
-    """How far the one freedom is followed to each side: half a turn of an angle, else sizes of the mechanism."""
+    """Range to each side over which the one degree of freedom is followed: half a turn, or twice the size."""
     symbols = system.symbols
     leading = next(q for q, rate in zip(symbols.q, system.scope.rates, strict=True) if rate is symbols.u[0])
     poses = [x for link in system.motion.links for row in link.pose.R for x in row]
@@ -201,7 +201,7 @@ class _Panels:
         panels = figure.subplot_mosaic(rooms, width_ratios=ratios, height_ratios=ratios)
         main = panels["mechanism"]
         draw_model(main, self.sketch, colors={body: color for color, _, bodies in self._blocks() for body in bodies})
-        main.set_adjustable("datalim")  # the projections stand exactly below and beside it
+        main.set_adjustable("datalim")  # the projections stand exactly below it and to its side
         self._velocities(main)
         far = self._centers(main)
         figure.canvas.draw()
@@ -243,7 +243,7 @@ class _Panels:
         return far
 
     def _is_far(self, place: PagePoint) -> bool:
-        """Whether a place is well outside the mechanism."""
+        """True if a place is well outside the mechanism."""
         corners = np.array([at for _, at, _ in self.points])
         low, high = corners.min(axis=0), corners.max(axis=0)
         reach = FAR_OUT * self.sketch.extent
@@ -304,7 +304,7 @@ def _line(panel: Any, x: Sequence[float], y: Sequence[float], color: str, style:
 
 
 def _to_zero(start: float, end: float, slope: float, offset: float, limits: tuple[float, float]) -> tuple[float, ...]:
-    """From a piece to its zero, where that is in sight; () where it is not."""
+    """Line from a piece to its zero, where that lies within the limits; () where it does not."""
     zero = -offset / slope if slope else float("inf")
     if not limits[0] <= zero <= limits[1] or start <= zero <= end:
         return ()

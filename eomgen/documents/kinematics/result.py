@@ -1,4 +1,4 @@
-"""KinematicState -> Kinematics: the motion at one instant as a user gets it: step by step, for machines, drawn."""
+"""KinematicState -> Kinematics: the motion at one instant: step by step, as JSON entries, drawn."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Kinematics(Result):
     Args:
         state: the motion.
         kinds: of the motions of which it is an instant; None where only the instant is known.
-        relative: (point, body) that are asked besides: the point as it is seen from the body.
+        relative: (point, body) that are requested besides: the point as it is seen from the body.
     """
 
     state: KinematicState
@@ -129,7 +129,7 @@ class Kinematics(Result):
     # -- for machines --------------------------------------------------------------------------------
 
     def entries(self) -> dict[str, Any]:
-        """For machines."""
+        """Entries of the JSON document."""
         state = self.state
         mechanism = state.mechanism
         return {

@@ -99,7 +99,7 @@ def particles_of(system: System) -> tuple[str, ...]:
 
 
 def kinds_step(motions: Sequence[BodyMotion], particles: Iterable[str] = ()) -> Step:
-    """What kind of motion every body makes in the long run, and at this state."""
+    """Step with the kind of motion of every body over time, and at this state."""
     single = set(particles)
     statements = tuple(Prose(tuple(_sentence(motion, motion.body in single))) for motion in motions)
     return Step("kinds", "Kinds of motion", statements)
@@ -139,7 +139,7 @@ def _of_particle(kind: Kind) -> Iterator[Piece]:
 
 
 def _way(way: Curve) -> Iterator[Piece]:
-    """Where a straight line runs, which radius a circle has."""
+    """Words on the direction of a straight path, or the radius of a circular one."""
     if way.kind == "line" and way.along is not None:
         yield from (" along ", *_place(way.along))
     if way.kind == "circle" and way.radius is not None:
@@ -355,7 +355,7 @@ def velocity_parts(system: System, point: str, body: str, readable: Readable) ->
 def _table(
     parts: Mapping[str, Vector], names: tuple[str, ...], letters: str, readable: Readable
 ) -> tuple[Statement, ...]:
-    """The components and the magnitude of each part; beside one another where there is room."""
+    """The components and the magnitude of each part; side by side where there is room."""
     sizes = {name: readable.scalar(sqrt(dot(parts[name], parts[name]))) for name in names}
     together = tabled(("", *letters, "magnitude"), [(NAMES[n], *parts[n][: len(letters)], sizes[n]) for n in names])
     if isinstance(together[0], Grid):
@@ -368,7 +368,7 @@ def _table(
 
 
 def _is_particle(system: System, owner: str | None, point: str) -> bool:
-    """Whether the point is the mass centre of a particle of the model."""
+    """True if the point is the mass centre of a particle of the model."""
     part = None if owner is None else system.scope.model.bodies.get(owner)
     if part is None or part.shape is None or not part.shape.is_point:
         return False

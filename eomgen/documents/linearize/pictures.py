@@ -88,7 +88,7 @@ def _at_rest(modes: Modes) -> Sketch:
 
 
 def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch) -> float:
-    """How far it is swung out: so that no point of the drawing moves by more than a part of the drawing."""
+    """Amplitude of a mode's picture: no point of the drawing moves by more than PART of its extent."""
     aside = {**values, **{q: values[q] + WIDE_STEP * x.real for q, x in mode.shape.items()}}
     there = Sketch(system, aside)
     moved = [
@@ -114,7 +114,7 @@ def _bars(panel: Any, modes: Modes, mode: Mode) -> None:
 
 
 MOST_INPUTS = 8  # curves of one diagram
-DECADES = 1.5  # of frequency, beside the slowest and the fastest mode
+DECADES = 1.5  # of frequency, below the slowest and above the fastest mode
 FINE = 600  # frequencies of a curve
 DASH = 8.0  # of each of several curves that are one [points]
 NARROWEST = 0.15  # of the plane of roots, its shorter side: less is rounding, of roots on an axis
@@ -187,7 +187,7 @@ def _right_angles(phases: Sequence[np.ndarray]) -> np.ndarray:
 
 
 def _frequencies(A: np.ndarray) -> np.ndarray:
-    """From below the slowest to above the fastest mode."""
+    """Frequencies from below the slowest to above the fastest mode [rad/s]."""
     sizes = np.abs(np.linalg.eigvals(A))
     moving = sizes[sizes > ITERATED * sizes.max()] if sizes.max() > 0 else np.ones(1)
     low, high = np.log10(moving.min()) - DECADES, np.log10(moving.max()) + DECADES

@@ -1,4 +1,4 @@
-"""Model -> Linearization: its small motions as a user gets them.
+"""Model -> Linearization: its small motions as a document, as data and drawn.
 
 Model -> Linearization: its small motions as a user gets them: step by step, for machines, drawn.
 """
@@ -164,7 +164,7 @@ class Linearization(Result):
 
     @property
     def frequencies(self) -> tuple[Frequency, ...]:
-        """Of the motions that oscillate, the lowest first."""
+        """Frequencies of the motions that oscillate, the lowest first."""
         return self.modes.frequencies
 
     def _numbers(self, letter: str) -> np.ndarray:
@@ -223,7 +223,7 @@ class Linearization(Result):
         return found if exact else self._rounded(found), exact
 
     def frequency(self, call: Call) -> Frequency:
-        """Of which frequency(k) speaks.
+        """The frequency to which a call frequency(k) refers.
 
         Raises:
             DerivationError: there are not so many.
@@ -265,13 +265,13 @@ class Linearization(Result):
 
     @property
     def _notes(self) -> tuple[str, ...]:
-        """That it is not about the start, which was asked."""
+        """Note that it is not about the start, which was requested; () otherwise."""
         reference = self.small.reference
         if reference.beside is None:
             return ()
         away = [(x.name, float(reference.numbers[x]), value) for x, value in reference.beside.items()]
         reported = ", ".join(f"{name} = {x:.6g} for {value:.6g} at the start" for name, x, value in away if x != value)
-        return (f"The start is accelerated: linearized about what is at rest or steady near it, {reported}.",)
+        return (f"The start is accelerated: linearized about the equilibrium or steady motion near it, {reported}.",)
 
     @property
     def picture(self) -> Picture:
@@ -304,7 +304,7 @@ class Linearization(Result):
         return replace(self, drawn="locus", over=range_of(self.model, over, declared=False)).picture
 
     def entries(self) -> dict[str, Any]:
-        """For machines."""
+        """Entries of the JSON document."""
         return self._entries
 
     @cached_property
@@ -454,7 +454,7 @@ def linearize(
 
     Args:
         about: "equilibrium", "start" (a steady motion), or "steady" (the one near the start); None: as the model says.
-        coordinates: in which they are asked; (): as the model says, or all.
+        coordinates: in which they are written; (): as the model says, or all.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a coordinate that the model does not have.
@@ -563,7 +563,7 @@ class StateSpace:
 
 
 def state_space_of(exact: StateMatrices | None, numbers: StateMatrices | None) -> StateSpace:
-    """What is known of it: one of them at least."""
+    """State space of the exact and the numeric matrices, of which one at least is known."""
     found = exact or numbers
     assert found is not None
     return StateSpace(found.states, found.inputs, found.outputs, numbers, {} if exact is None else _in_sympy(exact))

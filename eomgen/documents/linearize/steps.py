@@ -136,7 +136,7 @@ def _equations(modes: Modes) -> Step:
 
 
 def _rows(modes: Modes) -> Sequence[Node]:
-    """What the rows belong to: of equations of second order the coordinates, else the speeds."""
+    """Symbols of the rows: the coordinates for equations of second order, else the speeds."""
     e = modes.small.exact or modes.small.numbers
     return e.coordinates if modes.small.is_second_order else e.speeds
 
@@ -385,7 +385,7 @@ def _with_inputs(e: LinearEquations) -> Prose:
 
 
 def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
-    """Those that are not empty, exact where all of them can be printed; else in numbers; () where there are neither."""
+    """State matrices that are not empty: exact where all can be printed, else in numbers; () without either."""
     small = modes.small
     outputs = tuple(q.name for q in small.numbers.coordinates)
     ways = [exact_state_space(small, outputs)]
@@ -500,7 +500,7 @@ def reference_step(modes: Modes) -> Step:
     if reference.family is not None:
         statements += _family(modes, reference.family)
     if reference.place is not None and reference.place.statics.held:
-        statements.append(prose(f"What the model drives is held there: {', '.join(reference.place.statics.held)}."))
+        statements.append(prose(f"Driven coordinates are held there: {', '.join(reference.place.statics.held)}."))
     if small.left_out:
         one = len(small.left_out) == 1
         why = "nothing depends on it, and it has no speed of its own" if one else NOTHING_DEPENDS
@@ -516,7 +516,7 @@ def _words(reference: ReferenceMotion) -> str:
     if reference.about != EQUILIBRIUM:
         return "The steady motion from the start:"
     if reference.moving:
-        return "The equilibrium beside what moves steadily, nearest to the start:"
+        return "The relative equilibrium in the steady motion, nearest to the start:"
     return "The equilibrium nearest to the start:"
 
 

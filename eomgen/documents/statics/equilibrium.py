@@ -1,4 +1,4 @@
-"""Model -> Resting: where a system with degrees of freedom is at rest, as a user gets it."""
+"""Model -> Resting: the equilibria of a system with degrees of freedom, as a document and as data."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ class Resting(Result):
 
     @cached_property
     def reactions(self) -> ReactionsOrWhy | None:
-        """Those at the first place; None without any."""
+        """Reactions at the first equilibrium; None without any equilibrium."""
         return reactions_or_why(self.places[0]) if self.places else None
 
     def certify(self) -> Certificate:
@@ -102,7 +102,7 @@ class Resting(Result):
         return document_of(model, METHOD, steps)
 
     def entries(self) -> dict[str, Any]:
-        """For machines."""
+        """Entries of the JSON document."""
         return {
             "name": self.model.name,
             "equilibria": [_place(place) for place in self.places],
@@ -152,7 +152,7 @@ def _family(place: Equilibrium, curve: Curve) -> dict[str, Any]:
 
 
 def _reaction_entries(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
-    """Those at the first place."""
+    """JSON entries of the reactions at the first equilibrium."""
     _, reactions, why = those
     numbers = shown_numbers([each.value for each in reactions], known_exactly(place.statics.system.scope))
     return {
@@ -253,7 +253,7 @@ def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tu
 
 
 def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
-    """That the virtual work vanishes for every displacement: the equations."""
+    """Step with the equations by which the virtual work vanishes for every displacement."""
     empty = _nowhere(reader, statics)
     if not statics.q:
         return Step("balance", "Balance at rest", empty or (prose("No force changes with the place."),))
@@ -262,7 +262,7 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     words += ", those of the constraints included: " if statics.lam else ": "
     held: list[Statement] = []
     if statics.held:
-        held = [prose(f"What the model drives is held where it starts: {', '.join(statics.held)}.")]
+        held = [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
     forces = _all_forces(reader, statics)
     own = len(statics.phi) - statics.norms
     constraints = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
@@ -286,7 +286,7 @@ def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
 
 
 def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
-    """The equation along every coordinate; with constraints the multipliers stand in it beside Q."""
+    """The equation along every coordinate; with constraints the multipliers stand in it next to Q."""
     if not statics.lam:
         pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
         others = tuple(Formula((reader.shown(x), 0)) for x in statics.beside)
@@ -309,21 +309,21 @@ def _places(found: Equilibria) -> Step:
         statements.append(prose(any_, *listed_symbols(found.chosen), f" near {stay} there."))
     if not found.found:
         statements.append(prose(_how_many(found)))
-        return Step("places", "Places of rest", tuple(statements))
+        return Step("places", "Equilibria", tuple(statements))
     units = _declared_units(found.statics.system.scope.model)
     rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place, units)]
     grid = narrow_grid(("place", "coordinate", "exact", "value", "unit", "stability"), rows)
     curves = [_curve(k, place, place.curve) for k, place in enumerate(found.found, start=1) if place.curve is not None]
-    return Step("places", "Places of rest", (*statements, prose(_how_many(found)), grid, *curves))
+    return Step("places", "Equilibria", (*statements, prose(_how_many(found)), grid, *curves))
 
 
 def _declared_units(model: Model) -> dict[str, Unit]:
-    """Of the coordinates that have one in the file."""
+    """Units of the coordinates that have one in the file."""
     return {name: q.unit for name, q in model.coordinates.items() if q.unit is not None}
 
 
 def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
-    """What moves along a curve of equilibria, what follows it, what stays."""
+    """Statement on a curve of equilibria: the coordinate that moves along it, those that follow, those that stay."""
     model, names = place.statics.system.scope.model, [q.name for q in place.statics.q]
     points = curve.points[:, : len(names)]
     moved = np.max(points, axis=0) - np.min(points, axis=0)

@@ -43,7 +43,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE
 from eomgen.symbolic.print.text import to_text
 
 # -------- picture ---------------------------------------------------------------------------------------------
-# StaticReactions -> a picture: the structure with its loads and its reactions; forces of truss members beside them.
+# StaticReactions -> a picture: the structure with its loads and its reactions; forces of truss members next to them.
 
 
 TENSION, COMPRESSION = "#2457a6", "#b03a2e"
@@ -51,12 +51,12 @@ SHORTEST = 0.45  # of the longest arrow
 WIDTH = 9.0  # of the picture [inches]
 COLUMN, DIAGRAM = 3.4, 1.5  # width and height of a diagram [inches]
 MOST_COLUMNS = 8  # bodies with diagrams
-LONGEST_LABEL = 24  # characters of a formula beside an arrow
+LONGEST_LABEL = 24  # characters of a formula next to an arrow
 
 
 @dataclass(frozen=True)
 class StaticScene:
-    """What is drawn.
+    """Content of a picture of a structure.
 
     Args:
         statics: the structure with its reactions.
@@ -85,7 +85,7 @@ class StaticScene:
 
     @cached_property
     def scale(self) -> Scale:
-        """Of all forces and couples, the loads' and the reactions'."""
+        """Scale of all forces and couples, of the loads and the reactions."""
         loads = [acting.load for acting in loads_at_rest(self.statics.structure)]
         sizes = [math.hypot(*self._vector(load.force, load.axes)) for load in loads if isinstance(load, PointForce)]
         values = self.sketch.numbers(each.value for each in self.statics.reactions if each.value is not None)
@@ -93,7 +93,7 @@ class StaticScene:
 
     @cached_property
     def lines(self) -> list[np.ndarray]:
-        """Of bodies and of members of trusses."""
+        """Lines of bodies and of members of trusses."""
         system = self.statics.system
         bodies = [line for link in system.motion.links for line in self.sketch.lines(link)]
         ends = [pair for _, _, pair in members_of(system)]
@@ -186,7 +186,7 @@ class StaticScene:
         return text if len(text) <= LONGEST_LABEL else ""
 
     def place(self, effect: Effect) -> PagePoint:
-        """Where a reaction acts."""
+        """Place on the page where a reaction acts."""
         axes = Axes(self.statics.system.motion)
         link = axes.motion.links[effect.link]
         x, y = self.sketch.place(link.pose.point(axes.masses[effect.link].com))
@@ -194,7 +194,7 @@ class StaticScene:
         return x + dx, y + dy
 
     def _seat(self, couple: Component) -> PagePoint:
-        """Where a couple is drawn: at the forces of its constraint or joint, else in the middle of the body."""
+        """Place of a drawn couple: at the forces of its constraint or joint, else in the middle of the body."""
         for other in self.statics.structure.components:
             if other.owner == couple.owner and other.label != couple.label and len(other.effects) == 1:
                 return self.place(other.effects[0])
@@ -241,7 +241,7 @@ def statics_picture(found: StaticReactions, sections: Sections, influence: Influ
 
 
 def height_of(scene: StaticScene) -> float:
-    """Of the picture, as the structure is wide or tall [inches]."""
+    """Height of the picture, by the proportions of the structure [inches]."""
     places = np.array([*scene.sketch.points.values(), *(tip for tip, _, _, _ in scene.forces)])
     wide, tall = np.ptp(places, axis=0) + 0.35 * scene.sketch.extent if len(places) else (1.0, 1.0)
     return float(np.clip(WIDTH * tall / wide, 3.2, 8.0))

@@ -1,4 +1,4 @@
-"""Model -> Statics: a structure at rest as a user gets it: solved, written step by step, for machines."""
+"""Model -> Statics: a structure at rest: solved, written step by step, as JSON entries."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Statics(Result):
     Args:
         model: the structure.
         found: its reactions.
-        influence: an influence line, where one was asked.
+        influence: an influence line, where one was requested.
     """
 
     model: Model
@@ -69,12 +69,12 @@ class Statics(Result):
 
     @property
     def ok(self) -> bool:
-        """Whether the two ways agree."""
+        """True if virtual work and equilibrium agree."""
         return not self.found.disagreeing
 
     @property
     def failed(self) -> str:
-        """What is wrong with the result, or open in it, in words; "" as it must be."""
+        """Errors or open questions of the result, in words; "" if there are none."""
         if self.ok:
             return "; ".join((*self._open, *self.broken))
         wrong = ", ".join(reaction.name for reaction in self.found.disagreeing)
@@ -82,7 +82,7 @@ class Statics(Result):
 
     @property
     def _open(self) -> tuple[str, ...]:
-        """That some reactions are statically indeterminate."""
+        """Sentence that names statically indeterminate reactions; () without any."""
         names = [reaction.name for reaction in self.found.open]
         if not names:
             return ()
@@ -94,12 +94,12 @@ class Statics(Result):
 
     @cached_property
     def conditions(self) -> tuple[RestCondition, ...]:
-        """What must hold of contacts that can end or slide."""
+        """Conditions on contacts that can open or slide."""
         return conditions_of(self.found)
 
     @cached_property
     def broken(self) -> tuple[str, ...]:
-        """Of these what does not hold, in words: then it is not at rest like this."""
+        """Violated conditions of contacts, in words: then the structure is not at rest like this."""
         margins = self._numbers([(c.broken, c.margin) for c in self.conditions])
         return tuple(words for words, margin in margins.items() if margin < -COMPUTED)
 
@@ -134,7 +134,7 @@ class Statics(Result):
         return Certificate((*checks, *other_data(self.found.system.motion), *sections, *works))
 
     def _reported_works(self) -> Iterator[ReportedWork]:
-        """Of some reactions in the plane, evenly spread."""
+        """Works of some reactions in the plane, evenly spread over all."""
         by_key = {step.key: step for step in self.derivation.steps}
         worked = [(r.name, r.work) for r in self.found.reactions if r.work is not None]
         for name, work in worked[:: 1 + len(worked) // MOST_REPORTED] if self.model.space == "plane" else ():
@@ -154,7 +154,7 @@ class Statics(Result):
         return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
 
     def entries(self) -> dict[str, Any]:
-        """For machines."""
+        """Entries of the JSON document."""
         structure = self.found.structure
         return {
             "name": self.model.name,
@@ -208,7 +208,7 @@ class Statics(Result):
 
 
 def why_not_at_rest(model: Model, system: System) -> str:
-    """What contacts of bodies without coordinates would have to do and cannot; "" where they rest.
+    """Message if contacts of bodies without coordinates cannot hold them at rest; "" where they do.
 
     Raises:
         DerivationError: bodies can move.
@@ -233,7 +233,7 @@ def _work(equation: WorkEquation) -> dict[str, Any]:
 
 
 def _block(plan: VelocityPlan, block: RigidBlock) -> dict[str, Any]:
-    """What moves as one: its parts, spin, the velocity of its point at the origin; in the plane its centre too."""
+    """JSON entry of a block that moves as one: parts, spin, velocity at the origin; in the plane its centre too."""
     moved = {
         "parts": list(block.parts),
         "rotation": [to_text(x) for x in block.spin],
@@ -258,11 +258,11 @@ def statics(
     """A structure at rest; of a system that is free to move, its equilibria.
 
     Args:
-        influence: the reaction, member force or section force whose influence line is asked too.
+        influence: the reaction, member force or section force whose influence line is requested too.
         reaction: the only one that is found by virtual work too; None: all.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
-        UsageError: no reaction of that name; one is asked by itself of a system that is free to move.
+        UsageError: no reaction of that name; one is requested by itself of a system that is free to move.
         DerivationError: bodies can move; a force acts at no place.
     """
     model = model_at(model, parameters, start)
@@ -279,7 +279,7 @@ def statics(
 
 
 def _refuse_for_resting(**requested: str | None) -> None:
-    """Refuse what is asked of structures alone.
+    """Refuses options that only structures have.
 
     Raises:
         UsageError: it is named.

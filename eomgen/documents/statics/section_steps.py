@@ -1,4 +1,4 @@
-"""Reactions -> the steps about what the bodies carry inside: N, V and M from station to station; influence lines."""
+"""Reactions -> the steps about section forces: N, V and M from station to station; influence lines."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ class Sections:
 
 
 def sections_of(reactions: Reactions) -> Sections:
-    """Of every body; in space of none."""
+    """Section forces of every body in the plane; none in space."""
     system = reactions.balance.system
     found: dict[str, SectionForces] = {}
     reasons: dict[str, str] = {}
@@ -83,7 +83,7 @@ def section_payload(sections: Sections) -> dict[str, Any]:
 def reported_sections(
     sections: Sections, steps: Sequence[Step], payload: Mapping[str, Any]
 ) -> Iterator[tuple[str, Any]]:
-    """(body, what is told of it), as it is printed and as machines get it."""
+    """(body, its reported section forces), as they are printed and as the JSON entries give them."""
     by_key = {step.key: step.statements for step in steps}
     for body, forces in sections.found.items():
         printed = by_key[f"section_{body}"]
@@ -147,7 +147,7 @@ def influence_step(line: InfluenceLine) -> Step:
 
 
 def influence_payload(line: InfluenceLine) -> dict[str, Any]:
-    """For machines."""
+    """JSON entry of an influence line."""
     return {
         "of": line.name,
         "load": [to_text(x) for x in line.load[:2]],

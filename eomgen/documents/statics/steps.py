@@ -137,7 +137,7 @@ def structure_step(statics: StaticReactions) -> Step:
 
 
 def _free(structure: Structure) -> str:
-    """What can move: nothing, straight bodies about their own lines, or what no load moves."""
+    """Sentence on what can move: nothing, straight bodies about their lines, or motions in which no load does work."""
     idle = dict.fromkeys(body for plan in structure.loose for body in plan.moving)
     if not idle:
         return "Nothing can move"
@@ -191,7 +191,7 @@ def _open(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str,
 
 
 def sum_name(statics: StaticReactions, each: StaticSum) -> str:
-    """As an output asks for it: reaction_x(A) + reaction_x(B)."""
+    """Name of a sum as in an output: reaction_x(A) + reaction_x(B)."""
     graph, names = statics.system.scope.graph, statics.structure.names
     return to_text(sum((k * graph.symbol(names[j]) for j, k in each.combination.items()), start=0))
 
@@ -226,7 +226,7 @@ SENSES = {
 
 
 def _sense(statics: StaticReactions, reaction: StaticReaction, value: float | None) -> str:
-    """In words; "" where there is none, or its sign is not known."""
+    """Sense of a reaction in words; "" where there is none, or its sign is not known."""
     senses = SENSES.get(reaction.name.partition("(")[0])
     if senses is None or not value or statics.system.scope.model.space != "plane":
         return ""
@@ -234,10 +234,10 @@ def _sense(statics: StaticReactions, reaction: StaticReaction, value: float | No
 
 
 def meaning_of(balance: Reactions, reaction: StaticReaction) -> str:
-    """What it is, on which body, in which sense."""
+    """Meaning of a reaction: its kind, its body, its sense."""
     if reaction.named is None:
         about = balance.balance.system.scope.model.unknowns[reaction.name]
-        return getattr(about, "about", None) or "asked for"
+        return getattr(about, "about", None) or "to be found"
     return said(balance.balance, reaction.named)
 
 
@@ -250,7 +250,7 @@ def _works(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]
 
 
 def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
-    """Whether virtual work and the balance of the bodies agree."""
+    """Step that says whether virtual work and the balance of the bodies agree."""
     compared = [reaction for reaction in statics.reactions if reaction.work is not None]
     if not compared:
         return ()
@@ -276,7 +276,7 @@ MARGINS = {"pushes": "its normal force", "pulls": "its tension", "sticks": "mu |
 
 
 def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) -> tuple[Step, ...]:
-    """What must hold of contacts that can end or slide, and what does not."""
+    """Step with the conditions on contacts that can open or slide, and those that are violated."""
     if not conditions:
         return ()
     rows = tuple((c.constraint, MARGINS[c.kind], c.margin) for c in conditions)
@@ -303,7 +303,7 @@ LISTED = 8  # parts of a block by name
 
 
 def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
-    """How one reaction follows from the virtual work of the mechanism that its release leaves."""
+    """Step that derives one reaction from the virtual work of the mechanism that its release leaves."""
     equation = reaction.work
     assert equation is not None, "an indeterminate reaction has no equation of work"
     plan, blocks = equation.plan, blocks_of(equation.plan)
@@ -331,7 +331,7 @@ def _scale(blocks: Sequence[RigidBlock], symbol: Node) -> Node:
 
 
 def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, delta: Node) -> Prose:
-    """What moves once the reaction is released, and what does not."""
+    """Sentence on the blocks that move once the reaction is released, and those that stay at rest."""
     still = resting_blocks(plan)
     rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
     many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
@@ -349,11 +349,11 @@ def _listed(names: Sequence[str]) -> str:
     return shown + (f" and {len(names) - LISTED} more" if len(names) > LISTED else "")
 
 
-# -- as it is told -----------------------------------------------------------------------------------
+# -- as it is reported -------------------------------------------------------------------------------
 
 
 def reported_work(name: str, step: Step, machines: Mapping[str, Any]) -> ReportedWork | None:
-    """How a reaction in the plane is found, as it is printed and as machines get it; None where nothing moves."""
+    """Virtual work of a reaction in the plane, as printed and as in the JSON entries; None where nothing moves."""
     grids = {cell_text(s.head[0]): [_by_head(s, row) for row in s.rows] for s in step.statements if isinstance(s, Grid)}
     formulas = [s for s in step.statements if isinstance(s, Formula)]
     if "block" not in grids:
@@ -390,7 +390,7 @@ def _reported_motion(row: Mapping[str, Any]) -> ReportedMotion:
 
 
 def _mechanism(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
-    """Of every block its centre of rotation and its rotation, or its displacement."""
+    """Table of the blocks with their centres of rotation and rotations, or their displacements."""
     if plan.system.scope.model.space != "plane":
         return _mechanism_in_space(plan, blocks, delta)
     rows: list[tuple[Cell, ...]] = []
@@ -404,7 +404,7 @@ def _mechanism(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) ->
 
 
 def _mechanism_in_space(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
-    """Of every body its rotation and the displacement of its mass centre; nodes are named, loads show their shifts."""
+    """Table of the bodies with their rotations and the displacements of their mass centres; nodes are only named."""
     rows: list[tuple[Cell, ...]] = []
     for number, block in enumerate(blocks, start=1):
         if not block.bodies:
@@ -435,7 +435,7 @@ def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) 
 
 
 def _work_terms(plan: VelocityPlan, terms: Sequence[WorkTerm], delta: Node) -> Grid:
-    """Of every load that works the displacement of its point, and its work."""
+    """Table of the loads that do work, with the displacements of their points and their works."""
     plane = plan.system.scope.model.space == "plane"
     size = 2 if plane else 3
     rows: list[tuple[Cell, ...]] = []
@@ -465,7 +465,7 @@ def _points_of(plan: VelocityPlan, acting: Acting) -> list[Displaced]:
 
 
 def _along(plan: VelocityPlan, load: SpreadLoad) -> list[Displaced]:
-    """Of a uniform load its middle, where the resultant acts; of another both ends."""
+    """Displaced points of a spread load: the middle of a uniform one, where its resultant acts; else both ends."""
     a, b = (point_name(plan, place) for place in (load.start, load.end))
     v, w = (plan.velocity(place) for place in (load.start, load.end))
     if not _same(load.at_start, load.at_end):
