@@ -1,5 +1,5 @@
 /*
- * Double pendulum: out = f(t, x, p), the reactions of joints and ties in the motion
+ * Double pendulum: out = f(t, x, p), the reactions of joints and constraints in the motion
  *
  * made by eomgen
  *
