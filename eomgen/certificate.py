@@ -40,7 +40,7 @@ def certify(
         rhs: emitted code to be compared with the symbols.
         derived: the same by the way in which a derivation is written.
         printed: a derivation as it is printed.
-        begins: whether their motion begins as the model's does; what is asked at rest has no speeds of the start.
+        begins: True if their motion begins as the model's does; what is requested at rest has no start speeds.
     """
     trials = Trials(equations)
     claims = [identities.rates(equations), *identities.routes(equations)]

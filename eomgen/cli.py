@@ -80,8 +80,10 @@ def examples_command(wants_json: bool, output: str | None) -> int:
 @click.argument("file", type=click.Path(exists=True, dir_okay=False))
 @JSON
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="The model file, .toml.  [default: stdout]")
-@click.option("--floating", is_flag=True, help="Of URDF: nothing holds the base; else it is fixed to the ground.")
-@click.option("--model", "model", metavar="NAME", help="Of SDF with several models: which; else the first that moves.")
+@click.option("--floating", is_flag=True, help="Of a URDF file: a free base.  [default: fixed to the ground]")
+@click.option(
+    "--model", "model", metavar="NAME", help="The model of an SDF file with several.  [default: the first that moves]"
+)
 def import_command(file: str, wants_json: bool, output: str | None, floating: bool, model: str | None) -> int:
     """Make a model file of a robot's URDF, MJCF or SDF.
 
@@ -125,9 +127,8 @@ def check_command(
 ) -> int:
     """Validate models; count their degrees of freedom.
 
-    By rank and by formula; which constraints close and which only react, what is redundant, which velocity constraints
-    are
-    integrable; how the loops close at the start, and in which other ways they could.
+    By rank and by formula; which constraints close loops and which only give reactions, which are redundant, which
+    velocity constraints are integrable; the assembly of the loops at the start, and the other possible ones.
     """
     from eomgen.verbs.check import check_document
 
@@ -158,15 +159,15 @@ def check_command(
     "--fresh",
     is_flag=True,
     envvar="EOMGEN_FRESH",
-    help="Derive anew what was proven before, and keep nothing.",
+    help="Derive anew what was proven before, and cache nothing.",
 )
 @CERTIFY
 def derive_command(*, fresh: bool, **options: Any) -> int:
     """Derive the equations of motion and certify them.
 
-    What was derived and proven before is told again, if its equations, derived anew, are the same.
+    A cached derivation and proof are reported again if the equations, derived anew, are the same.
     """
-    reported = options["diff"] is None, "is of one model, and --diff tells what differs between two"
+    reported = options["diff"] is None, "is of one model, and --diff compares two"
     refuse_idle(units=reported, full=reported)
     if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
         wants = form_requested(options["wants_json"], options["format_"], options["output"])
@@ -183,7 +184,7 @@ def _derived(model: Model, **requested: Any) -> Document:
 def _cached_derivation(
     *, model: str, wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
 ) -> int:
-    """The derivation as it was told before, else made, and kept where its proof holds."""
+    """Writes the cached derivation, else makes it, and caches it where its proof holds; returns the exit code."""
     from eomgen.verbs.cached_derivation import cached_derivation
 
     form = form_requested(wants_json, format_, output)
@@ -236,9 +237,9 @@ def solve_command(**options: Any) -> int:
 def reactions_command(**options: Any) -> int:
     """Give every reaction, as formulas or at an instant.
 
-    Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
-    coordinates and rates with its number at the start; with --at, exactly and as a number at that instant. --plot
-    draws them along the motion from the start.
+    Each has the name by which an output requests it, and the body on which it acts: as a function of coordinates and
+    rates with its number at the start; with --at, exactly and as a number at that instant. --plot draws them along the
+    motion from the start.
     """
     from eomgen.verbs.reactions import reactions_document
 
@@ -254,9 +255,9 @@ def reactions_command(**options: Any) -> int:
 def statics_command(**options: Any) -> int:
     """Give reactions at rest by virtual work, or the equilibria.
 
-    Of a structure: whether it stands, and by rank which part does not; every reaction by virtual work, with the
-    mechanism that is left when it is released, and by equilibrium; members of trusses; N, V and M along its beams. Of a
-    system that is free to move: where it is at rest, and whether that is stable.
+    For a structure: if it is kinematically stable and, by rank, which part is not; every reaction by virtual work, with
+    the mechanism that its release leaves, and by equilibrium; members of trusses; N, V and M along its beams. For a
+    system that is free to move: its equilibria and their stability.
     """
     from eomgen.documents.statics.result import statics
 
@@ -276,8 +277,9 @@ def statics_command(**options: Any) -> int:
 def kinematics_command(**options: Any) -> int:
     """Give velocities and centres of rotation at one instant.
 
-    Of a mechanism in the one position of its file, or of a motion at its start or at an instant: mobility, centres of
-    rotation with the lines on which they are found, spins, velocities and accelerations of points, kinds of motion.
+    For a mechanism in the position of its file, or a motion at its start or at an instant: mobility, centres of
+    rotation with the lines on which they are found, angular velocities, velocities and accelerations of points, kinds
+    of motion.
     """
     from eomgen.verbs.kinematics import kinematics_requested
 
@@ -292,8 +294,8 @@ def kinematics_command(**options: Any) -> int:
 def inertia_command(**options: Any) -> int:
     """Give masses, mass centres, moments of inertia, principal axes.
 
-    Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
-    tensor (minus) and of the textbook (plus).
+    For each body and for all together; for a body of parts, the contribution of each. The products of inertia have both
+    signs: that of the tensor (minus) and that of textbooks (plus).
     """
     from eomgen.documents.inertia.result import inertia
 
@@ -353,7 +355,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     type=click.Path(exists=True, allow_dash=True),
     help="Equations in a file, one a line; all files of a folder.",
 )
-@click.option("--at", metavar="EQUATION", help='The instant of which they speak: "theta=pi/2"; or "equilibrium".')
+@click.option("--at", metavar="EQUATION", help='The instant at which they hold: "theta=pi/2"; or "equilibrium".')
 @click.option(
     "--from-rest",
     is_flag=False,
@@ -367,9 +369,9 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     type=click.Choice(
         "motion energy force reaction velocity acceleration inertia frequency equilibrium statics law".split()
     ),
-    help="What they are about.  [default: by what stands in them]",
+    help="Their subject.  [default: by their contents]",
 )
-@click.option("--hint", type=click.IntRange(1, 3), help="Tell 1 where to look, 2 at which quantity, 3 the cause.")
+@click.option("--hint", type=click.IntRange(1, 3), help="Show 1 the place, 2 the quantity, 3 the cause of an error.")
 @CERTIFY
 def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
     """Judge equations that somebody derived: right, or why not.

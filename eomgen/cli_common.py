@@ -55,7 +55,7 @@ def _patience_option() -> click.Option:
         show_default=True,
         envvar="EOMGEN_PATIENCE",
         callback=_seconds,
-        help="How long to wait; none: as long as it takes.",
+        help="Time limit in seconds; none: as long as it takes.",
     )
 
 

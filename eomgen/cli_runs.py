@@ -64,16 +64,20 @@ VERB = partial(click.command, cls=Verb)
     type=click.Choice(["projection", "energy", "baumgarte", "none"]),
     default="projection",
     show_default=True,
-    help="What keeps constraints closed.",
+    help="Stabilization of the constraints.",
 )
 @click.option(
     "--project-every",
     type=click.IntRange(min=1),
     metavar="STEPS",
-    help="Project at each so many steps.  [default: where a constraint opens by atol/10]",
+    help="Project every so many steps.  [default: where a constraint error exceeds atol/10]",
 )
 @click.option(
-    "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA", help="Rates of Baumgarte's rows [1/s].  [default: 10 10]"
+    "--baumgarte",
+    nargs=2,
+    type=float,
+    metavar="ALPHA BETA",
+    help="Rates of Baumgarte's stabilization [1/s].  [default: 10 10]",
 )
 @FOLLOW
 @click.option(
@@ -85,7 +89,9 @@ VERB = partial(click.command, cls=Verb)
 )
 @click.option("--units", is_flag=True, help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
-@click.option("--target", metavar="NAME", help="What runs the equations, as of codegen --list.  [default: the fastest]")
+@click.option(
+    "--target", metavar="NAME", help="Language that evaluates the equations, of codegen --list.  [default: the fastest]"
+)
 @CERTIFY
 def simulate_command(
     model: str,
@@ -104,8 +110,8 @@ def simulate_command(
 ) -> int:
     """Integrate the motion from the start values.
 
-    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions and outputs are
-    columns. Constraints are kept closed, and how well, and how well energy is kept, is said.
+    The run continues through every change of contact: opening, closing, sliding, sticking. Reactions and outputs are
+    columns. Constraints are stabilized; their errors and that of the energy are reported.
     """
     from eomgen.simulation.integrator import RATES, Stepping
     from eomgen.verbs.simulate import simulate_document as simulated
@@ -138,26 +144,28 @@ def simulate_command(
     type=click.Choice(["random", "sobol", "lhs"]),
     default="random",
     show_default=True,
-    help="How they are drawn: by chance, quasi-random, or a Latin hypercube.",
+    help="How they are drawn: random, quasi-random, or a Latin hypercube.",
 )
-@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all chance in the sweep.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all random numbers of the sweep."
+)
 @click.option(
     "--ask",
     multiple=True,
     metavar="EXPR",
-    help='An output, as "max(reaction_x(A))", "x at y = 0", "frequency(1)"; of none all [outputs].',
+    help='An output, as "max(reaction_x(A))", "x at y = 0", "frequency(1)".  [default: all of [outputs]]',
 )
-@click.option("--critical", default="", metavar="EXPR", help="Seek where it changes its sign along the first range.")
+@click.option("--critical", default="", metavar="EXPR", help="Find where it changes sign along the first range.")
 @TIME
 @click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of a run.")
 @click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of a run.")
-@click.option("--method", default="DOP853", show_default=True, metavar="NAME", help="As of simulate.")
+@click.option(
+    "--method", default="DOP853", show_default=True, metavar="NAME", help="Integration method, as of simulate."
+)
 @click.option("--workers", type=click.IntRange(min=1), default=1, show_default=True, help="Processes here.")
 @with_values
-@click.option(
-    "--replay", type=click.IntRange(min=0), metavar="RUN", help="Make this run of the sweep in DIR once more."
-)
-@click.option("--samples", type=click.IntRange(min=2), help="Of --replay, how many instants.  [default: 1001]")
+@click.option("--replay", type=click.IntRange(min=0), metavar="RUN", help="Repeat this run of the sweep in DIR.")
+@click.option("--samples", type=click.IntRange(min=2), help="Number of instants of --replay.  [default: 1001]")
 @PLOT
 @click.option(
     "--view", type=click.Choice(["lines", "heat", "scatter"]), help="What --plot draws.  [default: what fits]"
@@ -168,8 +176,8 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     """Make many runs over parameters, resumably.
 
     Every parameter and start of --over with every other, and draws of --random at each point; a row for each run in
-    DIR/table.csv, what failed with its message. The same command goes on where it was stopped. `--replay RUN DIR` makes
-    one run once more.
+    DIR/table.csv, a failed one with its message. The same command continues where it was stopped. `--replay RUN DIR`
+    repeats one run.
     """
     from eomgen.sweeps.design import Stepped
     from eomgen.verbs.sweep import SweepRequested, replay_document, sweep_document
@@ -213,8 +221,8 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
 def identify_command(**options: Any) -> int:
     """Fit masses, inertias, friction to a measured motion.
 
-    The base parameters by least squares, with their formulas and deviations; how well the motion tells them apart; and
-    parameters of bodies of positive density that fit. Without --data the groups that any motion tells apart.
+    The base parameters by least squares, with their formulas and deviations; how well the motion identifies them; and
+    parameters of bodies of positive density that fit. Without --data, the groups that motions can identify.
     """
     from eomgen.verbs.identify import identify_document
 
@@ -236,7 +244,7 @@ def identify_command(**options: Any) -> int:
 @click.option("--forces", is_flag=True, help="Show forces and reactions as arrows.")
 @click.option("--modes", type=click.IntRange(min=1), metavar="N", help="Show the N slowest small motions instead.")
 @click.option("--virtual", metavar="REACTION", help="Show the virtual displacement that gives it: reaction_y(A).")
-@click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Of a strip.")
+@click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Number of frames of a strip.")
 def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
     """Show the motion, small motions, or a virtual displacement."""
     from eomgen.verbs.animate import Showing, animate_document, refuse_ending
@@ -265,12 +273,12 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
 @click.option(
     "--target", "targets", multiple=True, default=("c",), show_default=True, help="Language; several: each in DIR/NAME."
 )
-@click.option("--list", "wants_list", is_flag=True, help="The languages that there are, and no code.")
+@click.option("--list", "wants_list", is_flag=True, help="List the languages, and write no code.")
 @click.option("-o", "--output", metavar="DIR", type=click.Path(file_okay=False), callback=folder, help="Where to.")
 @FOLLOW
 @with_values
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
-@click.option("--jacobian", is_flag=True, help="The slopes of the right-hand side in x and inputs too.")
+@click.option("--jacobian", is_flag=True, help="The Jacobian of the right-hand side in x and inputs too.")
 @click.option("--regressor", is_flag=True, help="Y of tau = Y pi + y0 too, and the columns of the base parameters.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
 @click.option("--integrator", is_flag=True, help="In C too: an integrator, and a program that writes a motion as CSV.")
@@ -285,7 +293,7 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
     nargs=2,
     type=float,
     metavar="ALPHA BETA",
-    help="Closing rows that pull back what has opened, with these rates [1/s].",
+    help="Baumgarte's stabilization of the constraints, with these rates [1/s].",
 )
 def codegen_command(
     model: str | None,
@@ -349,17 +357,17 @@ def codegen_command(
     "sliders",
     multiple=True,
     metavar="NAME=FROM:TO",
-    help='What can be moved: "m=0.1:5", or a name alone.  [default: everything]',
+    help='What gets a slider: "m=0.1:5", or a name alone.  [default: everything]',
 )
 @click.option("--trail", default="", metavar="POINT", help="A point that leaves a trail from the start.")
 @click.option("--forces", is_flag=True, help="Show arrows of forces from the start.")
-@click.option("--speed", type=float, default=1.0, show_default=True, help="How fast its time goes.")
+@click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
 @CERTIFY
 def play_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
-    """Write a page in which the model is alive.
+    """Write an interactive page of a model.
 
-    Sliders for parameters and starts, bodies that one can take by hand, plots, energy; it needs no network. Models
-    whose contacts change play the recorded run.
+    Sliders for parameters and starts, bodies to drag, plots, energy; it needs no network. Models whose contacts change
+    play the recorded run.
     """
     from eomgen.verbs.play import play_document, refuse_other_endings
 
@@ -381,7 +389,7 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
 )
 @PAGE_TIME
 @with_values
-@click.option("--with", "with_", metavar="LIST", callback=words, help='Sections besides: "linearize,statics".')
+@click.option("--with", "with_", metavar="LIST", callback=words, help='Further sections: "linearize,statics".')
 @click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')
 @CERTIFY
 def report_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
@@ -415,7 +423,7 @@ def schema_command(wants_json: bool, output: str | None) -> int:
 @JSON
 @OUTPUT
 def doctor_command(wants_json: bool, output: str | None) -> int:
-    """Tell what this machine can do."""
+    """Report what this machine can do."""
     from eomgen.verbs.doctor import doctor_document as examined
 
     return deliver(examined(), form_requested(wants_json, None, output), output)

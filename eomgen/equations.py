@@ -164,12 +164,12 @@ class Equations(Result):
         *,
         single: bool = False,
     ) -> tuple[np.ndarray, np.ndarray]:
-        """(A, B) of dx' = A dx + B dw beside any motion: the slopes of the right-hand side in x = (q, u) and inputs.
+        """(A, B) of dx' = A dx + B dw near any motion: the Jacobian of the right-hand side in x = (q, u) and inputs.
 
         Args:
             x, p: None: the model's start and values.
             inputs: None: the model's own.
-            single: nan where a change opens constraints that follow from others: no acceleration then closes them all.
+            single: nan where a change opens redundant constraints, which no acceleration then satisfies.
         Raises:
             MissingValues: parameters without values.
         """
@@ -195,7 +195,7 @@ class Equations(Result):
         constraints.
 
         Raises:
-            DerivationError: friction that hangs on the reactions.
+            DerivationError: friction that depends on the reactions.
         """
         from eomgen.mechanics.dynamics.matrices import sympy_system
 
@@ -475,7 +475,7 @@ def _matrix(rows: Sequence[Sequence[Any]], columns: int) -> Any:
 
 
 def _written(entries: Sequence[Any]) -> list[Any]:
-    """Each multiplied out where that is shorter."""
+    """The entries, each multiplied out where that is shorter."""
     return [min(x, y, key=text_size) for x, y in zip(readable_all(entries, Work.ENTRY), entries, strict=True)]
 
 

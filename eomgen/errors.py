@@ -128,7 +128,7 @@ class UsageError(EomgenError):
 
 
 class DerivationError(EomgenError):
-    """The equations could not be derived, or a result could not be had from them."""
+    """The equations could not be derived, or a result does not follow from them."""
 
 
 class OpenConstraints(DerivationError):

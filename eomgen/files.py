@@ -1,4 +1,6 @@
-"""Files, whole or not at all: written beside, synced, renamed; read up to a length. Every room reads and writes here.
+"""Files, whole or not at all: written to a temporary name, synced, renamed; read up to a length.
+
+Every room reads and writes files here.
 
 While a file is written INT and TERM wait (POSIX), so that nothing is left behind. What a killed process left, one
 folder `.eomgen-*` beside its target, the next write into the same folder takes away.
@@ -134,7 +136,7 @@ def is_stream(path: str | Path) -> bool:
 
 @contextmanager
 def beside(folder: Path) -> Iterator[Path]:
-    """A new folder `.eomgen-*` in another one, gone at the end; those of processes that were killed go first."""
+    """A new temporary folder `.eomgen-*` in another one; those of processes that were killed are deleted first."""
     _clear(folder)
     for _ in range(TRIES):
         place = folder / (PREFIX + secrets.token_hex(8))
@@ -212,7 +214,7 @@ def _undisturbed() -> Iterator[None]:
 
 
 def _clear(folder: Path) -> None:
-    """Takes away what nobody holds."""
+    """Deletes the temporary folders that no process holds."""
     with suppress(OSError):
         for left in folder.iterdir():
             if LEFT.fullmatch(left.name) and left.is_dir() and _is_left(left):

@@ -104,7 +104,7 @@ def _frozen(cls: type, *, kw_only: bool, eq: bool, shown: bool) -> type:
         hashed = tuple(f.name for f in fields if (f.compare if f.hash is None else f.hash))
         if "__eq__" not in own:
             found["__eq__"] = _compared_by(_values_of(compared))
-        if own.get("__hash__") is None:  # Python's own None beside an __eq__ says nothing
+        if own.get("__hash__") is None:  # the None that Python adds to an __eq__ says nothing
             found["__hash__"] = _hashed_by(_values_of(hashed))
     for name, method in found.items():
         method.__qualname__ = f"{cls.__qualname__}.{name}"

@@ -73,7 +73,7 @@ class Generated:
         origin: what the files say that they were made from.
         targets: the languages.
         actuated: the actuators of inverse dynamics, () for all speeds; None where it is not requested.
-        integrator: whether the C has one of its own.
+        integrator: True if the C code has its own.
         float32: True for single precision everywhere.
         slopes: True if the slopes of the right-hand side are requested.
         linear: True if the regressor is requested.

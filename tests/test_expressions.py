@@ -269,7 +269,7 @@ def test_expressions_inside_arguments_keep_their_columns():
 
 def test_a_call_has_no_place_in_a_plain_expression():
     """Outside the outputs a call is an error that says so."""
-    with pytest.raises(ExpressionError, match="can only be asked in"):
+    with pytest.raises(ExpressionError, match="can only stand in"):
         parse("speed(A)", references=True).evaluate({})
     with pytest.raises(ExpressionError, match="unknown function 'speed'"):
         parse("speed(A)")

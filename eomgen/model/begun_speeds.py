@@ -1,4 +1,4 @@
-"""Declared speeds -> which of them begin as they say, and which as the rates of the coordinates make them."""
+"""Declared speeds -> those with start values of their own, and those that start by the rates of the coordinates."""
 
 from __future__ import annotations
 

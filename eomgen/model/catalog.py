@@ -97,7 +97,7 @@ class Catalog:
 
 
 def diagnostics_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Diagnostic]:
-    """Exactly one of these fields is given."""
+    """Diagnostics unless exactly one of these fields is given."""
     given = [key for key in keys if getattr(part, key) is not None]
     listed = " and ".join(f"'{key}'" for key in keys)
     if len(given) > 1:

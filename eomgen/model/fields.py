@@ -74,7 +74,7 @@ class FormulaRule(WholeRule):
         words: texts that stand for themselves (`length = "start"`).
         also: names that mean something here only (`r` of `between`), rates with a prime, and in which unit.
         functions: of the motion, that may be called: x(bead.center).
-        usually: what a value below zero does that it hardly should.
+        usually: effect of a value below zero that is hardly intended.
         same_as, works_on: the field of the part that names a coordinate: the value is one of it, or does work on it.
     """
 
@@ -369,7 +369,7 @@ class ParsedTextRule(WholeRule, Generic[Parsed]):
     Args:
         of: what it is read into.
         parse: reads it.
-        needed: what is asked for.
+        needed: what a value must be, for messages.
         like: an example, as the fix of another thing.
         limits: of the text, in the words of JSON Schema.
     """

@@ -95,7 +95,7 @@ def given_samples(model: Any) -> Iterator[tuple[DocumentPath, Sampled, DeclaredS
 
 
 def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
-    """Functions through samples that a run from 0 goes beyond: there a cubic goes straight on, hardly meant."""
+    """Warnings of samples that a run from 0 goes beyond: there a cubic goes straight on, which is hardly intended."""
     found = []
     for path, _, given in given_samples(model):
         first, last = float(given.times[0]), float(given.times[-1])

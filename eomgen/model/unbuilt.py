@@ -55,7 +55,7 @@ def _unbuilt_forces(model: Model) -> tuple[tuple[str, str], ...]:
 
 
 # -------- warnings --------------------------------------------------------------------------------------------
-# Model -> what is allowed and hardly meant: an angle of 90 rad, weight that rises, a stiffness below zero, ...
+# Model -> what is allowed but hardly intended: an angle of 90 rad, weight that rises, a stiffness below zero, ...
 
 
 TURN = 2 * math.pi

@@ -590,7 +590,7 @@ class _Strung(InNumbers):
 
     def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Numbers) -> None:
         """Raises NoValue where a strand runs backwards: a line along an axis has the sense that it has at the start."""
-        at_start = [self._scene.worth(x) for x in minus(second.place, first.place)]
+        at_start = [self._scene.value_at_start(x) for x in minus(second.place, first.place)]
         if sum(float(x) * (y or 0.0) for x, y in zip(D, at_start, strict=True)) < 0:
             raise NoValue("a strand runs the other way than at the start")
 

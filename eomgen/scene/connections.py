@@ -261,7 +261,7 @@ def _direction(stop: Stop, d: Vector) -> Any:
 
 def _is_negative(stop: Stop) -> bool:
     """True if the round stop is run counter-clockwise: the offset is minus the radius."""
-    return (stop.scene.worth(stop.offset) or 0.0) < 0
+    return (stop.scene.value_at_start(stop.offset) or 0.0) < 0
 
 
 def _met(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:

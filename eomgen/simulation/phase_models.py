@@ -245,7 +245,7 @@ def _released(system: System, constraint: str) -> System:
 #
 # What is derived holds for all values of the parameters, but for what numbers have decided on the way:
 #
-#     signs        of the parameters, and of what loads and constraints evaluated at the start (`SystemScene.worth`)
+#     signs        of the parameters, and of values at the start that decided the form of loads and constraints
 #     dependence   which rows of the constraints follow from others: as before where no parameter in them has another
 # value,
 #         and

@@ -323,7 +323,7 @@ def _aside(rng: Random) -> Fraction:
 
 def _is_met(motion: Motion, gap: Scalar) -> bool:
     """True if the gap of bodies that all stand still vanishes at the model's own values: 0.2 and r with r = 0.2."""
-    value = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
+    value = None if motion.scope.symbols.u else SystemScene(motion).value_at_start(gap)
     return value is not None and abs(value) < SOLVED
 
 

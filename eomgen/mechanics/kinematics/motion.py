@@ -108,7 +108,7 @@ class Motion:
 
     @cached_property
     def decided(self) -> dict[Node, None]:
-        """Scalars whose values at the start decided the form of loads and constraints (`SystemScene.worth`)."""
+        """Scalars whose values at the start decided the form of loads and constraints (`SystemScene.value_at_start`)."""
         return {}
 
     @cached_property

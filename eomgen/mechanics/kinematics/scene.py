@@ -201,8 +201,8 @@ class SystemScene:
         """The scalars multiplied out, roots of squares of positive parameters taken."""
         return readable_all(scalars, Work.ENTRY, self.motion.scope.positive)
 
-    def worth(self, scalar: Scalar) -> float | None:
-        """The number that the scalar is at the start with the model's values (None: some are missing)."""
+    def value_at_start(self, scalar: Scalar) -> float | None:
+        """The value of the scalar at the start, with the model's values; None where some are missing."""
         scope = self.motion.scope
         if type(scalar) is Node:
             self.motion.decided[scalar] = None

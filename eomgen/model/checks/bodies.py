@@ -323,9 +323,9 @@ def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Diagnosti
     what = "negative" if number < 0 else "zero"
     key = next((str(k) for k in reversed(leaf.path) if isinstance(k, str)), "")
     reported = shown(expression.text) if expression.literal is None else expression.text
-    worth = f"{reported} = {float(number):g}" if expression.literal is None else reported
+    valued = f"{reported} = {float(number):g}" if expression.literal is None else reported
     where = whereabouts(leaf.path[:-1] if len(leaf.path) > 2 else leaf.path)
-    yield Diagnostic(leaf.path, f"'{key}' in {where} is {what}: {worth}")
+    yield Diagnostic(leaf.path, f"'{key}' in {where} is {what}: {valued}")
 
 
 def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:

@@ -66,7 +66,7 @@ class Link(Constraint):
         if self.length is not None:
             return scene.value(self.length)
         square = scene.start(dot(r, r))
-        if scene.worth(square) == 0 or scene.vanishes(square):
+        if scene.value_at_start(square) == 0 or scene.vanishes(square):
             ends = " and ".join(f"'{point}'" for point in self.points)
             raise ModelError(
                 f"{ends} are at one place at the start: the link has no length there",
@@ -118,7 +118,7 @@ class Members(Constraint):
         ends = self.ends(member)
         first, second = (scene.position(scene.place(point)) for point in ends)
         r = minus(second, first)
-        if all(scene.vanishes(x) or scene.worth(x) == 0 for x in r):
+        if all(scene.vanishes(x) or scene.value_at_start(x) == 0 for x in r):
             raise ModelError(
                 f"member '{member}' of truss '{self.truss}' has no length",
                 scene.where,

@@ -241,7 +241,7 @@ def _sense(scene: LoadContext, x: AnyScalar) -> int:
 
 def _value(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
     """The value of x at the start with the model's values."""
-    found = scene.worth(x)
+    found = scene.value_at_start(x)
     return unknown if found is None else found
 
 
@@ -374,7 +374,7 @@ def _apart(scene: LoadContext, track: Curved, R: AnyScalar) -> AnyScalar:
     """Distance of a ball's centre from that of its track where they touch [m]."""
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
-    if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
+    if inside and (scene.vanishes(D) or (scene.value_at_start(D) or 1) < 0):
         raise ModelError(
             "the body is as large as the circle in which it should roll", scene.where, "give the circle a larger radius"
         )
@@ -523,13 +523,13 @@ class Rolling(Constraint):
         return Meeting(body, surface, not self.slip)
 
     def misplaced(self, scene: LoadContext) -> tuple[str, str]:
-        """Within a circle that is rolled on outside."""
+        """The warning of a start within a circle that is rolled on outside; ("", "") if there is none."""
         if self.circle is None or self.circle.inside:
             return "", ""
         track = self._curved(scene)
         out = minus(scene.position(scene.own_place(self.body, self._hub)), scene.position(track.anchor))
         along = 0 if track.axis is None else dot(track.axis, out)
-        away, r = scene.worth(dot(out, out) - along * along), scene.worth(track.r)
+        away, r = scene.value_at_start(dot(out, out) - along * along), scene.value_at_start(track.r)
         if away is None or r is None or away >= r * r:
             return "", ""
         name = scene.where.rpartition(".")[2]

@@ -53,7 +53,7 @@ class Edge:
 def direction_of(scene: LoadContext, v: Vector) -> Vector:
     """v over its length; along an axis it is that axis, in the sense that v has with the model's values."""
     along = [k for k, x in enumerate(v) if not (type(x) is int and x == 0)]
-    sense = scene.worth(v[along[0]]) if len(along) == 1 else None
+    sense = scene.value_at_start(v[along[0]]) if len(along) == 1 else None
     if not sense:
         return unit(v)
     x, y, z = ((1 if sense > 0 else -1) if k in along else 0 for k in range(3))

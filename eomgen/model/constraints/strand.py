@@ -105,7 +105,7 @@ def strand_along(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> St
     """
     _refuse_out_of_plane(scene, first, second, d)
     length = dot(d, minus(second.center, first.center))
-    run = scene.worth(length)
+    run = scene.value_at_start(length)
     if run is not None and run < -COMPUTED:
         raise _against(scene, first, second)
     return Strand(first, second, d, length)
@@ -128,7 +128,7 @@ def common_tangent(scene: LoadContext, first: Stop, second: Stop) -> Strand:
         return Strand(first, second, *straight)
     square = dot(D, D)
     rest = square if _zero(h) else square - h * h
-    span = scene.worth(rest)
+    span = scene.value_at_start(rest)
     if span is not None and span <= 0:
         raise ModelError(
             f"there is no straight strand between {_names(first, second)} at the start",
@@ -147,7 +147,7 @@ def _straight(
     """Direction and length of a strand that stays along an axis: left(d) . D = h for good, d . D > 0 at the start."""
     for d in AXES if scene.plane else (*AXES, Z, times(-1, Z)):
         length = dot(d, D)
-        run = scene.worth(length)
+        run = scene.value_at_start(length)
         forwards = run is not None and run > 0 if _zero(h) else run is None or run >= 0
         if forwards and all(map(scene.vanishes, _off(scene, d, D, h, side))):
             return d, length

@@ -93,13 +93,13 @@ class String(Constraint):
         """A strand that stays along a line is a string as long as something is left of it."""
         name, found = scene.where.rpartition(".")[2], []
         for k, strand in enumerate(self.strands_at(scene), 1):
-            begun = None if strand.length is None else scene.worth(strand.length)
+            begun = None if strand.length is None else scene.value_at_start(strand.length)
             if strand.length is not None and begun is not None and begun > COMPUTED and scene.moves((strand.length,)):
                 found.append(Edge(f"nothing is left of strand {k} of '{name}'", strand.length))
         return tuple(found)
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """Wraps that lack a size or a sense; something that moves must hang on it; a direction for each strand."""
+        """Wraps that lack a size or a sense; it must hold something that moves; a direction for each strand."""
         for k, wrap in enumerate(self.path or ()):
             where = (*path, "path", k)
             if isinstance(wrap, str):
@@ -129,7 +129,7 @@ class String(Constraint):
             yield Diagnostic((*path, "path"), what, "fasten a body to it, or lay it over a pulley that can turn")
         for k, way in enumerate(self.strands or ()):
             if isinstance(way, str) and catalog.model.space == "space":
-                what = f"'{way}' says no direction in space, where nothing tells which axis is up"
+                what = f"'{way}' says no direction in space, where no axis is up"
                 yield Diagnostic((*path, "strands", k), what, "give the direction as three components")
         pieces = len(self.path or ()) - 1
         if self.strands is not None and self.path is not None and len(self.strands) != pieces:

@@ -1,6 +1,6 @@
 """Forces: the seam of what is applied.
 
-Adding one is one class, beside its kin or in a file of its own, and one name here.
+Adding one is one class, next to its kin or in a file of its own, and one name here.
 """
 
 from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce

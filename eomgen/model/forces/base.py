@@ -102,9 +102,9 @@ Act = Element | PushAt | CoupleOn | PushAlongLine | PushOfMass | PushOnCoordinat
 
 @dataclass(frozen=True, kw_only=True)
 class Force(Part):
-    """Something applied to the system; `by_mass` marks what acts on every particle of a body as its mass is spread.
+    """An action on the system; `by_mass` marks one that acts on every particle of a body in proportion to its mass.
 
-    A law gives `loads`, whether or not it has a `potential`: the two ways to its generalized forces.
+    A law gives `loads`, with or without a `potential`: the two ways to its generalized forces.
     `works` is False for a kind that is read and checked but not derived yet.
     """
 

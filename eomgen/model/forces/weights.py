@@ -98,7 +98,7 @@ class Distributed(Force):
         q_A, q_B = (scene.vector(q) for q in self.intensities or (self.intensity, self.intensity))
         line = SpreadLoad(a, b, q_A, q_B)
         length = _length(line)
-        if is_zero(length) or scene.worth(length) == 0:
+        if is_zero(length) or scene.value_at_start(length) == 0:
             ends = " and ".join(f"'{name}'" for name in self.between)
             raise ModelError(
                 f"{ends} are at one place: a load along a line needs a length",

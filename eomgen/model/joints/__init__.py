@@ -1,6 +1,6 @@
 """Joints: the seam of the connections of bodies to their parents.
 
-Adding one is one class, beside its kin or in a file of its own, and one name here.
+Adding one is one class, next to its kin or in a file of its own, and one name here.
 """
 
 from eomgen.model.joints.ball import Spherical, Universal

@@ -159,7 +159,7 @@ class Joint(Part):
 
     @property
     def parent(self) -> str | None:
-        """The body on which this one hangs (None: the ground)."""
+        """The parent body (None: the ground)."""
         return None if self.on is None else self.on.split(".", 1)[0]
 
     def turns(self) -> tuple[Expression, ...]:

@@ -126,7 +126,7 @@ class Path(Joint):
         return self.pieces[0].friction if len(self.pieces) == 1 else None
 
     def diagnostics(self, path: FilePath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """Each piece is a line or an arc."""
+        """Diagnostics of pieces that are neither a line nor an arc, or both."""
         name = path[1]
         for k, piece in enumerate(self.pieces or ()):
             where = (*path, "pieces", k)

@@ -82,7 +82,7 @@ class Placed(Joint):
     def variables(self, space: str) -> tuple[Expression, ...]:
         zero = Expression.number(0)
         at = (zero,) * (2 if space == "plane" else 3) if self.at is None else self.at
-        assert not isinstance(at, str), "a ground point's name stands for its coordinates before this is asked"
+        assert not isinstance(at, str), "a ground point's name stands for its coordinates before this"
         return (*at, *(self.turns() or (zero,)))
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:

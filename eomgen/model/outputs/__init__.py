@@ -1,6 +1,6 @@
 """Output functions: the seam of the functions of the motion that outputs may call.
 
-Adding one is one class, beside its kin or in a file of its own, and one name here.
+Adding one is one class, next to its kin or in a file of its own, and one name here.
 """
 
 from eomgen.model.outputs.base import OutputFunction

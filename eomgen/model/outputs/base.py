@@ -272,7 +272,7 @@ class OutputFunction:
 
 
 def along(*names: str) -> tuple[str, ...]:
-    """Each name with x, y and z in place of its star."""
+    """The names, each with x, y and z in place of its star."""
     return tuple(name.replace("*", axis) for name in names for axis in AXES)
 
 

@@ -179,7 +179,7 @@ CORNERS: tuple[Vector, ...] = (ZERO, (1, 0, 0), (0, 1, 0))  # of a triangle in t
 def _in_plane(scene: OutputContext, what: str, body: str) -> None:
     if not scene.is_plane:
         raise DerivationError(
-            f"{what}({body}): it is asked of plane motion", fix="ask for omega and v of a point in space"
+            f"{what}({body}): it is defined in plane motion only", fix="ask for omega and v of a point in space"
         )
 
 

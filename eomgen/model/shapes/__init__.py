@@ -1,6 +1,6 @@
 """Shapes: the seam of homogeneous bodies.
 
-Adding one is one class, beside its kin or in a file of its own, and one name here.
+Adding one is one class, next to its kin or in a file of its own, and one name here.
 """
 
 from eomgen.model.shapes.base import MassProperties, Shape

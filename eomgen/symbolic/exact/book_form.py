@@ -63,7 +63,7 @@ def book_form(
 
 
 def _written(x: Scalar, limit: int, positive: Collection[Node], *, most: int | None = None) -> tuple[Scalar, bool]:
-    """(the shortest of its forms, whether it is that of the function and not of how the sum was parted)."""
+    """(the shortest of its forms, True if that depends on the function alone and not on how the sum was split)."""
     try:
         expansion, (found,) = expanded((x,), limit, positive)
     except TooLarge:

@@ -119,7 +119,7 @@ class Expansion:
         return self._sign(parts[0]) if op == "sign" else self._function(op, tuple(parts))
 
     def _sign(self, f: Terms) -> Terms:
-        """sign(f), the positive number and symbols that all terms hold taken out of it."""
+        """sign(f), without the positive number and symbols that all terms have in common."""
         powers = tuple((atom, e) for atom, e in common_monomial(f) if self._is_positive(atom))
         return self._function("sign", (self._without(f, powers),))
 
@@ -283,7 +283,7 @@ class Expansion:
         return result
 
     def _root(self, f: Terms) -> Terms:
-        """sqrt(f): the number's root taken out, the rest an atom."""
+        """sqrt(f): the root of the number times an atom."""
         outside = content(f) if f else Fraction(0)
         root = self.graph.sqrt(outside)
         inside = terms_scaled(f, 1 / outside) if f else f
@@ -410,7 +410,7 @@ class Expansion:
     # -- angles ----------------------------------------------------------------------------------
 
     def _circular(self, op: str, argument: Terms) -> Terms:
-        """sin or cos of a sum of terms, every term an angle, multiples of pi taken out where their cosine is known."""
+        """sin or cos of a sum of terms, every term an angle, multiples of pi evaluated where their cosine is known."""
         vector: dict[int, Number] = {}
         turn = Fraction(0)
         for key, c in argument.items():

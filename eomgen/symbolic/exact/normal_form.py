@@ -328,7 +328,7 @@ class Legibly:
         return self._found[x]
 
     def vector(self, v: Iterable[Scalar]) -> Vector:
-        """Each of three."""
+        """The vector with its three components at their simplest."""
         return vector_of(map(self, v))
 
 

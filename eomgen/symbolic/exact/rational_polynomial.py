@@ -126,7 +126,7 @@ def _primitive(f: RationalPolynomial) -> RationalPolynomial:
 
 
 def _without_common_powers(*both: RationalPolynomial) -> tuple[RationalPolynomial, ...]:
-    """Each over the lowest powers of the generators in either."""
+    """The polynomials, each divided by the lowest powers of the generators in any of them."""
     lowest = [min(powers) for powers in zip(*(exponents for f in both for exponents, _ in f.terms), strict=True)]
     return tuple(
         RationalPolynomial(

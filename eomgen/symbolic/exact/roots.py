@@ -34,7 +34,7 @@ from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import text_size
 
 ADDED = ("add", "sub")
-LARGEST_FACTOR = 120  # a number that is taken out of a sum, numerator and denominator
+LARGEST_FACTOR = 120  # a number that is factored out of a sum, numerator and denominator
 
 
 @dataclass(frozen=True)

@@ -302,7 +302,7 @@ class CollectedSums:
     def _nested(self, parts: SumParts) -> list[Scalar]:
         """factor*(...) + ..., for each factor or divisor that several terms hold and not all; of long sums for one.
 
-        Of a short sum only the highest power is taken out: a^2 + 2*a*b + c reads better than a*(a + 2*b) + c.
+        Of a short sum only the highest power is factored out: a^2 + 2*a*b + c reads better than a*(a + 2*b) + c.
         """
         long = len(parts) > MOST_NESTED
         highest: dict[Base, int] = {}

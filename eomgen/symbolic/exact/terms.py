@@ -33,7 +33,7 @@ HALF = Fraction(1, 2)
 
 
 class TooLarge(DerivationError):
-    """The work or the size asked for is beyond its limit."""
+    """The work or size needed is beyond its limit."""
 
 
 def constant(c: Number) -> Terms:

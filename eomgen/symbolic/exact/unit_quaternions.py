@@ -56,7 +56,7 @@ def _add(total: dict[Exponents, Number], exponents: Exponents, c: Number) -> Non
 
 
 def _raised(exponents: Exponents, places: Sequence[int], powers: Sequence[int]) -> Exponents:
-    """Multiplied by the squares at these places to these powers."""
+    """The exponents after multiplication by the squares at these places to these powers."""
     raised = list(exponents)
     for i, p in zip(places, powers, strict=True):
         raised[i] += 2 * p

@@ -172,7 +172,7 @@ class Writer:
         return atom in self.positive or self.atoms.is_a(atom, "sum")
 
     def _root(self, found: tuple[Terms, ...]) -> Scalar:
-        """The square roots of all these as one, squares taken out."""
+        """The square roots of all these as one, squares in front of the root."""
         key = tuple(tuple(sorted(f.items())) for f in found)
         if key not in self._roots:
             radical = one_root(self._expansion, constant(1), constant(1), found)
@@ -365,7 +365,7 @@ def _by_directions(waves: Waves) -> Sum:
     return best if best is not None else _as_waves(waves)
 
 
-Form = tuple[Number, Sum]  # a plain number and the terms beside it
+Form = tuple[Number, Sum]  # a plain number and the other terms
 
 
 def _size_of_form(form: Form) -> tuple[int, int, int, int]:

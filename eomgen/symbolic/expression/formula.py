@@ -322,7 +322,7 @@ class Expression:
 
     def _called(self, what: Call, call: Callable[[Call], AnyScalar] | None) -> AnyScalar:
         if call is None:
-            raise ExpressionError(f"'{what}' can only be asked in [outputs]", what.column, length=len(what.name))
+            raise ExpressionError(f"'{what}' can only stand in [outputs]", what.column, length=len(what.name))
         return call(what)
 
     def _operate(self, stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar, position: int) -> None:

@@ -562,5 +562,5 @@ def _without(factors: list[Scalar], f: Node) -> list[Scalar]:
 
 
 def _order(factor: Scalar) -> tuple[int, Number]:
-    """Equal for equal factors of one graph."""
+    """Sort key of a factor, equal for equal factors of one graph."""
     return (1, factor.index) if type(factor) is Node else (0, factor)

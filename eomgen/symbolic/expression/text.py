@@ -60,7 +60,7 @@ _FIXES = {
     "³": "write ^3",
     "√": "write sqrt(...)",
     "|": "write abs(...)",
-    "°": 'give the unit beside it: { start = 20, unit = "deg" }',
+    "°": 'give the unit separately: { start = 20, unit = "deg" }',
     ">": CASES,
     "<": CASES,
     "?": CASES,
@@ -215,7 +215,7 @@ def parse_equation(text: str, *, references: bool = True) -> tuple[Expression, E
 
 
 def single_call(text: str) -> Call | None:
-    """The function of the outputs that a text asks for; None where it is another expression.
+    """The function of the outputs that a text calls; None where it is another expression.
 
     Raises:
         ExpressionError: it is no expression.
@@ -559,7 +559,7 @@ def spelled(letter: str) -> str:
 
 
 def invisible(character: str) -> str:
-    """The fix of what cannot be told from a blank, or from nothing; "" of what is seen."""
+    """The fix of a character that looks like a blank, or like nothing; "" of a visible one."""
     if character in ("", "\n", "\t", " ") or (character.isprintable() and not character.isspace()):
         return ""
     return f"a character that is not seen stands there, U+{ord(character):04X}: write a plain blank, or nothing"

@@ -370,7 +370,7 @@ INTERVALS = Arithmetic(
 
 
 # -------- modular ---------------------------------------------------------------------------------------------
-# Linear equations in the prime field: whether one follows from others, exactly.
+# Linear equations in the prime field: exact linear dependence.
 
 
 def follows(rows: Sequence[Sequence[int]], row: Sequence[int]) -> bool:

@@ -133,7 +133,7 @@ class _Boxes:
     def _krawczyk(
         self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """(low, high) of each box made smaller, whether it holds one root alone, and whether it holds none."""
+        """(low, high) of each box made smaller, True if it holds one root alone, True if it holds none."""
         n = len(self.unknowns)
         middle, radius = (a + b) / 2, (b - a) / 2
         low, high = self._at(slopes, a, b)
@@ -333,7 +333,7 @@ def resolved_curve(g: Curve, edges: np.ndarray) -> ChebyshevPieces:
         if halving == MOST_HALVINGS or count > MOST_PIECES:
             enough[:] = True
         rough = ~(left <= CARRIED * size)
-        c[rough] = 0.0  # a jump, or more than is worth halving: a straight line from end to end
+        c[rough] = 0.0  # a jump, or too many to be halved: a straight line from end to end
         c[rough, 0], c[rough, 1] = (
             (values[rough, 0] + values[rough, -1]) / 2,
             (values[rough, -1] - values[rough, 0]) / 2,

@@ -390,7 +390,7 @@ class Descent:
         return x
 
     def _arrived(self, x: np.ndarray) -> np.ndarray:
-        """Move x to roots in place; where that succeeded."""
+        """Moves x to roots, in place; returns where that succeeded."""
         diagonal = np.arange(len(self.unknowns))
         f, A = self._scaled(x)
         mu, size, failed = np.full(len(x), 1e-3), _size(f), np.zeros(len(x))

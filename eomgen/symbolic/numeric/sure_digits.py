@@ -19,7 +19,7 @@ except ImportError:  # no wheel for this platform: mpmath decides
     HAS_BALLS = False
 
 SOLVING = 256  # bits: those of 50 digits, and as many more as an elimination takes
-SURE = 100  # bits of a value, or of one beside 1, that must be left
+SURE = 100  # bits of a value, or of its sum with 1, that must be left
 WORTH = 2  # operations that a value must save if it is converted, or converted back
 ROWS = 8  # from which on elimination is handed over
 OPERATIONS: dict[str, Callable[..., Any]] = {

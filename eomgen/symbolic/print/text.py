@@ -23,7 +23,7 @@ from eomgen.symbolic.print.layout import (
     summands,
 )
 
-ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
+ATOM, POWER, LOOSE = range(3)  # how tightly a text binds: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
 
 SHORTEST_NAMED = 16  # characters: what is shorter gets no name

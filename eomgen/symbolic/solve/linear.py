@@ -1,9 +1,9 @@
 """Linear equations over the graph: solved by elimination, or by determinants where these are short.
 
-Sparse linear equations over the graph: solved by elimination, dependent unknowns and left-over rows kept.
+Sparse linear equations over the graph: solved by elimination, with dependent unknowns and left-over rows.
 
 A pivot must not vanish where the equations hold. Whether an entry does is read off its value at one generic state,
-the shadow, which is carried through the elimination beside the expressions. What has pivots that vanish at special
+the shadow, which is carried through the elimination with the expressions. What has pivots that vanish at special
 states alone (the sine of an angle) is left to the normal equations
 
     W^T A x = W^T b,   W = A where nothing better is known,
@@ -211,7 +211,7 @@ def _eliminate(
     pivots: Pivots,
     worst: tuple[int, int] | None = None,
 ) -> None:
-    """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
+    """Moves lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
     many = Counter(j for line in lines for j in line.entries)  # lines that hold an unknown
     while (found := _pivot(lines, many, rank)) is not None:
         check_patience()
@@ -247,7 +247,7 @@ def _pivot(
 
 
 def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: ValuesAt) -> None:
-    """Solve the groups of lines that determine a few unknowns by their normal equations; what they leave stays."""
+    """Solves the groups of lines that determine a few unknowns by their normal equations; what they leave stays."""
     for group, unknowns in _groups(lines):
         A = np.array([[float(line.shadow.get(j, 0)) for j in unknowns] for line in group])
         if len(unknowns) > min(len(group), TOGETHER) or not _independent(A):
@@ -264,7 +264,7 @@ def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: ValuesAt
 def _squares(
     lines: list[_Line], order: list[tuple[int, _Line]], late: Collection[int], values: ValuesAt, tolerance: float
 ) -> None:
-    """Solve what is left without friction by its normal equations; unknowns that depend on those before stay free.
+    """Solves what is left without friction by its normal equations; unknowns that depend on those before stay free.
 
     A_S x_S = b - A_F x_F,    A_S^T A_S x_S = A_S^T (b - A_F x_F)
     """
@@ -511,7 +511,7 @@ def without_common_factors(
     tests: Sequence[Mapping[int, Scalar]] = (),
     steady: Callable[[Node], bool] = lambda _: True,
 ) -> Scaled:
-    """The equations with common factors taken out.
+    """The equations without their common factors.
 
     Args:
         sure: the symbols that may stand in what is divided by.
@@ -617,7 +617,7 @@ def _common(line: list[PowerProduct], own: Collection[Node]) -> SymbolPowers:
 
 
 def general_solution(system: LinearSystem, pivots: Pivots | None = None) -> Solution:
-    """x as far as the rows determine it, by elimination; common factors are taken out first where any are named."""
+    """x as far as the rows determine it, by elimination; common factors are divided out first where any are named."""
     pivots = pivots or Pivots()
     return scaled_solution(system, pivots) if pivots.factors else sparse_solution(system, pivots)
 
