@@ -108,7 +108,7 @@ class Motion:
 
     @cached_property
     def decided(self) -> dict[Node, None]:
-        """Scalars whose values at the start decided the form of loads and constraints (`SystemScene.value_at_start`)."""
+        """Scalars whose values at the start decided the form of loads and constraints (`value_at_start`)."""
         return {}
 
     @cached_property

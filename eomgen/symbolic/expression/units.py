@@ -311,7 +311,7 @@ def parse_typed(text: str, *, references: bool = False, start: int = 0) -> tuple
                 raise ExpressionError(error.what, start + gap.end(), error.fix, error.length) from None
             continue
         if not expression.names <= {"pi"} or expression.calls:
-            what = f"names are in SI, and '{expression.text}' has the unit '{unit.text}'"
+            what = f"names are in SI, but '{expression.text}' has the unit '{unit.text}'"
             raise ExpressionError(what, start + gap.end(), f"write {expression.text}", len(unit.text))
         return expression, unit
     raise failure
