@@ -244,9 +244,7 @@ def test_the_tie_closes(kind, space, fields):
     """None of the examples is satisfied by the coordinates: every row closes and no row of J is 0."""
     constraints = system_with(kind, space, fields).constraints
     assert constraints.rows and constraints.closing == constraints.rows
-    assert [row.label for row in constraints.closing] == [
-        f"lam(constraint, {k})" for k in range(1, len(constraints.rows) + 1)
-    ]
+    assert [row.label for row in constraints.closing] == [f"lam(tie, {k})" for k in range(1, len(constraints.rows) + 1)]
 
 
 @built
@@ -512,7 +510,7 @@ def test_a_tie_of_coordinates_has_no_wrench():
 
 def test_a_rate_that_is_not_linear_in_the_rates_is_a_wrong_model():
     """J u + sigma = 0 has no place for a'^2."""
-    with pytest.raises(eomgen.ModelError, match="the rate of 'constraint' is not linear in the rates"):
+    with pytest.raises(eomgen.ModelError, match="the rate of 'tie' is not linear in the rates"):
         _ = system_with("equation", PLANE, "rate = \"a'^2 - b'\"").constraints
 
 
