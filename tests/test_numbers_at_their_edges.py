@@ -72,7 +72,7 @@ def test_a_block_pushed_by_a_power_of_two_oscillates_with_the_root_of_its_logari
 @pytest.mark.parametrize("exponent", [(-2.0, 3.0), (0.5, 0.75), (-1.0, -0.5)])
 def test_the_interval_of_a_power_holds_all_its_values(base, exponent):
     """a^n for a and n each in an interval."""
-    ends = [tuple(np.array([x]) for x in pair) for pair in (base, exponent)]
+    ends = [np.array([[low], [high]]) for low, high in (base, exponent)]
     low, high = INTERVALS.functions["pow"](*ends)
     values = [a**n for a in np.linspace(*base, 9) for n in np.linspace(*exponent, 9)]
     assert low[0] <= min(values) and max(values) <= high[0]

@@ -26,7 +26,7 @@ from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.arithmetic import INTERVALS, interval
+from eomgen.symbolic.numeric.arithmetic import INTERVALS, interval_of
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import BEST, CARRIED, COMPUTED, ITERATED, NEAR_ROOT, SOLVED, TINIEST
 
@@ -102,12 +102,14 @@ class _Boxes:
 
     def _at(self, scalars: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(lowest, highest) value of each scalar in each box, boxes x scalars."""
-        given = {node: interval(float(x), float(x)) for node, x in self.values.items()}
-        given |= {node: (a[:, k], b[:, k]) for k, node in enumerate(self.unknowns)}
-        with np.errstate(over="ignore", invalid="ignore"):  # what is beyond doubles may be anything
+        if not len(a):
+            return np.zeros((0, len(scalars))), np.zeros((0, len(scalars)))
+        given = {node: interval_of(float(x)) for node, x in self.values.items()}
+        given |= {node: np.array([a[:, k], b[:, k]]) for k, node in enumerate(self.unknowns)}
+        with np.errstate(all="ignore"):  # what is beyond doubles may be anything
             found = evaluate(scalars, given, INTERVALS)
-        ends = [np.stack([np.broadcast_to(x[k], len(a)) for x in found], axis=1) for k in range(2)]
-        return ends[0].astype(float), ends[1].astype(float)
+        low, high = np.stack([np.broadcast_to(x, (2, len(a))) for x in found], axis=2).astype(float)
+        return low, high
 
     def _may_vanish(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         low, high = self._at(self.equations, a, b)
@@ -116,19 +118,18 @@ class _Boxes:
     def _is_vain(self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> np.ndarray:
         """Boxes of which halves say no more: an equation is below all doubles, or has no value at the ends and in the
         middle, or changes in a small box by little more than the rounding at a point."""
-        low, high = self._at(self.equations, a, b)
-        lost = np.any(np.maximum(-low, high) <= TINIEST, axis=1)
-        lost |= np.all([self._has_no_value(x, y) for x, y in ((a, b), (a, a), ((a + b) / 2,) * 2, (b, b))], axis=0)
+        middle = (a + b) / 2
+        ends = self._at(self.equations, np.concatenate([a, a, middle, b]), np.concatenate([b, a, middle, b]))
+        low, high = (x.reshape(4, len(a), len(self.equations)) for x in ends)
+        lost = np.any(np.maximum(-low[0], high[0]) <= TINIEST, axis=1)
+        lost |= ~np.any(np.all(np.isfinite(low) & np.isfinite(high), axis=2), axis=0)
         found = np.all(b - a <= NEAR_ROOT * self.size, axis=1)
-        a, b = a[found], b[found]
-        (low, high), (least, most) = self._at(slopes, a, b), self._at(self.equations, (a + b) / 2, (a + b) / 2)
-        steepest = np.maximum(-low, high).reshape(len(a), len(self.equations), len(self.unknowns))
-        changes = np.einsum("bij,bj->bi", steepest, b - a)
-        found[found] = np.any((changes <= OF_ROUNDING * (most - least)) & np.isfinite(most - least), axis=1)
+        rounding = (high[2] - low[2])[found]
+        least, most = self._at(slopes, a[found], b[found])
+        steepest = np.maximum(-least, most).reshape(-1, len(self.equations), len(self.unknowns))
+        changes = np.einsum("bij,bj->bi", steepest, (b - a)[found])
+        found[found] = np.any((changes <= OF_ROUNDING * rounding) & np.isfinite(rounding), axis=1)
         return np.asarray(lost | found)
-
-    def _has_no_value(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
-        return np.asarray(~np.all(np.isfinite(self._at(self.equations, a, b)), axis=(0, 2)))
 
     def _krawczyk(
         self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray
