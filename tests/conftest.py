@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import gc
 import os
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy: its threads wait for one another, and burn a core
+
 import shutil
 import sys
 import warnings
