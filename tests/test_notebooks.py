@@ -1,50 +1,91 @@
-"""Every notebook runs from its first cell to its last, and what a cell ends in can be shown typeset."""
+"""The notebooks as they are kept: what their scripts give, small, the same wherever they are made."""
 
 from __future__ import annotations
 
-import ast
+import json
+import re
+import sys
+from copy import deepcopy
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-import matplotlib
+import nbformat
 import pytest
+
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "notebooks"))
+
+import build  # noqa: E402  the command that makes them
 
 pytestmark = pytest.mark.slow
 
-NOTEBOOKS = sorted((Path(__file__).parent.parent / "notebooks").glob("*.py"))
+SCRIPTS = build.scripts()
+LARGEST = 400_000  # bytes of a notebook
 
 
-def cells(text: str) -> list[str]:
-    """The code cells of a percent script."""
-    parts = text.split("\n# %%")[1:]
-    return [part.partition("\n")[2] for part in parts if not part.startswith(" [markdown]")]
+@cache
+def kept(script: Path) -> dict[str, Any]:
+    """The notebook beside a script."""
+    return json.loads(script.with_suffix(".ipynb").read_text(encoding="utf-8"))
 
 
-def shown(cell: str, namespace: dict[str, Any]) -> Any:
-    """Runs a cell and gives the value of the expression that it ends in, or None."""
-    tree = ast.parse(cell)
-    last = tree.body.pop() if tree.body and isinstance(tree.body[-1], ast.Expr) else None
-    exec(compile(tree, "cell", "exec"), namespace)
-    return None if last is None else eval(compile(ast.Expression(last.value), "cell", "eval"), namespace)
+def test_each_script_has_its_notebook_and_the_page_names_it():
+    """Seven, numbered; notebooks/README.md has a line for each."""
+    assert [script.name[0] for script in SCRIPTS] == list("1234567")
+    assert sorted(build.HERE.glob("*.ipynb")) == [script.with_suffix(".ipynb") for script in SCRIPTS]
+    named = re.findall(r"\]\((\w+\.ipynb)\)", (build.HERE / "README.md").read_text(encoding="utf-8"))
+    assert named == [f"{script.stem}.ipynb" for script in SCRIPTS]
 
 
-def is_rich(value: Any) -> bool:
-    """Whether a notebook shows more than the repr, or the repr is all there is to show."""
-    ours = type(value).__module__.split(".")[0] == "eomgen"
-    methods = ("_repr_mimebundle_", "_repr_latex_", "_repr_html_", "_repr_markdown_", "_repr_png_")
-    return not ours or any(getattr(value, method, None) is not None for method in methods)
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_notebook_is_what_its_script_gives(script):
+    """Every cell runs, its assertions hold, and sources, texts and numbers are those of the notebook that is kept."""
+    assert not list(build.differences(kept(script), build.notebook_of(script))), "python notebooks/build.py"
 
 
-def test_there_are_notebooks():
-    """notebooks/ is not empty."""
-    assert NOTEBOOKS
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda script: script.stem)
+def test_a_notebook_shows_all_on_a_code_host(script):
+    """It is valid and small; nothing in it tells of a machine; each result is shown as more than an object's name."""
+    nbformat.validate(kept(script))
+    text = script.with_suffix(".ipynb").read_text(encoding="utf-8")
+    assert len(text) < LARGEST
+    assert not re.search(r"/(?:tmp|home|root|opt|usr)/|\bat 0x[0-9a-f]+", re.sub(r'"image/png": "[^"]*"', "", text))
+    results = [output for cell in kept(script)["cells"] for output in cell.get("outputs", ())]
+    assert results and not [found for found in results if "".join(found.get("data", {}).get("text/html", ()))]
+    plain = ["".join(found["data"]["text/plain"]) for found in results if found.get("data", {}).keys() == {"text/plain"}]
+    assert not [shown for shown in plain if shown.startswith("<")]
 
 
-@pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_a_notebook_runs_and_shows_its_results(path, tmp_path, monkeypatch):
-    """Cell after cell without an exception; the assertions in them hold; our results have a rich display."""
-    matplotlib.use("Agg")
-    monkeypatch.chdir(tmp_path)
-    namespace: dict[str, Any] = {"__name__": "__main__", "__file__": str(path)}
-    for cell in cells(path.read_text()):
-        assert is_rich(shown(cell, namespace)), cell
+def test_the_first_derives_simulates_and_shows_a_motion_in_ten_cells():
+    """Equations of motion, a run and a moving picture."""
+    cells = kept(SCRIPTS[0])["cells"]
+    code = "\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "code")
+    assert len(cells) == 10 and all(call in code for call in ("eomgen.derive(", "eomgen.simulate(", ".animate("))
+
+
+def test_what_differs_between_two_notebooks_is_named():
+    """A source, a word, a number, an output that is not there, a picture; not the last digits of a number."""
+    first = kept(SCRIPTS[0])
+
+    def changed(change: Any) -> list[str]:
+        other = deepcopy(first)
+        change(other["cells"])
+        return list(build.differences(first, other))
+
+    def replaced(old: str, new: str) -> Any:
+        def change(cells: list[Any]) -> None:
+            told = cells[3]["outputs"][0]["data"]["text/markdown"]
+            assert any(old in line for line in told)
+            told[:] = [line.replace(old, new) for line in told]
+
+        return change
+
+    assert not changed(lambda cells: None)
+    assert not changed(replaced("9.81", "9.8100000001"))
+    assert changed(replaced("9.81", "9.82")) == ["cell-4: another text/markdown"]
+    assert changed(replaced("sin", "cos")) == ["cell-4: another text/markdown"]
+    assert changed(lambda cells: cells[1]["source"].pop()) == ["cell-2: another source"]
+    assert changed(lambda cells: cells.pop()) == ["cell-10: another source"]
+    assert changed(lambda cells: cells[7]["outputs"].clear()) == ["cell-8: outputs of other kinds"]
+    assert changed(lambda cells: cells[8]["outputs"][0]["data"].pop("image/png")) == ["cell-9: outputs of other kinds"]

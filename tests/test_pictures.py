@@ -85,7 +85,7 @@ def test_a_spring_is_a_zigzag_from_end_to_end():
 def test_results_show_themselves_and_their_pictures_in_a_notebook(made, tmp_path):
     """`_repr_markdown_` of the steps, `_repr_png_` of the picture, and the same as a file."""
     found = made()
-    assert found._repr_markdown_().startswith("# ")
+    assert found._repr_markdown_().startswith("### ") and found.render("markdown").startswith("# ")
     assert found.picture._repr_png_().startswith(b"\x89PNG")
     found.plot(tmp_path / "it.svg")
     assert "<svg" in (tmp_path / "it.svg").read_text()

@@ -98,6 +98,10 @@ class Picture:
                 figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left", wrap=True)
             keep(figure)
 
+    def __repr__(self) -> str:
+        width, height = self.size
+        return f"<picture{f' of {self.title!r}' if self.title else ''}, {width:.3g} x {height:.3g} inches>"
+
     def _repr_png_(self) -> bytes:
         page = io.BytesIO()
         self._drawn(lambda figure: figure.savefig(page, format="png", dpi=100))

@@ -41,6 +41,13 @@ def render(document: Document) -> str:
     return "\n\n".join(blocks) + "\n"
 
 
+def markdown_below(text: str) -> str:
+    """A document in Markdown inside another one: its headings two levels lower, below those of a notebook."""
+    pieces = text.split("```")  # every second one is code
+    pieces[::2] = [re.sub(r"^#", "###", piece, flags=re.MULTILINE) for piece in pieces[::2]]
+    return "```".join(pieces)
+
+
 def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
     """Paragraphs, displays and tables."""
     blocks: list[str] = []

@@ -10,6 +10,7 @@ from typing import Any
 from eomgen.documents import json_form, rendered
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
+from eomgen.documents.markdown import markdown_below
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.reports_read import DrawnPanel
 
@@ -69,4 +70,4 @@ class Result:
         return self.render("text")
 
     def _repr_markdown_(self) -> str:
-        return self.render("markdown")
+        return markdown_below(self.render("markdown"))
