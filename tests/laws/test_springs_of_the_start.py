@@ -85,7 +85,7 @@ def test_a_start_without_closed_form_and_numbers_gives_no_length():
         .replace("L = 0.3", "L = {}")
         .replace("GAP", "r + 0.2*sin(3*r)*q - q^2*L")
     )
-    with pytest.raises(eomgen.EomgenError, match="where 'r' starts has no closed form"):
+    with pytest.raises(eomgen.EomgenError, match="start of 'r' has no closed form"):
         eomgen.derive(eomgen.loads(text))
 
 
