@@ -197,7 +197,7 @@ def deliver_several(
     *,
     strict: bool = False,
 ) -> int:
-    """A result of each of several models, one after the other, in JSON a list; the largest exit code.
+    """Writes the results of several models one after the other, in JSON as a list; returns the largest exit code.
 
     The problems of a wrong model are reported, and the next one follows.
     """
@@ -226,7 +226,7 @@ def deliver_several(
 
 
 def put(text: str, output: str | None = None) -> None:
-    """A text into a file, or to stdout."""
+    """Writes a text into a file, or to stdout."""
     if output is not None:
         files.write(output, text)
     else:

@@ -47,7 +47,7 @@ class Placed(Exception):
 
 
 class ReaderGone(Exception):
-    """Nobody reads stdout any more; click takes a BrokenPipeError for its own."""
+    """The reader of stdout is gone. It is no BrokenPipeError, which click would handle itself."""
 
 
 def guarded(verb: Callable[[], int], words: Sequence[str]) -> int:
@@ -81,7 +81,7 @@ def failure(code: int, problems: Sequence[Problem]) -> str:
 
 
 def say(line: str) -> None:
-    """A line on stderr."""
+    """Writes a line to stderr."""
     sys.stderr.write(f"{line}\n")
 
 
@@ -132,7 +132,7 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
 
 
 def _internal(error: Exception, words: Sequence[str]) -> tuple[int, tuple[Problem, ...], str]:
-    """A mistake of ours: it says so, and its report can be sent."""
+    """An internal error as (exit code, problem, text); its report is written to a file that the user can send."""
     what = f"internal error: {type(error).__name__}: {error}".splitlines()[0][:LONGEST]
     reported = "".join(traceback.format_exception(error))
     about = f"eomgen {__version__}, Python {platform.python_version()}, {platform.platform()}"
@@ -158,7 +158,7 @@ def _reported(code: int, problems: tuple[Problem, ...], text: str, wants_json: b
 
 
 class _Shown:
-    """A text stream that is written at once, and shows everything: it is never closed, lacks no letter, hides nothing.
+    """A text stream that writes at once, escapes invisible characters and replaces those that its encoding lacks.
 
     Raises:
         WriteFailed: it is closed or full (only where it is needed; what cannot be said on stderr is left out).
@@ -188,7 +188,7 @@ class _Shown:
         return len(text)
 
     def flush(self) -> None:
-        """Everything is written already."""
+        """Does nothing: everything is written already."""
 
     def isatty(self) -> bool:
         """True if the stream is a terminal."""
@@ -210,7 +210,7 @@ class _Shown:
 
 @contextmanager
 def _streams() -> Iterator[None]:
-    """stdout and stderr that show everything; the numbers 0, 1, 2 are never those of a file that a verb opens."""
+    """Replaces stdout and stderr by `_Shown`; closed ones become the null device, so that no file gets their number."""
     for number in range(3):
         try:
             os.fstat(number)
@@ -226,7 +226,7 @@ def _streams() -> Iterator[None]:
 
 @contextmanager
 def _signals() -> Iterator[None]:
-    """TERM and its like are what Ctrl-C is; those that are ignored stay so. In a thread nothing is changed."""
+    """Handles TERM and similar signals like Ctrl-C; ignored ones stay ignored. In a thread nothing is changed."""
 
     def interrupted(number: int, frame: Any) -> None:
         raise KeyboardInterrupt

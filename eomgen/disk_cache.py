@@ -87,7 +87,7 @@ def put_whole(made: Path, place: Path, name: str) -> Path:
 
 
 def used(path: Path) -> None:
-    """Says that a file was of use, so that it stays."""
+    """Marks a file as used now, so that it is not deleted soon."""
     with suppress(OSError):
         os.utime(path)
 

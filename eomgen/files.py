@@ -41,7 +41,7 @@ WAITING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if 
 
 
 def write(path: str | Path, content: Content) -> None:
-    """A file, its folder made if it is not there; a pipe or a terminal is written as it is.
+    """Writes a file, and makes its folder if there is none; a pipe or a terminal is written directly.
 
     Args:
         content: a text (in UTF-8), bytes, or what fills an open file.
@@ -64,7 +64,7 @@ def write(path: str | Path, content: Content) -> None:
 
 
 def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Path]:
-    """Several files into a folder, which is made if it is not there; all are whole before the first takes its place.
+    """Writes several files into a folder, made if there is none; all are complete before the first takes its place.
 
     Args:
         contents: by path inside the folder.
@@ -130,7 +130,7 @@ def _through(handle: int, most: int) -> bytes:
 
 
 def is_stream(path: str | Path) -> bool:
-    """A pipe, a terminal, a device: nothing can be moved into its place."""
+    """True for a pipe, a terminal or a device: no file can be moved into its place."""
     return os.path.exists(path) and not os.path.isfile(path)
 
 
@@ -187,7 +187,7 @@ def _fill(file: IO[bytes], content: Content) -> None:
 
 @contextmanager
 def _made(directory: Path) -> Iterator[None]:
-    """The folder is there; where what follows fails those that were made for it go again."""
+    """Makes the folder; if what follows fails, the folders that were made for it are removed."""
     new = [each for each in (directory, *directory.parents) if not each.exists()]
     try:
         directory.mkdir(parents=True, exist_ok=True)
@@ -201,7 +201,7 @@ def _made(directory: Path) -> Iterator[None]:
 
 @contextmanager
 def _undisturbed() -> Iterator[None]:
-    """INT, TERM and HUP wait until the end. Windows has no such thing: what is left there goes with the next write."""
+    """Delays INT, TERM and HUP until the end. Windows cannot: what an interrupt leaves, the next write deletes."""
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -252,7 +252,7 @@ def _lock(place: Path) -> int | None:
 
 
 def _sync(directory: Path) -> None:
-    """The names of a folder reach the disk; where folders cannot be opened they do so by themselves."""
+    """Writes the names of a folder to the disk; where folders cannot be opened, the system does that by itself."""
     with suppress(OSError):
         handle = os.open(directory, os.O_RDONLY)
         try:

@@ -246,7 +246,7 @@ class Generated:
         return integrator_files(stem_of(self.stem), self.motion[0], x0, p0, SINGLE if self.float32 else RUN)
 
     def write(self, directory: str | Path) -> list[Path]:
-        """The files, all of them or none.
+        """Writes the files, all of them or none.
 
         Raises:
             WriteFailed: the folder cannot be written; nothing is then left behind.
@@ -254,7 +254,7 @@ class Generated:
         return files.write_all(directory, self.texts)
 
     def certify(self) -> Certificate:
-        """The equations by independent routes; every function's text, run here, against the symbols."""
+        """Checks the equations by independent routes, and every function's text, run here, against the symbols."""
         equations = pipeline.derive(self.model)
         groups = groups_checked(self._regressor) if self.linear else ()
         more = [*groups, *self._checks(equations)]

@@ -107,7 +107,7 @@ def diagnostics_of_one(catalog: Catalog, path: DocumentPath, part: Any, keys: tu
 
 
 def not_in_the_plane(catalog: Catalog, path: DocumentPath, part: Any, keys: tuple[str, ...]) -> Iterator[Diagnostic]:
-    """Fields for space that are given in the plane."""
+    """Diagnostics of fields for space that are given in the plane."""
     for key in keys if catalog.model.space == "plane" else ():
         if getattr(part, key) is not None:
             yield Diagnostic((*path, key), f"'{key}' of '{path[1]}' is for space", "leave it out", key=True)

@@ -105,7 +105,7 @@ def masses_of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> tuple[Any, ..
 
 
 def sources(pieces: Sequence[Any], hole: int) -> tuple[int, ...]:
-    """The pieces out of which a hole may be cut: those that are none, of its dimension."""
+    """The pieces out of which a hole may be cut: those of its dimension that are no holes."""
     dimension = pieces[hole].shape.dimension
     return tuple(k for k, p in enumerate(pieces) if not p.hole and p.shape.dimension == dimension)
 

@@ -30,7 +30,7 @@ def driving_constraints(model: Model) -> dict[str, tuple[str, ...]]:
 
 
 def driven_coordinates(model: Model) -> frozenset[str]:
-    """The names of all of them."""
+    """The names of all coordinates that move as given functions of time."""
     own = (name for name, part in model.coordinates.items() if part.driven)
     return frozenset((*own, *driving_constraints(model)))
 

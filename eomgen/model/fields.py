@@ -202,7 +202,7 @@ class AtRest:
 
 @dataclass(frozen=True)
 class InstantRule(EquationRule):
-    """An equation that says when, or the word "equilibrium"."""
+    """An equation that defines an instant, or the word "equilibrium"."""
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, AtRest) or raw == AtRest.text:
@@ -309,7 +309,7 @@ class NameRule(WholeRule):
 
 @dataclass(frozen=True)
 class TextRule(WholeRule):
-    """Words for people, or one of a few words (`options`)."""
+    """A text, or one of a few words (`options`)."""
 
     options: tuple[str, ...] = ()
 

@@ -15,7 +15,7 @@ from eomgen.symbolic.expression.formula import Expression
 
 
 def in_parts(model: Model) -> Model:
-    """The model with its trusses taken apart; the model itself where it has none."""
+    """The model with its trusses replaced by bodies and constraints; the model itself where it has none."""
     if not model.trusses:
         return model
     nodes = {f"{name}.{node}": _node(at) for name, truss in model.trusses.items() for node, at in truss.nodes.items()}

@@ -32,7 +32,7 @@ def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
 
 
 def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
-    """Joints among them."""
+    """(where, kind) of the joints that wait for a later version."""
     waiting = []
     for name, body in model.bodies.items():
         if body.joint is not None and not body.joint.works_in(model.space):
@@ -41,7 +41,7 @@ def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
 
 
 def unbuilt_constraints(model: Model) -> tuple[tuple[str, str], ...]:
-    """Constraints among them: what cannot be counted in the degrees of freedom."""
+    """(where, kind) of the constraints that wait for a later version: they cannot be counted."""
     constraints = model.constraints.items()
     return tuple(
         (f"constraints.{name}", constraint.kind)
@@ -83,7 +83,7 @@ def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
 
 
 def _angles(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """Plain numbers of more than a turn among the terms of an angle."""
+    """Diagnostics of plain numbers of more than a turn among the terms of an angle."""
     for leaf, expression in catalog.expressions:
         if getattr(leaf.rule, "unit", None) != "rad":
             continue
@@ -134,7 +134,7 @@ def _signs(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagno
 
 
 def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """Gravity upward."""
+    """Diagnostics of gravity upward."""
     for leaf in catalog.leaves:
         if getattr(leaf.rule, "downward", False) and not leaf.part.axis_down:
             parts = [value_of(component, values) for component in leaf.value]
@@ -146,7 +146,7 @@ def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diag
 
 
 def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """An inertia in space that no body has, where nobody says that it was measured: published data are often so."""
+    """Diagnostics of an inertia in space that no body has, unless declared as measured: published data may be so."""
     for name, body in catalog.table("bodies").items():
         if catalog.model.space != "space" or body.inertia is None or body.measured or len(body.inertia) not in (3, 6):
             continue
@@ -161,7 +161,7 @@ def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[D
 
 
 def _unheld(catalog: Catalog) -> Iterator[Diagnostic]:
-    """A body without a joint that no constraint touches, in a model that moves by coordinates."""
+    """Diagnostics of a body without a joint that no constraint touches, in a model that moves by coordinates."""
     if not catalog.table("coordinates"):
         return
     held = set()
@@ -210,7 +210,7 @@ def _guessed(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def _overshoots(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Cubics that leave a dwell: between two equal samples they go elsewhere."""
+    """Diagnostics of cubics that leave a dwell: they are not constant between two equal samples."""
     for path, law, given in laws_through_samples((leaf.path, leaf.value) for leaf in catalog.leaves):
         if given.way != "cubic":
             continue
@@ -229,7 +229,7 @@ _NAME = re.compile(r"[^\W\d]\w*(?:\.\w+)?")
 
 
 def _unused(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Parameters and points of the ground that nothing names."""
+    """Diagnostics of parameters and points of the ground that nothing names."""
     named: dict[str, set[DocumentPath]] = {}
     for leaf in catalog.leaves:
         if leaf.path[-1] not in PROSE:
@@ -280,7 +280,7 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
 
 
 def _symbols_twice(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Two things with the same symbol in formulas, because one of them declares it."""
+    """Diagnostics of two things with the same symbol in formulas, because one of them declares it."""
     declared = dict(_declared(catalog))
     looks = {symbol.tex: path for path, symbol in declared.items()}
     for table in SYMBOL_TABLES:

@@ -23,7 +23,7 @@ MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 
 
 def bodies(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Mass given in two ways or in none, an inertia that is missing, joints that lack something, rings of bodies."""
+    """Diagnostics of masses given twice or not at all, of missing inertias, incomplete joints, rings of bodies."""
     for name, body in catalog.table("bodies").items():
         if body is not None:
             yield from _mass(catalog, name, body)
@@ -51,7 +51,7 @@ def _mass(catalog: Catalog, name: str, body: Any) -> Iterator[Diagnostic]:
 
 
 def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Diagnostic]:
-    """Parts without a mass of their own: in what they share the rest, and that equal densities can be meant."""
+    """Diagnostics of parts without a mass of their own: there must be a rest to share, and one common density."""
     sharing = [k for k, piece in enumerate(body.parts) if piece.shape.mass is None]
     for k in sharing:
         piece = body.parts[k]
@@ -113,7 +113,7 @@ def _joint(catalog: Catalog, name: str, joint: Any) -> Iterator[Diagnostic]:
 
 
 def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
-    """A body that hangs on itself, at once or by way of others (each ring reported once, at its first body)."""
+    """Diagnostics of a body that hangs on itself, directly or through others (each ring once, at its first body)."""
     table = catalog.table("bodies")
     parents = {n: body.joint.parent for n, body in table.items() if body is not None and body.joint is not None}
     done: set[str] = set()
@@ -137,7 +137,7 @@ def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """Shapes that cannot be, parts that weigh more than the whole, holes larger than what they are cut out of."""
+    """Diagnostics of impossible shapes, parts heavier than the whole, holes larger than what they are cut out of."""
     for name, body in catalog.table("bodies").items():
         if body is None or ("bodies", name) in catalog.broken or not _signed_right(body, values):
             continue  # reported already
@@ -278,7 +278,7 @@ def possible(moments: list[float], size: float = 0.0) -> bool:
 
 
 def numbers(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Impossible numbers, wherever an expression has a value (by literals and parameters with values)."""
+    """Diagnostics of impossible numbers, wherever an expression has a value (literals, parameters with values)."""
     values: dict[str, AnyNumber] = {"pi": math.pi}
     for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
         yield from _parameter(catalog, name, values)
@@ -307,7 +307,7 @@ def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Ite
 
 
 def _value(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """An expression of parameters that has no value, such as asin(2); a parameter's own is reported above."""
+    """Diagnostics of an expression without a value, such as asin(2); those of parameters are reported above."""
     elsewhere = leaf.path[0] == "parameters" or leaf.value is not expression or expression.calls
     if elsewhere or not expression.names <= values.keys():
         return
@@ -329,7 +329,7 @@ def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Diagnosti
 
 
 def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """A direction that its parameters make zero (one of literal zeros is reported where vectors are checked)."""
+    """Diagnostics of a direction that its parameters make zero (literal zeros are reported with the vectors)."""
     for leaf in catalog.leaves:
         if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
             continue
@@ -339,7 +339,7 @@ def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diag
 
 
 def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagnostic]:
-    """The two axes of a universal joint that its numbers make parallel: it then turns about one axis alone."""
+    """Diagnostics of a universal joint whose numbers make its two axes parallel, so that it turns about one alone."""
     for name, body in catalog.table("bodies").items():
         axes = getattr(getattr(body, "joint", None), "axes", None)
         if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):

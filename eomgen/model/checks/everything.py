@@ -1,4 +1,4 @@
-"""Outputs, constraints and forces: what goes together, and all checks in their order.
+"""Outputs, constraints and forces: fields that go together, and all checks in their order.
 
 All checks, in the order in which they are reported for one place.
 """
@@ -25,7 +25,7 @@ from eomgen.symbolic.expression.text import parse, rate_of_call
 
 
 def outputs(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Functions that are unknown, take another number of arguments, or have arguments that were never declared."""
+    """Diagnostics of unknown functions, of a wrong number of arguments, of arguments that were never declared."""
     for leaf, expression in catalog.expressions:
         for call in _calls_in(expression):
             yield from _call(catalog, leaf, call)
@@ -129,7 +129,7 @@ def _unknown(argument: Reference, kind: str, known: Any) -> tuple[str, str, int,
 
 
 def _reaction(catalog: Catalog, argument: Reference) -> tuple[str, str, int, int] | None:
-    """A constraint, a constraint's side (`B.II`), or a body, which means its joint."""
+    """The error of a reaction's argument: a constraint, a constraint's side (`B.II`), or a body, for its joint."""
     owner, dot, side = argument.name.partition(".")
     constraints, bodies = catalog.table("constraints"), catalog.table("bodies")
     if owner in constraints:
@@ -174,7 +174,7 @@ _WORD = re.compile(r"[^\W\d]\w*")
 
 
 def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Fields of constraints and forces that exclude one another, or of which one is missing."""
+    """Diagnostics of fields of constraints and forces that exclude one another, or of which one is missing."""
     for table in ("constraints", "forces"):
         for name, part in catalog.table(table).items():
             if part is None:
@@ -191,7 +191,7 @@ def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def _on_itself(catalog: Catalog, path: DocumentPath, part: Any) -> Iterator[Diagnostic]:
-    """A constraint that joins a body to itself, or the ground to the ground."""
+    """Diagnostics of a constraint that joins a body to itself, or the ground to the ground."""
     name = path[1]
     bodies = getattr(part, "bodies", None)
     if bodies and bodies[0] == bodies[1]:
@@ -209,7 +209,7 @@ def _on_itself(catalog: Catalog, path: DocumentPath, part: Any) -> Iterator[Diag
 
 
 def coordinates(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Coordinates that are driven in two ways, or driven and dependent; starts that a given motion fixes already."""
+    """Diagnostics of coordinates driven twice, or driven and dependent; of starts that a given motion fixes."""
     for name, part in catalog.table("coordinates").items():
         if part is None:
             continue
@@ -229,7 +229,7 @@ def coordinates(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def idle(catalog: Catalog) -> Iterator[Diagnostic]:
-    """A coordinate, a speed or an input that nothing uses."""
+    """Diagnostics of a coordinate, a speed or an input that nothing uses."""
     used = _used(catalog)
     for table, kind in (("coordinates", "coordinate"), ("inputs", "input")):
         for name in catalog.table(table):
@@ -245,7 +245,7 @@ def idle(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def _used(catalog: Catalog) -> set[str]:
-    """The names that something uses; a table of its own is no use, and what could not be read counts as one."""
+    """The names that something uses: an entry of their own table is no use; what could not be read is one."""
     used: set[str] = set()
     for leaf, expression in catalog.expressions:
         if leaf.path[0] not in ("parameters", "coordinates", "speeds", "inputs"):

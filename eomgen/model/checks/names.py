@@ -24,7 +24,7 @@ _WORD = re.compile(r"\w+")
 
 
 def names(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Names that are none, that are reserved, or that stand for two things."""
+    """Diagnostics of invalid names, reserved names, and names that stand for two things."""
     yield from _symbols(catalog)
     yield from _objects(catalog)
     yield from _points(catalog)
@@ -90,7 +90,7 @@ def _twice(catalog: Catalog, tables: tuple[str, ...]) -> Iterator[Diagnostic]:
 
 
 def references(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Names of parts that were never declared; vectors and inertias of the wrong length."""
+    """Diagnostics of names of parts that were never declared; of vectors and inertias of the wrong length."""
     for leaf in catalog.leaves:
         if isinstance(leaf.rule, NameRule):
             yield from _CHECKS[leaf.rule.of](catalog, leaf)
@@ -177,7 +177,7 @@ def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
 
 
 def _idle_nodes(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Nodes that no member joins to a truss."""
+    """Diagnostics of nodes that no member joins to a truss."""
     for name, truss in catalog.table("trusses").items():
         if truss is None or truss.members is None:
             continue
@@ -279,7 +279,7 @@ LONGEST_TRAIL = 10  # names of a ring that are shown
 
 
 def formulas(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Names that are unknown or may not stand where they do, units that do not fit, parameters in a ring."""
+    """Diagnostics of unknown or misplaced names, of units that do not fit, of parameters that depend on themselves."""
     for leaf, expression in catalog.expressions:
         scope = "" if leaf.rule.scope == EVERYTHING else leaf.rule.scope
         also = getattr(leaf.rule, "also", ())
@@ -350,7 +350,7 @@ def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def equations(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Units that do not fit the other side; numbers that may be meant in two units."""
+    """Diagnostics of units that do not fit the other side; of numbers that may be meant in two units."""
     for leaf in catalog.leaves:
         if isinstance(leaf.value, WrittenEquation) and leaf.value.units is not None:
             try:
@@ -364,7 +364,7 @@ def equations(catalog: Catalog) -> Iterator[Diagnostic]:
 
 
 def speeds(catalog: Catalog) -> Iterator[Diagnostic]:
-    """Quaternions of coordinates that are not free or belong to two bodies; speeds that are named twice."""
+    """Diagnostics of quaternions of coordinates not free or of two bodies; of speeds that are named twice."""
     yield from _quaternions(catalog)
     yield from _starts(catalog)
 
@@ -402,7 +402,7 @@ def _free(catalog: Catalog, body: str, names: tuple[str, ...]) -> Iterator[Diagn
 
 
 def _starts(catalog: Catalog) -> Iterator[Diagnostic]:
-    """A start speed of a coordinate whose rate is combined in speeds that have a start of their own."""
+    """Diagnostics of a start speed of a coordinate whose rate is combined in speeds that have a start of their own."""
     reported = set[str]().union(*begun_speeds(catalog.table("speeds")).values())
     for name, part in catalog.table("coordinates").items():
         if part is not None and part.speed is not None and f"{name}'" in reported and not part.driven:

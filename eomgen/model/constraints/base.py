@@ -183,7 +183,7 @@ class Constraint(Part, ABC):
         return None
 
     def drives(self) -> str:
-        """The coordinate that it gives as a function of time; "" where it does no such thing."""
+        """The coordinate that it prescribes as a function of time; "" if there is none."""
         return ""
 
     def stays(self, component: str) -> bool:
@@ -192,7 +192,7 @@ class Constraint(Part, ABC):
 
     @property
     def lies_by_start(self) -> bool:
-        """True if where, or how long, it is follows from where its points start."""
+        """True if its place or length follows from the start positions of its points."""
         return False
 
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:

@@ -45,7 +45,7 @@ class Clamp(Constraint):
         return self.point is not None or component == "couple"
 
     def rows(self, scene: LoadContext) -> tuple[ConstraintRow, ...]:
-        """The rows of a pin, and no turning against the start; in space e_i . e_j = 0 of axes in either body."""
+        """The rows of a pin, and no rotation relative to the start; in space e_i . e_j = 0 of axes in either body."""
         first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
         rows: list[ConstraintRow] = []
         for other in others_of(scene, named):
@@ -132,7 +132,7 @@ class Slider(Constraint):
     friction: FrictionLaw | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """The body needs a line, another than that of the point; in space the slider cannot end."""
+        """Diagnostics: the body needs a line, another body than that of the point; in space the slider cannot end."""
         if _lacks_line(catalog, self.on):
             what = f"'{path[1]}' slides on the line of body '{self.on}', which has none"
             yield Diagnostic((*path, "on"), what, f'give body \'{self.on}\' its line = ["A", "B"]')
@@ -243,7 +243,7 @@ class Skate(Constraint):
     normal: SpaceDirection | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """The ice has no normal in the plane."""
+        """Diagnostics of a normal of the ice that is given in the plane."""
         yield from not_in_the_plane(catalog, path, self, ("normal",))
 
     def meeting(self) -> Meeting:

@@ -38,7 +38,7 @@ class Pin(Constraint):
     axes: AxesName = "ground"
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """Axes of a body that the hinge does not hold, or of no axis."""
+        """Diagnostics of axes of a body that the hinge does not hold, or without a hinge axis."""
         if self.points is None or self.axes is None:  # what could not be read
             return
         holds = [owner_of(point) for point in self.points]

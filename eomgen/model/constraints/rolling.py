@@ -454,7 +454,7 @@ class Rolling(Constraint):
         return self.center
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """Tracks and sizes that are missing or exclude one another, or that are for another space."""
+        """Diagnostics of tracks and sizes that are missing or exclude one another, or that are for another space."""
         alone = self.on is not None and all(getattr(self, track) is None for track in TRACKS)
         yield from diagnostics_of_one(catalog, path, self, (*TRACKS, "on") if self.on is None or alone else TRACKS)
         yield from self._wrong_sizes(path, catalog)
@@ -474,7 +474,7 @@ class Rolling(Constraint):
             )
 
     def _wrong_sizes(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """A radius, or semiaxes, of the constraint or of the shape; not both; a tyre only about an axis."""
+        """Diagnostics of sizes: a radius or semiaxes are needed, not both; a tyre has an axis."""
         sizes = ("radius",) if catalog.model.space == "plane" else ("radius", "semiaxes", "major")
         if self.radius is None and self.ellipsoid is None and not is_round(catalog, self.body, sizes):
             what = f"the radius of '{self.body}', which rolls, is not known"
@@ -557,7 +557,7 @@ class Rolling(Constraint):
         return (ConstraintRow(normal, contact.gap, component="n"), *held)
 
     def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
-        """A wheel must not lie flat, on a ball neither."""
+        """The tilt of a wheel, which must not lie flat, on a ball either."""
         body, name = self._round(scene), scene.where.rpartition(".")[2]
         if not isinstance(body, Wheel):
             return ()

@@ -53,7 +53,7 @@ class Stop:
 
     @property
     def wound(self) -> AnyScalar:
-        """a theta: what a turn of the body gives out at the strand's beginning [m]."""
+        """a theta: string that rotation of the body pays out at the strand's start [m]."""
         return self.offset * angle_of(self.scene, self.body) if self.round else 0
 
     def left(self, d: Vector) -> Vector:
@@ -197,7 +197,7 @@ def _refuse_out_of_plane(scene: LoadContext, first: Stop, second: Stop, d: Vecto
 
 
 def rope_row(scene: LoadContext, strands: Sequence[Strand]) -> ConstraintRow:
-    """The row of one tension through strands that are joined by what slips: the sum of their rows.
+    """The row of one tension through strands that are joined where the string slides: the sum of their rows.
 
     Its gap is what the string has left at the start, - sum l - a_1 theta_1 + a_2 theta_2 + ..., where the lengths are
     known; on a round thing that slips the turns cancel. Where no body is pulled there is nothing to restrict.
@@ -218,7 +218,7 @@ def _gap(scene: LoadContext, strands: Sequence[Strand]) -> AnyScalar | None:
 
 
 def side_rows(scene: LoadContext, strand: Strand) -> list[ConstraintRow]:
-    """The restrictions that a strand keeps its direction: n . (p_1 - p_2) = 0 of its ends, for each n across it.
+    """The constraints that keep a strand's direction: n . (p_1 - p_2) = 0 of its ends, for each n across it.
 
     In the plane n = left(d). Those that hold by themselves are left out.
 

@@ -90,7 +90,7 @@ class String(Constraint):
         return tuple(strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True))
 
     def limits(self, scene: LoadContext) -> tuple[Edge, ...]:
-        """A strand that stays along a line is a string as long as something is left of it."""
+        """The lengths of strands that stay along a line, which must remain positive."""
         name, found = scene.where.rpartition(".")[2], []
         for k, strand in enumerate(self.strands_at(scene), 1):
             begun = None if strand.length is None else scene.value_at_start(strand.length)
@@ -99,7 +99,7 @@ class String(Constraint):
         return tuple(found)
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """Wraps that lack a size or a sense; it must hold something that moves; a direction for each strand."""
+        """Diagnostics of wraps without size or sense, of a string that holds nothing, of directions of strands."""
         for k, wrap in enumerate(self.path or ()):
             where = (*path, "path", k)
             if isinstance(wrap, str):

@@ -1,4 +1,4 @@
-"""Forces: the seam of what is applied.
+"""Forces: the seam of applied forces.
 
 Adding one is one class, next to its kin or in a file of its own, and one name here.
 """

@@ -73,7 +73,7 @@ def reach(scene: LoadContext, points: tuple[str, ...], along: tuple[Expression, 
 
 @dataclass(frozen=True, kw_only=True)
 class Straight(Force):
-    """Two points pull each other along the line between them, or along a fixed direction."""
+    """A force between two points along the line between them, or along a fixed direction."""
 
     points: TwoPoints
 
@@ -180,7 +180,7 @@ class Damper(Straight):
 
 @dataclass(frozen=True, kw_only=True)
 class Between(Straight):
-    """Two points pull each other with f(r, r'), r their distance; attraction positive [N].
+    """A force between two points by a law f(r, r') of their distance r; attraction positive [N].
 
     Args:
         points: the two points.

@@ -62,7 +62,7 @@ TURNING = ("orientation", "angles", "quaternion", "omega")
 
 
 def other_space(joint: Any, keys: Iterable[str], path: DocumentPath, space: str) -> Iterator[Diagnostic]:
-    """Fields that mean nothing in this space."""
+    """Diagnostics of fields that mean nothing in this space."""
     for key in keys:
         if getattr(joint, key) is not None:
             what = f"'{key}' of a {joint.kind} joint is for {'space' if space == 'plane' else 'the plane'}"
@@ -78,7 +78,10 @@ def turning_diagnostics(joint: Any, path: DocumentPath, catalog: Catalog) -> Ite
 
 
 def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-    """A sequence goes with three angles, "quaternion" with four names and the names of three speeds."""
+    """Diagnostics of an orientation that is incomplete or has fields of another one.
+
+    A sequence goes with three angles, "quaternion" with four names and the names of three speeds.
+    """
     orientation, name = joint.orientation, path[1]
     if orientation is None:
         for key in ("angles", "quaternion"):

@@ -38,7 +38,7 @@ from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, c
 
 @dataclass(frozen=True)
 class SlideAlong:
-    """A way [m] along an axis that need not have unit length."""
+    """A displacement [m] along an axis that need not have unit length."""
 
     axis: Any
     way: Any
@@ -61,7 +61,7 @@ class QuaternionTurn:
 
 @dataclass(frozen=True)
 class WayAlongPieces:
-    """A way along lines and arcs, end to end, the first and the last of which go on; the axes do not turn.
+    """A displacement along lines and arcs, end to end, the first and the last of which go on; the axes do not turn.
 
     Args:
         way: from the beginning of the first piece [m].
@@ -204,7 +204,7 @@ class Joint(Part):
         raise self._not_yet()
 
     def guides(self, value: ValueOf, seat: Pose) -> tuple[Form, ...]:
-        """The curve along which the child's joint point moves, where it is not straight, in the axes of the seat's."""
+        """The curve along which the child's joint point moves, where it is not straight, in the axes of the seat."""
         return ()
 
     def efforts(self) -> tuple[Effort | None, ...]:

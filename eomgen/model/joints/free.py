@@ -75,7 +75,7 @@ class Free(Joint):
     omega: Omega | None = None
 
     def diagnostics(self, path: DocumentPath, catalog: Catalog) -> Iterator[Diagnostic]:
-        """The fields of this space, all of them."""
+        """Diagnostics unless all fields of this space are given, and no others."""
         plane = catalog.model.space == "plane"
         yield from other_space(self, ("position",) if plane else IN_PLANE, path, catalog.model.space)
         for key in IN_PLANE if plane else ("position",) if _is_point(path, catalog) else ("position", "orientation"):

@@ -45,7 +45,7 @@ class Section(Protocol):
 
 
 class PartsOfMotion(Protocol):
-    """The motion of a point against a moving body, in its parts, ground axes."""
+    """The parts of the motion of a point relative to a moving body, ground axes."""
 
     @property
     def transport_velocity(self) -> Vector: ...

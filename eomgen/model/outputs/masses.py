@@ -117,7 +117,7 @@ def about_axis(I: Matrix, along: Vector) -> AnyScalar:
 
 
 def polar(I: Matrix) -> AnyScalar:
-    """About the point itself: the integral of r.r dm = tr(I) / 2."""
+    """Moment about the point itself: the integral of r.r dm = tr(I) / 2."""
     return HALF * (I[0][0] + I[1][1] + I[2][2])
 
 

@@ -119,11 +119,11 @@ class Graph:
         return self._found.setdefault(what, {})
 
     def hold_on_sphere(self, symbols: tuple[Node, ...]) -> None:
-        """Symbols whose squares always add up to 1, as those of a unit quaternion: so are values chosen for them."""
+        """Declares symbols whose squares add up to 1, as those of a unit quaternion; random states obey that."""
         self.unit_quaternions.append(symbols)
 
     def hold_near(self, values: Mapping[Node, float]) -> None:
-        """Numbers near which symbols have values at which formulas have some: where a model starts."""
+        """Declares numbers near which the formulas have values, such as the start of a model, for random states."""
         self.near |= values
 
     def is_constant(self, x: Scalar) -> bool:

@@ -41,7 +41,7 @@ LARGEST_OF_50_DIGITS = 20_000  # in bits, of what a function is taken at with 50
 
 
 class OutOfPatience(EomgenError):
-    """The time that a user gave is over."""
+    """The time limit that a user set is exceeded."""
 
 
 class PatienceEnded(Exception):
@@ -57,7 +57,7 @@ SOON = 0.05  # s, after which what was importing is looked at again
 
 @dataclass
 class _Clock:
-    """One stretch of patience.
+    """A time limit.
 
     Args:
         end: on the monotonic clock [s].
@@ -88,7 +88,7 @@ _CLOCK: ContextVar[_Clock | None] = ContextVar("patience", default=None)
 
 
 def check_patience() -> None:
-    """Goes on while there is time.
+    """Does nothing while there is time left.
 
     Raises:
         PatienceEnded: there is none left.
@@ -99,7 +99,7 @@ def check_patience() -> None:
 
 
 def time_left() -> float | None:
-    """Seconds of patience that are left; None where nobody counts them."""
+    """Seconds that are left; None without a time limit."""
     clock = _CLOCK.get()
     return None if clock is None or clock.end == math.inf else max(0.0, clock.end - time.monotonic())
 
@@ -183,7 +183,7 @@ def _watch(clock: _Clock) -> None:
 
 
 def _stop_late(clock: _Clock, closed: threading.Event, thread: int) -> None:
-    """Throws into a thread that does not ask, again where a library swallowed it."""
+    """Raises PatienceEnded in a thread that does not check the time, and again where a library catches it."""
     wait = clock.seconds + LATE * min(max(0.5, clock.seconds / 5), 1.0)
     while not closed.wait(wait):
         with clock.lock:
@@ -205,13 +205,13 @@ def _imports(thread: int) -> bool:
 
 
 def _throw(thread: int, error: type[Exception] | None) -> None:
-    """An exception into another thread, raised between two of its instructions; None: takes one back."""
+    """Raises an exception in another thread between two of its instructions; None: withdraws one."""
     thrown = None if error is None else ctypes.py_object(error)
     ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(thread), thrown)
 
 
 # -------- gc pause --------------------------------------------------------------------------------------------
-# A rest for the cycle collector while graphs grow.
+# Pauses of the cycle collector while graphs grow.
 
 
 SELDOM = (1_000_000, 50, 100)  # objects made between two looks at the youngest; looks between two at the older
@@ -244,9 +244,9 @@ _RESTS = _Rests()
 def growing() -> Iterator[None]:
     """Pauses the cycle collector while expressions are made that all stay: the search for cycles would take longer.
 
-    Python's own counting of references goes on. What was made stays young, and is looked at when the collector wakes:
-    put among what is old it would never count as new there, and rings that callers drop would pile up for ever. Where
-    threads rest at once the last to end wakes the collector.
+    Python's own counting of references goes on. New objects stay in the youngest generation and are examined when the
+    collector runs again: moved to the oldest they would not count as new there, and unused cycles would pile up. Where
+    several threads pause it at once, the last one to end enables it.
     """
     _RESTS.begin()
     try:
@@ -256,13 +256,13 @@ def growing() -> Iterator[None]:
 
 
 def seldom_from_now_on() -> None:
-    """One command in a process of its own: cycles are looked for, but not after every 700 objects."""
+    """Makes the cycle collector run rarely, for one command in a process of its own."""
     gc.set_threshold(*SELDOM)
 
 
 @contextmanager
 def seldom() -> Iterator[None]:
-    """One command; afterwards as before, which looks at once at all that is left, where that was oftener."""
+    """Makes the cycle collector run rarely during one command; afterwards it runs as before."""
     was = gc.get_threshold()
     seldom_from_now_on()
     try:
