@@ -1,4 +1,4 @@
-"""What a newcomer does wrong in a model file, on the command line and in Python is told with what is meant instead.
+"""What a newcomer does wrong in a model file, on the command line and in Python is reported with the probable intention.
 
 `python tests/faults/test_fifty_mistakes.py` prints docs/mistakes.md.
 """
@@ -29,7 +29,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "mistakes.md"
 
 
 def of_file(what: str) -> str:
-    """What is said of a model with this mistake."""
+    """Messages for a model with this mistake."""
     right, wrong, _ = IN_FILES[what]
     assert right in CRANE
     with pytest.raises(EomgenError) as caught:
@@ -38,7 +38,7 @@ def of_file(what: str) -> str:
 
 
 def of_command(what: str) -> str:
-    """What is said of a command with this mistake, in a folder where the model is crane.toml."""
+    """Message for a command with this mistake, in a folder where the model is crane.toml."""
     Path("crane.toml").write_text(CRANE, encoding="utf-8")
     words = [{"MODEL": "crane.toml", "OUT": "code"}.get(word, word) for word in IN_COMMANDS[what][0]]
     result = CliRunner().invoke(main, words)
@@ -47,7 +47,7 @@ def of_command(what: str) -> str:
 
 
 def of_call(what: str) -> str:
-    """What is said of a call with this mistake."""
+    """Message for a call with this mistake."""
     with pytest.raises(EomgenError) as caught:
         of_python()[what][0]()
     return str(caught.value)
@@ -99,10 +99,10 @@ def _cell(text: str) -> str:
 
 def page() -> str:
     """The mistakes and what is said of them."""
-    head = "# What is said of a hundred mistakes\n\n"
+    head = "# Messages for a hundred mistakes\n\n"
     head += "Made on purpose in the model of a crane (`tests/helpers/newcomer.py`); written by\n"
     head += "`python tests/faults/test_fifty_mistakes.py`, whose tests make each of them.\n\n"
-    return head + "| mistake | written | told |\n|---|---|---|\n" + "\n".join(rows()) + "\n"
+    return head + "| mistake | written | message |\n|---|---|---|\n" + "\n".join(rows()) + "\n"
 
 
 def test_the_page_of_mistakes_is_what_is_said(tmp_path, monkeypatch):
