@@ -49,12 +49,12 @@ class Compiler:
         suffix: of the text's file.
         variable: of the environment, which names another command line.
         names: of the programs, the first that is there.
-        zig: as which ziglang stands in; "" where it cannot.
+        zig: the command of ziglang that can replace it; "" if there is none.
         flags: always; last: after the file.
         once, usual, long: of a text that is called a few times only, so that it is made soonest; of others; of long.
         patience: seconds of work that it may take; how long a loaded machine needs for them nobody counts.
         trial: a text of nothing, which it takes where it works at all.
-        fix: where it comes from.
+        fix: how to install it.
     """
 
     language: str

@@ -70,7 +70,7 @@ def solve_bordered(
 
     Args:
         M, J: n x n and k x n, row after row.
-        tables: what may not be zero, as of `Solve.tables`.
+        tables: entries that may not be zero, as of `Solve.tables`.
     """
     a, lam = list(f), list(g)
     if lam:

@@ -46,9 +46,9 @@ class Statements:
     """A program in the small language.
 
     Args:
-        constants: how many numbers the first function gives.
+        constants: the number of results of the first function.
         ops: the operations that the text takes.
-        tables, kernels: what the bodies need: functions with loops, and the numbers that these read.
+        tables, kernels: functions with loops that the bodies call, and the numbers that these read.
         called: the functions among them that the bodies themselves call.
         bodies: constants, parts, evaluate.
     """
@@ -281,7 +281,7 @@ class Parts:
 
     Args:
         nodes: of each piece.
-        counts: how many of them each stretch is cut into.
+        counts: the number of parts of each stretch.
         places: of what a piece reads that it does not compute, inputs and unknowns among it, its place in the array.
     """
 

@@ -124,7 +124,7 @@ class Program:
     """A function of (t, x, p, inputs), its statements in the order in which they are run.
 
     Args:
-        symbols: what the outputs are written in: x = (q, u), p, inputs and t are in symbols.
+        symbols: the symbols of the outputs: x = (q, u), p, inputs and t are in symbols.
         defaults: the inputs' own expressions in t and parameters, used where the caller gives none.
         preamble: statements that only `defaults` need.
         hoisted: statements that depend on the parameters alone.
@@ -373,7 +373,7 @@ def scheduled(needs: Needs, later: Set[Node]) -> Sequence[Node]:
 
     Args:
         needs: of each statement what it reads, other statements and symbols, in the order of their making.
-        later: what is read after them.
+        later: nodes that are read after them.
     """
     symbols = {a for needed in needs.values() for a in needed if a.op == "symbol"}
     made = {x: set[Node]() for x in sorted(symbols, key=lambda x: x.index)} | {
@@ -482,7 +482,7 @@ def identifiers(
 
     Args:
         taken: words of the language, and what stands for something else.
-        folded: what no two identifiers have in common: of a language without capitals, the small letters.
+        folded: key in which no two identifiers may agree: in a language without capitals, the small letters.
     """
     chosen: dict[str, str] = {}
     used: set[str] = set()

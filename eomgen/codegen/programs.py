@@ -298,7 +298,7 @@ class ReactionFunction:
     """`reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`.
 
     Args:
-        names: as outputs ask for them.
+        names: their names in outputs.
         function: the program in memory.
     """
 

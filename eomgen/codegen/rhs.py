@@ -40,7 +40,7 @@ class RightHandSide:
     `parameters`; inputs in that of `inputs`, or () for the model's own expressions.
 
     Args:
-        program: what is computed.
+        program: the compiled program.
         functions: the program in memory.
         target: name of the target that made them.
         x0, p0: start and parameter values, None where one is missing.
@@ -160,7 +160,7 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
     """The program as a function.
 
     Args:
-        program: what is computed.
+        program: the compiled program.
         target: "numpy", "c", or None: C where there is a compiler, else numpy, said once on stderr.
         x0, p0: start and parameter values for the function's attributes.
     Raises:

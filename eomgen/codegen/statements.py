@@ -148,28 +148,28 @@ class Language:
             where loops with pivots are not its way.
         words: of "not nan", of "==" and "!=" where they are said otherwise, and "given": the condition that the caller
             gives inputs.
-        kinds: how a value that stays, an argument and a result of each kind are declared, with {name}.
+        kinds: declarations of a value that stays, an argument and a result of each kind, with {name}.
         at: a place of an {array} at an {index}; `index` is what stands there for an index that is computed, first that
             of the first place; `sized` what stands for a {size} that is computed.
         let, put, call, back: statements; back with {value}.
         changes: a call where arguments cannot be changed, with the {results} that stand for them; "" where they can.
         leave: the end of a function that gives nothing.
-        gives: how {gives} stands in `function`, by the kind of what it gives.
-        what: how {what} stands there, of one that gives nothing and of one that does.
+        gives: text of {gives} in `function`, by the kind of the result.
+        what: text of {what} there, of a function without a result and of one with a result.
         arrays: of CHANGED, ROOM and PLACES: with {name}, {size}, and {of}, the function.
-        kept: how one of them is made once for all calls, before its function; "" where each call makes its own.
+        kept: declaration of one that is made once for all calls, before its function; "" where each call makes its own.
         tables: of INT, INDICES and READ: with {name}, {size}, {values}.
-        listed: how the values of a table are held together.
+        listed: text around the values of a table.
         loop, down: (begin, end) of a loop, with {name}, {first}, {last}.
         branch: (begin, else, end), with {condition}.
         function: (begin, end), with {declared}, its name and kind, and {arguments}; {results} as in `changes`.
         out: the same of one that gives an array {out} of {size}, with {name}.
-        hidden: what stands before a function that others do not call, as {hidden} in `function`.
+        hidden: text before a function that others do not call, as {hidden} in `function`.
         remark: of one line, with {text}; harmless: text that cannot end it.
         unused: said of an argument that a function does not need.
         number: the text of an exact number.
         longest: operations of a function, beyond which it is cut into parts; None: never.
-        local: how names and arrays of each kind are declared where they stand at the head of a function, after the
+        local: declarations of names and arrays of each kind where they stand at the head of a function, after the
             arguments; none where they are declared as they come.
         spelled: the spelling of a name of the kernels; folded: what two names may not have in common.
     """

@@ -63,9 +63,9 @@ class _Writer:
     """The lines of the function: those of the first coefficients, and those of coefficient j.
 
     Args:
-        rows: where the series lie that somebody reads, by what they are of.
+        rows: places of the series that are read, by their keys.
         first, rest: (the row without which it is not needed, a line).
-        named: what is no constant, and how its coefficient is called.
+        named: name of the coefficient of each scalar that is no constant.
         same: of an input what it stands for.
         kept: numbers that stay from the first coefficients on.
         sums: the two rows of each sum over products of coefficients.

@@ -264,7 +264,7 @@ def texts_of(
         name: of the functions: the model file's stem; what is no identifier is made one.
         emitted: the right-hand side first, then reactions and whatever else is requested.
         targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
-        notes: what is not in the code, and why, a line each.
+        notes: omissions of the code, with their reasons, a line each.
         uses: by language, how further files are used.
     """
     answers, stem = vectors_text(emitted), stem_of(name)

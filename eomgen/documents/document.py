@@ -33,20 +33,20 @@ class Document:
     Args:
         title: the model's name.
         about: a remark of the user, "" where there is none.
-        source: where the system comes from, "".
+        source: the origin of the system, or "".
         space: "plane" or "space".
         method: "lagrange", "statics", ...; "" where nothing is derived.
         steps: its sections, in order.
         equations: the equations of motion as printed; empty where they are too long.
         definitions: sub-expressions with a name of their own, in the order of their use.
         entries: gives what machines get by name, with quantities as leaves; made on demand.
-        failed: what is wrong with the result, or open in it; "" as it must be.
+        failed: errors or open questions of the result; "" if there are none.
         notes: further remarks, a line each on stderr.
         certificate: the proof; None where none was made.
         interrupted: it holds what there was when somebody stopped it.
         cautions: warnings of what is allowed in the model but probably a mistake.
-        taken: what was made of values that a person typed.
-        notation: how its symbols are set in LaTeX.
+        taken: the values that were read from typed text.
+        notation: typesetting of its symbols in LaTeX.
         parameters: the values of those that have one, exact constants.
         answer_code: the exit code that is an answer: 5 where that is no.
     """

@@ -188,7 +188,7 @@ def draw(
     """A scene in the plane at its first frame, on matplotlib axes with equal scales and no frame.
 
     Args:
-        notation: how the names of the model are set.
+        notation: typesetting of the names of the model.
         names: bodies and points are named.
         colors: of bodies that have one of their own.
     Returns:

@@ -359,7 +359,7 @@ def kinds_of_lines(owned: Sequence[Sequence[str]], colors: int) -> dict[str, tup
 
     Args:
         owned: the reactions of each joint or constraint.
-        colors: how many there are.
+        colors: their number.
     """
     found: dict[str, tuple[int, str]] = {}
     for k, names in enumerate(owned):

@@ -69,7 +69,7 @@ class Setter:
     """Sets graph scalars, with one notation for all of them.
 
     Args:
-        notation: how names are set; None: by their own letters.
+        notation: typesetting of names; None: by their own letters.
     """
 
     def __init__(self, notation: Notation | None = None) -> None:
@@ -306,7 +306,7 @@ def rows_of(setter: Setter, sides: Sequence[Set | Scalar], lead: float | None = 
     """The rows of one formula: its sides joined by equality signs.
 
     Args:
-        sides: what is set already, or scalars.
+        sides: typeset formulas, or scalars.
         lead: the room for the left side, 0 for none before the alignment; by its own width where none is given.
     """
     lead = lead_of(setter, sides) if lead is None else lead

@@ -95,7 +95,7 @@ def room_for(
     """The best box of a size next to a place, which meets none that is taken; None where there is no room.
 
     Args:
-        dots: what should not be covered.
+        dots: points that should not be covered.
         inside: the panel, which it should not leave, and the picture, which it never does.
         point: a point in dots.
     """
@@ -163,7 +163,7 @@ class NamesArtist(Artist):
 
     Args:
         names: each is drawn once.
-        lines: what they should not cover, k x 2 each, data coordinates; nan breaks.
+        lines: those that they should not cover, k x 2 each, data coordinates; nan breaks.
     """
 
     zorder = 9

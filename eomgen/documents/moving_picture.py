@@ -272,9 +272,9 @@ class Movie:
         drawing: over all frames.
         times: of each frame in the motion [s].
         trails: name of a point -> its places, FINE of them a frame, d each.
-        title: what is said above it.
+        title: the text above it.
         timed: the times of frames are shown.
-        scene: of which it is a drawing.
+        scene: the scene of the drawing.
     """
 
     drawing: Drawing

@@ -52,7 +52,7 @@ def reactions_step(
     """Every reaction; no step where nothing is held.
 
     Args:
-        table: what the symbols mean stands here, and not in a step before.
+        table: the meanings of the symbols stand here, and not in a step before.
     """
     if isinstance(letters, str):
         return (Step("reactions", "Reactions", (prose(f"The reactions do not follow: {letters}."),)),)

@@ -222,7 +222,7 @@ class Lettered:
         symbols: one for each component, in order.
         contacts: those with friction.
         frictions: a symbol for the friction of each, along each direction in which it slides.
-        declared: how they are set in LaTeX, of joints and constraints that say so, by name.
+        declared: LaTeX symbols of the joints and constraints that declare some, by name.
     """
 
     reactions: Reactions
@@ -591,8 +591,8 @@ class ReactionFormula:
     Args:
         text: of q, u and t, of accelerations as `theta''` where these are left in it; None where it is too long, or
             has no single value.
-        accelerated: whether accelerations stand in it.
-        message: why there is no text, or None.
+        accelerated: True if the formula holds accelerations.
+        message: the reason if there is no text, or None.
     """
 
     text: str | None

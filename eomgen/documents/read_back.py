@@ -608,7 +608,7 @@ def misspelt(letters: Mapping[str, str], notation: Notation) -> str:
 
     Args:
         letters: LaTeX by name.
-        notation: what is declared is set as it is declared.
+        notation: declared symbols are set as they are declared.
     """
     for name, tex in letters.items():
         bare = name.rstrip("'")

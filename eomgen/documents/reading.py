@@ -52,7 +52,7 @@ class Reader:
     """Puts scalars into readable form, each once and with a budget of its own: none depends on those before it.
 
     Args:
-        full: what is too long to print is printed as it is, and not left out.
+        full: long formulas are printed in full, and not left out.
         gathers: sums of parameters stand in parentheses before what moves, and squares of sums are left, where that
             is shorter: so the equations of bodies that turn in space are written.
         positive: symbols that stand for positive numbers: the length sqrt(l^2) of a rod is l.
@@ -437,7 +437,7 @@ def with_roots_named(written: Written, graph: Graph, taken: Container[str], root
     """r1, r2, ... for the roots of long sums, the lengths of springs, and v1, v2, ... for their rates.
 
     Args:
-        roots: what the symbols stand for that the formulas hold; in place of short ones that is written.
+        roots: the expressions of the symbols in the formulas; short ones are written in place of their symbols.
     """
     whole: dict[Node, Scalar] = {}
     for symbol, value in roots.items():
@@ -514,9 +514,9 @@ def _introduced(
     """The formulas to which it applies with a symbol for each of the parts.
 
     Args:
-        parts: what each part stands for.
+        parts: the expression of each part.
         named: a new symbol for a part.
-        given: what is replaced without a definition.
+        given: expressions that are replaced without a definition.
     """
     known: dict[Node, Scalar] = dict(given or {})
     new: dict[Scalar, Scalar] = {}

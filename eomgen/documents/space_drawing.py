@@ -270,7 +270,7 @@ def draw_space(panel: Any, drawing: Drawing, notation: Notation) -> SpacePicture
     """A scene in space at its first frame, on matplotlib axes with equal scales and no frame.
 
     Args:
-        notation: how the names of the model are set.
+        notation: typesetting of the names of the model.
     """
     from eomgen.documents.letters import NamesArtist
 

@@ -228,7 +228,7 @@ class Equation:
         speed: whose equation it is.
         left: inertia: (M a + c) / divisor.
         right: forces: (Q + J^T lam) / divisor.
-        divisor: what both sides were divided by.
+        divisor: the factor by which both sides were divided.
     """
 
     speed: Node
@@ -332,8 +332,8 @@ class Quantity:
         exact: text of the grammar with every parameter as a symbol, or None: an equation between quantities.
         value: a number in the unit, parameters and start (or instant) put in, or None.
         unit: of the number; "" for SI, None where nobody names one.
-        method: by which it was found.
-        message: what is missing, or None.
+        method: the method by which it was found.
+        message: the reason if something is missing, or None.
         beside: further JSON entries by name: the way of its proof, its work.
     """
 

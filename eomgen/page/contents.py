@@ -90,9 +90,9 @@ class ReportFigure:
 
     Args:
         key: names its file.
-        caption: what it shows, in words.
+        caption: its content, in words.
         size: width and height of its box.
-        marks: what stands in it, SVG; classes say how it looks, so that a page can be dark.
+        marks: its content, SVG; its look is given by classes, so that a page can be dark.
         legend: its curves.
         save: draws it into a file of its own, whose ending says how; None where that cannot be.
         fixed: its colours are its own, for light paper.
@@ -137,7 +137,7 @@ class ReportSection:
         attachments: files that it offers.
         live: gives what moves, as HTML that is complete in itself; None where nothing does.
         computed: the columns of the motion that it computes.
-        remark: why it is empty, or what else is to be said.
+        remark: the reason why it is empty, or a further remark.
     """
 
     key: str
@@ -168,7 +168,7 @@ class Report:
         origin: the file that it was made of, "" for none.
         source: the text of the model, "" where it was made in Python.
         values: "parameters" and "start" that replace those of the text, in SI.
-        time: how long the motion is followed [s].
+        time: the duration of the motion [s].
     """
 
     head: Document

@@ -80,7 +80,7 @@ def _lean(marks: str, key: str) -> str:
     """SVG without what a browser does not need: metadata, comments, invisible digits, repeated styles.
 
     Args:
-        key: what the names in it begin with: no two figures of a page have the same.
+        key: the prefix of the names in it: no two figures of a page have the same.
     """
     marks = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", marks, flags=re.DOTALL)
     marks = _ID.sub(rf"\1{key}-", re.sub(r'<g id="[^"]*"', "<g", marks))

@@ -106,7 +106,7 @@ class Live:
 
     Args:
         phase: the one phase of a model whose contacts do not change.
-        scene: what is drawn of it.
+        scene: its drawable elements.
     """
 
     phase: PhaseModel

@@ -37,7 +37,7 @@ class Played:
 
     Args:
         played: the run that it begins with, and the player's options.
-        shorter: why it is shorter than others, or "".
+        shorter: the reason why it is shorter than others, or "".
     """
 
     played: PlayedRun
@@ -111,12 +111,12 @@ def play(
     """The model alive in a page: sliders, bodies that one can take, plots; no network is needed.
 
     Args:
-        path: where the page is written; None: nowhere.
-        time: how long the motion is: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
-        sliders: what can be moved, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
+        path: the file of the page; None: it is not written.
+        time: the duration of the motion: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
+        sliders: names with a slider, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         trail: a point that leaves a trail from the start.
-        forces: whether arrows of forces are shown from the start.
+        forces: arrows of forces are shown from the start.
         speed: of the time.
     Raises:
         UsageError: nothing moves; a slider of what there is not.

@@ -346,7 +346,7 @@ class PlayerParts:
 
     Args:
         style: style sheet; colours are the page's own variables (`colours.css`).
-        body: where it stands.
+        body: the element of the player.
         script: elements that come after the body.
     """
 

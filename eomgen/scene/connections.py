@@ -469,7 +469,7 @@ class Resultant:
 
     Args:
         owner: the constraint, or the body whose joint it is.
-        at: where it acts, ground axes [m].
+        at: the point where it acts, ground axes [m].
         units: of each component by its name, `reaction_x(A)` or `reaction_n(wall)`, the direction, ground axes.
     """
 

@@ -52,7 +52,7 @@ class Mark:
 
     Args:
         frame: the place of its axes among the scene's frames, 0 the ground.
-        role: what it is, one of `ROLES`: drawers choose its colours by it.
+        role: its meaning, one of `ROLES`: drawers choose its colours by it.
         of: the body, constraint, joint or force that it belongs to, by name; or "".
     """
 

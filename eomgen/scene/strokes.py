@@ -46,7 +46,7 @@ class Stroke:
         filled: its inside is filled; hole: with paper.
         fine: thinner than an edge.
         faces: in space: the path is n x faces x corners x 3 of a surface.
-        solid: which encloses what is convex, so that of its faces only those towards the eye are seen.
+        solid: it encloses a convex body, so that only its faces towards the eye are visible.
     """
 
     path: np.ndarray
@@ -191,7 +191,7 @@ def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = 
     """The marks of a scene as strokes and letters.
 
     Args:
-        table: what each form looks like, in the plane or in space.
+        table: the function that draws each form, in the plane or in space.
         dimensions: dimension lines and angles are drawn.
     """
     marks = numbers.scene.marks

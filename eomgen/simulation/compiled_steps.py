@@ -85,8 +85,8 @@ class CompiledSteps:
         f: the right-hand side, with its address.
         span, x0: the first and the last instant, and the state at the first.
         how: the tolerances of one step, and instants across which no step goes.
-        instants: where states are wanted.
-        watched: what is done to the states after every step, and what may end the run; what of it is not in C leaves
+        instants: at which states are wanted.
+        watched: corrections of the states after every step, and conditions that may end the run; one not in C leaves
             every step to Python.
         slope: df/dx, used where steps are implicit.
     Raises:

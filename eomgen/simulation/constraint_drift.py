@@ -54,7 +54,7 @@ class Rows:
     Args:
         function: (t, x, p) -> M, J, N, one after the other.
         k, n: rows and speeds.
-        resting: whether they are those of places, for which the speeds are 0.
+        resting: they are those of positions, for which the speeds are 0.
     """
 
     function: RightHandSide
@@ -87,7 +87,7 @@ class Projection:
         placed: the number of the gaps that are phi.
         unit_quaternions: the places of quaternions, which keep norm 1.
         gaps: (t, x, p) -> phi of all constraints, J u + sigma of the closing ones.
-        positions, speeds: how either is put back; None where there is nothing to hold.
+        positions, speeds: the projection of either; None where there is none.
     """
 
     p: np.ndarray
@@ -113,7 +113,7 @@ class Projection:
         """(the nearest state in which the constraints hold, by how much they are open there all the same).
 
         Args:
-            allowed: how far they may be open; 0: as little as Newton's method can do, as it takes near a singular
+            allowed: the residual that they may have; 0: as little as Newton's method reaches, as needed near a singular
                 position, where what is left is divided by what vanishes there.
         """
         found = at_unit_norms(x, self.unit_quaternions)
@@ -268,7 +268,7 @@ class EnergyLevel:
     Args:
         function: (t, x, p) -> (T, V).
         p: the parameters' values.
-        coordinates, size: how many, and of (q, u).
+        coordinates, size: the number of q, and of (q, u).
         energy: E [J].
         most: the largest T so far.
     Source: Hairer, Lubich & Wanner, Geometric Numerical Integration, 2nd ed., IV.4.
@@ -374,7 +374,7 @@ class ConstraintRank:
     Args:
         rows: (t n, x n x states) -> J, n x (k nu).
         constraints: the constraint of each row, k.
-        rank: how many rows are independent at almost every state.
+        rank: the number of rows that are independent at almost every state.
         dependent: constraints, and what dependent coordinates they determine, in words.
     """
 
@@ -501,7 +501,7 @@ class RankLookout:
     """Follows the nearness of a run from step to step, closely only where it may come near zero within a step.
 
     Args:
-        near: where the run ends, once it has been farther than ARMED times that.
+        near: the nearness at which the run ends, once it has been farther than ARMED times that.
     """
 
     def __init__(self, nearness: Nearness, near: float, t: float, x: np.ndarray) -> None:

@@ -70,9 +70,9 @@ class EventFunction:
 
     Args:
         owner: the contact, or the body on a path.
-        kind: what its end means: "ends", "turns" (N changes its sign), "closes", "stops", "slips", "piece".
+        kind: the meaning of its end: "ends", "turns" (N changes its sign), "closes", "stops", "slips", "piece".
         value: over the phase's symbols, accelerations and multipliers; of a gap without a formula None.
-        unit: what it measures.
+        unit: the kind of quantity.
         step: to which piece of a path its end leads.
         row: of a string with several tensions, the row that goes slack alone; else 0.
     """

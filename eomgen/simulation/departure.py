@@ -264,7 +264,7 @@ class Configurations:
 
     Args:
         direction: d(q) = dq/ds.
-        gaps: what vanishes.
+        gaps: the functions that vanish.
         leading: index of the coordinate whose rate is u_s.
         sought: indices of those that the gaps fix.
     """

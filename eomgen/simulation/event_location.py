@@ -60,9 +60,9 @@ class Events:
 
     Args:
         values: (t n, x n x states) -> n x k.
-        floors: what is rounding, of each function, k; of those of either side at the most.
+        floors: rounding error of each function, k; of those that count from either side an upper bound.
         either: the indices of those that count from either side.
-        touch: how near to zero these touch it, against their largest value.
+        touch: distance from zero that counts as a touch of these, relative to their largest value.
         measured: the same values as a function that there is in C; None where there is none.
     """
 
@@ -88,7 +88,7 @@ class EventSearch:
 
     Args:
         seen: instants of the step -> the functions there, where there is a quicker way than by its states.
-        signs: by which each function is multiplied so that it falls; 0 where that is not known yet.
+        signs: factor of each function with which it falls; 0 where that is not known yet.
         armed: those that have been above their floor.
         largest: their largest absolute values so far.
     """
@@ -256,7 +256,7 @@ def sharpened(
     both sides. What only touches zero in an edge, |v|, is one with its sign turned beyond it.
 
     Args:
-        width: how far the motion is looked at before and after.
+        width: length of the interval before and after in which the motion is sampled.
         carry: instants -> states, one a row.
     """
     events = search.events

@@ -36,7 +36,7 @@ class WithoutContacts:
         system: it; the coordinates are those of every phase.
         contacts: the names of the constraints taken away.
         p: the parameters' values.
-        made: what was made of it, whatever these are.
+        made: objects that were made of it, which do not depend on these.
     """
 
     system: System

@@ -60,9 +60,9 @@ def integrate(
         inputs: t -> values in the order of rhs.inputs; None takes the model's own.
         rtol, atol: tolerances of one step.
         method: one of METHODS; Radau, BDF and LSODA for stiff systems.
-        samples: how many instants, evenly spaced; the instants themselves; or None: the integrator's own steps.
+        samples: the number of instants, evenly spaced; the instants themselves; or None: the integrator's own steps.
         energy: (t n, x n x states) -> (T, V), n each [J].
-        conservative: whether T + V should stay; if not, no drift is reported.
+        conservative: T + V should be constant; if not, no drift is reported.
         gaps: (t n, x n x states) -> phi of the closing constraints, n x k; not needed with a projection.
         events: functions that end the run where they fall to zero.
         most_steps, stabilization, every: as of Stepping.

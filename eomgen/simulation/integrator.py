@@ -249,7 +249,7 @@ def march(
     """Step from the first instant of the span to the second, or to an event, or until it goes no further.
 
     Args:
-        instants: where states are wanted, in order; None: at the integrator's own steps.
+        instants: at which states are wanted, in order; None: at the integrator's own steps.
         unit_quaternions: the places of quaternions in x: each is put back to norm 1 after every step.
         projection: onto the constraints; it corrects the states between the steps too.
         slope: df/dx, used where steps are implicit.

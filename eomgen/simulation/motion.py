@@ -274,7 +274,7 @@ def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
     what lies between two steps (few of many steps are stored), at more of them.
 
     Args:
-        plan: by which it was run.
+        plan: the options with which it was run.
     Raises:
         RunFailed: the run was cut before its end.
     """

@@ -56,8 +56,8 @@ class PhaseModel:
         equations: the equations of motion, friction included.
         p: the parameters' values.
         target: of the emitted code.
-        known: what was made of its equations, whatever the parameters' values.
-        fed: what a Python function makes of the parameters at every state; None: they stay.
+        known: objects made of its equations, which hold for all values of the parameters.
+        fed: Python function that gives the parameters at every state; None: they are constant.
     """
 
     watch: ContactEvents
@@ -324,7 +324,7 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
 
     Args:
         p: the parameters' values.
-        target: in which language a long function is run.
+        target: the language in which a long function is run.
     """
     states = equations.symbols.q + equations.symbols.u
     n, k = len(equations.M), len(equations.J)

@@ -259,7 +259,7 @@ class DerivedAt:
     Args:
         system: it.
         p: the values.
-        changes: whether it is but one of the phases of a model.
+        changes: it is only one of the phases of a model.
     """
 
     system: System

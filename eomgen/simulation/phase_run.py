@@ -71,9 +71,9 @@ class PhaseRun:
     Args:
         here: its start.
         phase: its equations.
-        run: what the integrator left.
-        bound: what ended it; None where the time, a condition or a failure did.
-        after: what follows the bound; of a condition, what would follow if it holds just as the phase ends.
+        run: the result of the integrator.
+        bound: the bound that ended it; None where the time, a condition or a failure did.
+        after: the start of the next phase; of a condition, the one that would follow if it holds just at its end.
     """
 
     here: PhaseStart
@@ -283,7 +283,7 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
 
     Args:
         instants: no others have a row; None: those at which phases change have one too.
-        more: what is replaced in the trajectory.
+        more: fields that are replaced in the trajectory.
 
     Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
     """

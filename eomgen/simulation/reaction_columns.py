@@ -36,7 +36,7 @@ class ReactionColumns:
     Args:
         reactions: of the system.
         rhs: its right-hand side.
-        given: what the columns are; None: every reaction by its name.
+        given: the reactions of the columns; None: every reaction by its name.
     """
 
     reactions: Reactions
@@ -231,7 +231,7 @@ def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]])
 
     Args:
         A: one of them, rows x columns, which says what blocks are regular.
-        stands: where entries can be, rows x columns.
+        stands: True where an entry can be other than zero, rows x columns.
         groups: the rows of each body.
     """
     left, open_ = [np.array(group) for group in groups], np.ones(A.shape[1], dtype=bool)

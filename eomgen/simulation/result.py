@@ -70,7 +70,7 @@ class Phase:
 
     Args:
         start, end: its times [s].
-        ended_by: what ended it, in words.
+        ended_by: the reason of its end, in words.
         rows: its first row in the trajectory, and the one after its last; where it ends and another begins the row is
             that of the other, in the state after.
         model: its equations, contacts and reactions, where contacts are that change; else None.
@@ -146,10 +146,10 @@ class Trajectory:
             none.
         units: of the reactions, by name.
         outputs: of the model, n each [SI]: nan where one has no value; one that has no column is in the remark.
-        reported: what is missing among them whatever the state is, and why; or "".
+        reported: text on those that are missing at every state, with the reason; or "".
         gaps: -> the same of single states, found on demand.
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
-        assembled: what was changed of the start values so that the constraints hold there, and of which; or "".
+        assembled: text on the changes of the start values by which the constraints hold there; or "".
         proof: the run -> its certificate; None where nobody knows its equations.
         whole: text -> its value over the whole run (a RunValue); None where nobody knows its equations.
         quantities: of the model's outputs those that are of the whole run, each a RunValue.
@@ -322,7 +322,7 @@ class Trajectory:
         """A header line and one line an instant.
 
         Args:
-            units: in which the columns are given, "theta [deg]"; None: plain names, and SI.
+            units: of the columns, "theta [deg]"; None: plain names, and SI.
         Raises:
             WriteFailed: the file cannot be written; what was there before is then still there.
         """

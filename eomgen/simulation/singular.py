@@ -139,7 +139,7 @@ class SingularCrossing:
     """A singular position by which a motion came.
 
     Args:
-        start, end: where it was left and where it was found again [s].
+        start, end: instants at which it was left and found again [s].
         motion: t n -> x, n x states, between them.
     """
 

@@ -135,7 +135,7 @@ def animate_document(
     """The picture is written; the document says what it holds.
 
     Args:
-        time: how long the motion is [s]; None: as `page_time` has it.
+        time: the duration of the motion [s]; None: as `page_time` has it.
     """
     run: Trajectory | None = None
     shorter = ""
@@ -218,7 +218,7 @@ def virtual_displacement(
     """The virtual displacement of a structure that gives one of its reactions, as `animate` shows a run.
 
     Args:
-        reaction: as an output asks for it: "reaction_y(A)", "tension(T, n1-n2)".
+        reaction: its name as in an output: "reaction_y(A)", "tension(T, n1-n2)".
         path: .gif, .mp4, a strip .png or a page; None: the page shows itself.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:

@@ -93,7 +93,7 @@ def cached_derivation(data: bytes, name: str, model: Model, requested: Mapping[s
     Args:
         data: the model's text.
         name: of its file, in error messages.
-        model: what was read of it, with the values that were typed.
+        model: the model that was read from it, with the values that were typed.
         requested: all that was typed besides.
     """
     package = _package()

@@ -35,7 +35,7 @@ class LoopStart:
     Args:
         begun: the start; None where nothing closes, or a value is missing.
         branches: the ways in which they close; None at a change point too.
-        refused: why they do not close, or "".
+        refused: the reason why they do not close, or "".
     """
 
     begun: Start | None = None
@@ -139,7 +139,7 @@ def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
 
 
 def _unhung(model: Model) -> Iterator[Problem]:
-    """Bodies with mass that no joint hangs in a model that moves: they stand still, whatever else does."""
+    """Problems with bodies that have mass and no joint in a model that moves: they stand still."""
     for name, body in model.bodies.items() if model.coordinates else ():
         mass = body.mass if body.shape is None else body.shape.mass
         if body.joint is None and mass is not None and value_of(mass, exact_parameters(model)) != 0:
@@ -172,7 +172,7 @@ def _misplaced(model: Model) -> Iterator[Problem]:
             what, fix = constraint.misplaced(SystemScene(motion, f"constraints.{name}"))
             if what:
                 yield Problem(f"constraints.{name}", what, fix=fix)
-    except (DerivationError, ModelError):  # verbs that need equations of motion tell it
+    except (DerivationError, ModelError):  # reported by the verbs that need equations of motion
         return
 
 
@@ -180,7 +180,7 @@ def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:
     """Coordinates that move no mass, or several that move none together."""
     try:
         return massless_motions(assembled_by_recursion(system_of(model, modes)))
-    except (DerivationError, ModelError):  # verbs that need equations of motion tell it
+    except (DerivationError, ModelError):  # reported by the verbs that need equations of motion
         return ()
 
 

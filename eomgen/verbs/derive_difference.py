@@ -37,7 +37,7 @@ class Compared:
     Args:
         name: of the speed along which it is, or of a constraint's row.
         first, second: R in this model and in the other; None where one does not have it.
-        same: whether they are the same function, by a factor of 1.
+        same: True if they are the same function, with a factor of 1.
     """
 
     name: str

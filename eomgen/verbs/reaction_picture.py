@@ -22,7 +22,7 @@ def reaction_picture(model: Model, view: str | None = None, time: float | None =
 
     Args:
         view: "polar" or "resultants"; None: of hinges in the plane the first.
-        time: how long [s]; None: one turn of what is driven, else as long as a page shows it.
+        time: the duration [s]; None: one turn of the driven joint, else as long as a page shows it.
     Raises:
         RunFailed: nothing carries such a force; the motion ends at once.
     """

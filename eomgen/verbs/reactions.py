@@ -54,7 +54,7 @@ OPEN = "statically indeterminate"  # how a message begins to say that a reaction
 
 
 class FoundReactions(dict[str, Quantity]):
-    """{name as an output asks for it: the reaction}.
+    """{name as in an output: the reaction}.
 
     Args:
         equations: None where unknowns in the loads hold the system.
@@ -142,7 +142,7 @@ def reactions_document(
     Args:
         at, from_rest: as of `reactions`.
         plot: the file of the picture of them along the motion, if one is requested; view, time: as of that picture.
-        certify: whether it is proven.
+        certify: the result is proven.
     """
     found = reactions(model, at=at, from_rest=from_rest)
     equations = found.equations
@@ -316,7 +316,7 @@ def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str
     """Each reaction by name and in words, then as `solve` prints its answers.
 
     Args:
-        below: what may be added to indeterminate ones follows below.
+        below: the self-stresses of indeterminate ones follow below.
     """
     balance = balance_of(system)
     rows = []

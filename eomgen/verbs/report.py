@@ -76,7 +76,7 @@ class Subject:
     """A model and the options of its report; each result is found once.
 
     Args:
-        time: how long the motion is followed [s]; None: as `run_of_a_page` has it.
+        time: the duration of the motion [s]; None: as `run_of_a_page` has it.
         certify: results are proven.
         origin: the name of the model's file, "" for none.
         source: its text.
@@ -184,10 +184,10 @@ def report(
 
     Args:
         path: the file that is written; None: nothing is.
-        time: how long the motion is followed: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
+        time: the duration of the motion: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
-        certify: whether what stands in it is proven.
+        certify: its results are proven.
     Raises:
         UsageError: no format has that ending; there is no such section.
         ToolMissing: what runs notebooks is not installed.

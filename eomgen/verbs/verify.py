@@ -32,8 +32,8 @@ class Answered:
     """One equation of somebody.
 
     Args:
-        text: as it was written.
-        file, line: where, "" and 0 of what was typed.
+        text: the equation as it was written.
+        file, line: its place; "" and 0 for a typed one.
     """
 
     text: str

@@ -1,4 +1,4 @@
-"""What a newcomer does wrong in a model file, on the command line and in Python is reported with the probable intention.
+"""What a newcomer does wrong in a model file, on the command line and in Python is reported with a fix.
 
 `python tests/faults/test_fifty_mistakes.py` prints docs/mistakes.md.
 """

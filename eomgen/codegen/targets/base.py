@@ -77,7 +77,7 @@ class Role:
         name: of the files and the main function: NAME_rhs.
         prefix: of the other functions: NAME + prefix + _many.
         result: the array of the outputs.
-        about: what it computes, one line.
+        about: its results, one line.
     """
 
     name: str
@@ -166,11 +166,11 @@ class Target:
     """A language that programs are written in.
 
     Args:
-        name: as the user says it.
+        name: its name on the command line.
         about: the language, and what its files need.
         text: (program, stem, role) -> its functions in the language.
         files: (stem, what is emitted, the right-hand side first) -> {path: content}, ready to be used by others.
-        use: how they are used and tested, a line each, {stem} among them.
+        use: commands by which they are used and tested, a line each, with {stem}.
         load: the program, callable.
         run: (those files, program, stem, role) -> (t, x, a, p, inputs or None) -> outputs: the very text that others
             get, run here; None where nothing here runs the language.
@@ -252,7 +252,7 @@ class FileForm:
         language: its statements.
         module: of the functions of a program.
         path: of the file in which they stand; `test_path` of its test's, with "" there is none.
-        top: what stands around {text}, those functions, in a file of their own.
+        top: the text around {text}, those functions, in a file of their own.
         reported: a line of the head.
         prefix: of the names of the functions that are not the main one.
         given: words that depend on whether accelerations are an argument: where they are, and where they are not.
@@ -263,8 +263,8 @@ class FileForm:
             {names} as they are `quoted`.
         test: with {lines}, a line a vector.
         vector: one of these: {t}, {x}, {a}, {p}, {inputs}, {result} and {tolerance}.
-        listed: how an array is held together; empty: what stands for one without numbers; nan, what for no value.
-        acting: what stands for no inputs, and how an array stands for those that are given.
+        listed: text around an array; empty: text of one without numbers; nan: text of a missing value.
+        acting: text for no inputs, and the form of an array of given ones.
         real: the text of a double.
         finished: the last change of a text.
     """
@@ -464,9 +464,9 @@ def by_cases(
     Args:
         form: of one, with {name}, {arguments} and {value}.
         choice: of two values by a condition; ends: what stands where no condition is left.
-        argument, number: how an argument is declared, and a number written that is a value.
+        argument, number: declaration of an argument, and form of a number that is a value.
         words: of the language, for "nan", other names, parts of conditions.
-        only: which ops.
+        only: the ops.
     """
     known = re.compile("|".join(rf"(?<![\w.]){re.escape(word)}(?![\w.])" for word in words) or "(?!)")
 

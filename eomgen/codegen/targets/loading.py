@@ -77,8 +77,8 @@ def compiled_target(
     Args:
         use, files, load: as of Target; without files those of the form, loaded by the function above.
         entry: a {text} with the function above, by the words of the form.
-        size: how many constants the text says that there are, a pattern.
-        by: what compiles it.
+        size: pattern of the number of constants in the text.
+        by: its compiler.
         single: its words in single precision.
     """
 
@@ -163,7 +163,7 @@ def many_beside(language: str, command: Sequence[str], program: Program, first: 
 
     Args:
         language: its name in messages.
-        first: what it reads before the sizes.
+        first: bytes that it reads before the sizes.
     Raises:
         RunFailed: when called: it does not take the text.
     """

@@ -134,7 +134,7 @@ def node_target(
     """A language whose files are ECMAScript modules.
 
     Args:
-        use: how it is imported, and what runs its tests.
+        use: its import, and the command that runs its tests.
         text: of a program in the language, where that is not the module.
         beside: the files that the module needs.
         alone: (files, STEM_ROLE) -> the module as it needs no other file.

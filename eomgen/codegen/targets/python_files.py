@@ -71,7 +71,7 @@ def python_target(
     Args:
         name: of the package, too.
         language: in words.
-        use: how it is imported, and what runs its tests.
+        use: its import, and the command that runs its tests.
         single: its words in single precision, where there are such.
     """
 

@@ -82,7 +82,7 @@ class Inertia(Result):
         system: whose bodies they are.
         results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
         axes: the principal axes in numbers, the rows of R, by "plate" or "O".
-        steps: how they are found.
+        steps: the derivation of the results.
         stated: all stated values, with the bodies to which they belong.
         start: the state of moving bodies in the numbers; {}: parameters or the start have none.
     """

@@ -62,7 +62,7 @@ class Section:
     Args:
         sum: the rows, in one set of axes.
         point: about which.
-        of: what the names of the results hold in parentheses: "plate", "plate, O", "O".
+        of: the part of the results' names in parentheses: "plate", "plate, O", "O".
         flat: only the moment about z is known.
         centroidal: the point is the mass centre.
         silent: bodies that have a mass and say nothing of their inertia: no moments are known.
@@ -305,7 +305,7 @@ class InertiaRow:
     """A body, or a piece of one.
 
     Args:
-        label: what it is called.
+        label: its name.
         sign: -1 for a hole, which takes away.
         mass: its mass (positive), mass centre and inertia about it.
     """
@@ -331,7 +331,7 @@ class InertiaSum:
     Args:
         motion: whose formulas they are.
         rows: in one set of axes.
-        start: where the numbers are taken: the coordinates there (empty: moving things have no numbers).
+        start: values of the coordinates for the numbers (empty: moving bodies have no numbers).
     """
 
     motion: Motion

@@ -64,9 +64,9 @@ class Linearization(Result):
 
     Args:
         model: the system.
-        modes: what follows from its equations to first order.
-        drawn: what its picture shows: "modes", "bode", or "locus", the roots `over` a parameter.
-        assumptions: what had to be assumed of contacts.
+        modes: the results of its linearized equations.
+        drawn: the content of its picture: "modes", "bode", or "locus", the roots `over` a parameter.
+        assumptions: those made about contacts.
     """
 
     model: Model
@@ -454,7 +454,7 @@ def linearize(
 
     Args:
         about: "equilibrium", "start" (a steady motion), or "steady" (the one near the start); None: as the model says.
-        coordinates: in which they are written; (): as the model says, or all.
+        coordinates: those of the linearized equations; (): as the model says, or all.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a coordinate that the model does not have.
