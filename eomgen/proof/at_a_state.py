@@ -1,4 +1,4 @@
-"""A system, a state in numbers -> what formulas are worth there, by another way than they are made readable on.
+"""System, state in numbers -> values of formulas there, found without the simplifications of their printed forms.
 
 Accelerations come from dense linear algebra with more than 20 digits, reactions from the bodies' equations solved in
 doubles; every other function is evaluated as it is defined, with 50 digits. Nothing was simplified before.
@@ -79,7 +79,7 @@ class NumericState:
         return found | least_multipliers(self.equations, self.values | found)
 
     def value_of(self, formula: Expression) -> float:
-        """The formula there.
+        """Value of a formula at the state.
 
         Raises:
             NoValue: it has none.
@@ -97,8 +97,9 @@ class NumericState:
             return self._together(quantities, formula)
 
     def _together(self, quantities: Quantities, formula: Expression) -> float:
-        """The formula by reactions of least size that hold every body in balance; what may be added to all of these
-        must leave no trace in it.
+        """Value of a formula of reactions of least norm that hold every body in equilibrium.
+
+        Self-stresses, which may be added to these reactions, must not change it.
 
         Raises:
             NoValue: it does.
@@ -131,7 +132,7 @@ class NumericState:
         return float(evaluate((scalar,), known, fifty_digits())[0])
 
     def decides(self, scalar: Scalar) -> bool:
-        """Whether the state, and not rounding, says what a function of it is worth: no 0/0."""
+        """True if the value of a function at the state is determined by it and not by rounding: no 0/0."""
         try:
             refuse_noise((scalar,), self.values | self.unknowns)
         except (NoValue, ZeroDivisionError):
@@ -149,7 +150,7 @@ class NumericState:
         return {name: float(x) for name, x in zip(columns.names, found, strict=True) if np.isfinite(x)}
 
     def rounding(self, formula: Expression) -> float:
-        """What doubles may leave of reactions that are small beside the forces [N, N m]; 0 of what asks none."""
+        """Rounding error of reactions in doubles, by the size of the forces [N, N m]; 0 without reactions."""
         if not any(FUNCTIONS[call.name].source == BALANCE for call in formula.calls):
             return 0.0
         forces = evaluate(tuple(self.equations.forcing), self.values, fifty_digits()) or self._applied
@@ -157,7 +158,7 @@ class NumericState:
 
     @property
     def _applied(self) -> list[Any]:
-        """What is applied to each body of a structure, forces and moments about the ground's origin."""
+        """Wrenches applied to each body of a structure, about the ground's origin."""
         loads = self.equations.system.loads
         placed = [load for force in loads.applied for load in force.loads]
         pushes = pushes_of(self.equations.system.motion, self.values, (*placed, *weights(loads)))
@@ -185,7 +186,7 @@ class NumericState:
 
     @cached_property
     def jumps(self) -> bool:
-        """Whether what is applied jumps with the sign of a rate: other values on either side, however near."""
+        """True if an applied force jumps with the sign of a rate: its values on either side differ, however near."""
         symbols, digits = self.equations.symbols, fifty_digits()
         signs = (x for x in order(self.equations.forcing) if x.op == "sign")
         if not any(depends_on(x.args[0], symbols.u) for x in signs):
@@ -198,7 +199,7 @@ class NumericState:
         return any(near > COMPUTED and 2 * near > far for far, near in zip(*apart, strict=True))
 
     def nearby(self) -> tuple[NumericState, NumericState]:
-        """Two states so near that doubles of several steps might mistake them for it."""
+        """Two states that differ from it by rounding errors of several steps in doubles."""
         turns = {node: (-1) ** k * COMPUTED * (1 + abs(x)) for k, (node, x) in enumerate(self.numbers.items())}
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
@@ -206,7 +207,7 @@ class NumericState:
 
 
 def balanced_least(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndarray, np.ndarray]:
-    """(the components of least size with which every body is in balance, what may be added to them: a column each).
+    """Components of least norm with which every body is in equilibrium, and, by columns, those that may be added.
 
     Args:
         known: all symbols with 50 digits, accelerations included.
@@ -240,7 +241,7 @@ def moving_states(equations: EquationsOfMotion) -> Iterator[NumericState]:
 
 
 def place_of(state: NumericState) -> str:
-    """Its first coordinates, in words."""
+    """Time and first coordinates of a state, in words."""
     moving = [f"{node.name} = {x:.6g}" for node, x in state.numbers.items()]
     return ", ".join(moving[1:4])
 
@@ -268,7 +269,7 @@ def read_back(system: System, text: str) -> Scalar:
 
 
 def off_by(found: float, right: float, near: list[float]) -> str:
-    """That a number is off by more than nearby states make of it.
+    """Message if a number is wrong by more than its change between nearby states; "".
 
     Raises:
         NoValue: next to a singular position nearby states are far apart.

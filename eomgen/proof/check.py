@@ -1,4 +1,4 @@
-"""What was checked of a result, by which arithmetic, and whether it holds: a proof is a list of checks."""
+"""Checks of a result, with the arithmetic and the outcome of each; a certificate is a list of checks."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def attempted(name: str, how: str, wrong: Callable[[], str]) -> Check:
 
 
 def differing(found: float, right: float, share: float = COMPUTED) -> str:
-    """That two numbers differ by more than a share of the larger, in words; ""."""
+    """Difference of two numbers in words, where it is more than a share of the larger; ""."""
     if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
         return ""
     return f"{found:.10g} for {right:.10g}"
@@ -110,14 +110,14 @@ class Certificate:
         return "\n".join([head, *rows])
 
     def as_dict(self) -> dict[str, Any]:
-        """For `--json`."""
+        """Content for `--json`."""
         rows = [{"name": c.name, "status": c.status, "ok": c.ok, "how": c.how, "detail": c.detail} for c in self.checks]
         return {"ok": self.ok, "checks": rows}
 
 
 @dataclass
 class Tally:
-    """What was compared so far, and with what outcome.
+    """Count of comparisons made so far, with their outcomes.
 
     Args:
         name, how: of the check.
@@ -133,7 +133,7 @@ class Tally:
     left: dict[str, str] = field(default_factory=dict)
 
     def add(self, what: str, compared: Callable[[], str]) -> None:
-        """One comparison: what differs in words, or ""; what has no value or is not derived is left."""
+        """Adds one comparison, which gives the difference in words, or ""; one without a value is left unchecked."""
         try:
             found = compared()
         except (NoValue, ZeroDivisionError) as error:
@@ -145,7 +145,7 @@ class Tally:
             self.wrong += [f"{what}: {found}"] if found else []
 
     def checks(self) -> Iterator[Check]:
-        """Of what was compared, then of what could not be."""
+        """One check of the comparisons made, then those of the comparisons that could not be made."""
         if self.wrong:
             yield checked(self.name, "; ".join(self.wrong[:3]), self.how)
         elif self.held:

@@ -57,7 +57,7 @@ STATES = 100  # of a phase that are looked at
 
 
 def contacts_do_as_told(phases: Sequence[Phase]) -> Iterator[Check]:
-    """In every phase each contact is as the phase takes it; none where there are no contacts."""
+    """Check that each contact presses, grips, slides or is open as its phase assumes; none without contacts."""
     tally = Tally("contacts press, grip, slide or stand apart as their phase takes them", "reactions of the bodies")
     for phase in phases:
         seen = _Seen(phase)
@@ -85,7 +85,7 @@ class _Seen:
         return t[places], x[places]
 
     def wrong(self, contact: Contact) -> str:
-        """What a contact does otherwise than its phase takes it, or "".
+        """Message if a contact does otherwise than its phase assumes; "".
 
         Raises:
             NoValue: its forces have no single value.
@@ -149,7 +149,7 @@ class _Seen:
 
 
 def bodies_stand_as_reported(phases: Sequence[Phase], apart: System) -> Iterator[Check]:
-    """In every phase bodies are where the whole model has them, and that where their joints say.
+    """Check that bodies stand in every phase where the whole model has them, and where their joints say.
 
     Args:
         apart: the model without its contacts that can end, all pieces of its paths in it.
@@ -161,7 +161,7 @@ def bodies_stand_as_reported(phases: Sequence[Phase], apart: System) -> Iterator
 
 
 def _misplaced(phase: Phase, apart: System) -> str:
-    """At its beginning, its middle and its end."""
+    """Message if a body stands elsewhere at the beginning, the middle or the end of a phase; ""."""
     assert phase.track is not None
     own: System = phase.model.system
     for row in sorted({0, len(phase.track[0]) // 2, len(phase.track[0]) - 1}):
@@ -191,7 +191,7 @@ def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
 
 
 def changes_follow_impulses(phases: Sequence[Phase], apart: System, contacts: Sequence[str]) -> Iterator[Check]:
-    """At every change of phase only constraints, and contacts that touch, give momentum; none where nothing changes.
+    """Check that only constraints, and contacts that touch, change the momentum between phases; none with one phase.
 
     Args:
         apart: the model without its contacts that can end.
@@ -214,7 +214,7 @@ class _Bodies:
     after: Phase
 
     def wrong(self) -> str:
-        """What the change does beyond the law of impact, or ""."""
+        """Message if the change of state violates the law of impact; ""."""
         q = len(self.system.symbols.q)
         early, late = self._state(self._end), self._state(self._begin)
         size = max(1.0, float(np.max(np.abs([early, late]))))
@@ -234,7 +234,7 @@ class _Bodies:
         return self._left(pushes, frees, early, late)
 
     def _left(self, pushes: list[np.ndarray], frees: list[np.ndarray], early: np.ndarray, late: np.ndarray) -> str:
-        """That no impulses give the change of momentum: min |J^T Lam - dP|, in units of sqrt(J)."""
+        """Message if no impulses give the change of momentum: min |J^T Lam - dP|, in units of sqrt(J); ""."""
         from scipy.optimize import nnls
 
         n = len(self.system.symbols.u)
@@ -277,7 +277,7 @@ class _Bodies:
         return {name: rows_of_constraint(self.system.motion, name) for name in self.contacts}
 
     def _touches(self, name: str, rows: Sequence[Row]) -> bool:
-        """Whether a contact is closed before or after, or its gap is 0."""
+        """True if a contact is closed before or after, or its gap is 0."""
         if any(name not in phase.model.configuration.open for phase in (self.before, self.after)):
             return True
         gap = self._end.get(slack_name(name), 0.0)
@@ -339,7 +339,7 @@ OPEN = ContactMode(closed=False)
 
 
 def other_friction(system: System, state: State) -> str:
-    """Whose friction is not that of a coefficient declared for it; "" where all are.
+    """Message that names a contact whose friction is not of a coefficient declared for it; "".
 
     Raises:
         NoValue: something has no value there.
@@ -358,7 +358,7 @@ def other_friction(system: System, state: State) -> str:
 
 
 def _laws(system: System, name: str) -> Iterator[Resistance | None]:
-    """Of a constraint its own; of a path those of its pieces."""
+    """Friction laws of a constraint, or of the pieces of a path."""
     model = system.scope.model
     if name in model.constraints:
         yield getattr(model.constraints[name], "friction", None)
@@ -375,7 +375,7 @@ def _declared(proof: InNumbers, law: Resistance | None, speed: Any, slides: bool
 
 
 def leaving_at_start(equations: EquationsOfMotion) -> str:
-    """Which contact that can end is closed, and leaves its surface where the motion starts; "" where none does.
+    """Message that names a closed contact, of those that can end, which leaves its surface at the start; "".
 
     Raises:
         NoValue: the start is not known in numbers, or something has no value there.
@@ -408,7 +408,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
 
 
 def pushing_otherwise(equations: EquationsOfMotion, start: State, moving: Callable[[State], State]) -> str:
-    """Which contact that holds both ways pushes at the start against the sign by which its friction is taken; "".
+    """Message that names a bilateral contact whose force at the start has not the sign of its friction; "".
 
     Args:
         start: the model's own.

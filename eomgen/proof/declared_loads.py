@@ -77,7 +77,7 @@ SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
 
 
 def acting_otherwise(system: System, state: State) -> str:
-    """What pushes bodies otherwise than it is declared at a state; "" where nothing does.
+    """Message if a force pushes a body otherwise than it is declared, at a state; "".
 
     Raises:
         NoValue: something has no value there.
@@ -97,7 +97,7 @@ def acting_otherwise(system: System, state: State) -> str:
 
 
 def declared_pushes(system: System, state: State, force: str) -> Pushes:
-    """Of each body (moment about the ground's origin, force) of one force as its fields declare it.
+    """Wrench (moment about the ground's origin, force) of one force on each body, as its fields declare it.
 
     Raises:
         NoValue: it has none at the state.
@@ -106,7 +106,7 @@ def declared_pushes(system: System, state: State, force: str) -> Pushes:
 
 
 def working_otherwise(equations: EquationsOfMotion, state: State) -> str:
-    """That Q does another work along a random direction than what is declared; "".
+    """Message if the work of Q along a random direction is not that of the declared loads; "".
 
     Raises:
         NoValue: something has no value there.
@@ -153,7 +153,7 @@ class _Declared(InNumbers):
     # -- work ------------------------------------------------------------------------------------------------
 
     def works(self, way: Way) -> list[Any]:
-        """Of every act and every joint, along a way."""
+        """Virtual work of every act and every joint, along a direction of motion."""
         terms = [term for act in self.acts for term in self._terms(act)]
         terms += [term for push in self._in_joints for term in self._of_joint(push)]
         rates = way.rates([moving for moving, _ in terms])
@@ -205,7 +205,7 @@ class _Declared(InNumbers):
     # -- what acts on bodies ---------------------------------------------------------------------------------
 
     def pushes(self, acts: Iterable[Act]) -> Pushes:
-        """Of each body (moment about the ground's origin, force)."""
+        """Wrench (moment about the ground's origin, force) of acts on each body."""
         found: Pushes = {}
         for act in acts:
             if isinstance(act, CoupleOn):
@@ -236,7 +236,7 @@ class _Declared(InNumbers):
             yield from self._of_element(act)
 
     def _along_line(self, line: PushAlongLine) -> Iterator[Placed]:
-        """By Simpson's rule: the load at both ends and half way, there on the middle of the ends."""
+        """Forces that replace a line load by Simpson's rule, at both ends and in the middle."""
         places = [
             self.scene.position(self.scene.place(name if "." in name else f"{line.body}.{name}")) for name in line.ends
         ]
@@ -261,7 +261,7 @@ class _Declared(InNumbers):
 
 
 def _between(places: Sequence[Sequence[Scalar]], halves: int) -> tuple[Scalar, ...]:
-    """So many halves of the way from one place to another."""
+    """Start, middle or end of two places, for 0, 1 or 2 halves of the way."""
     if halves != 1:
         return tuple(places[halves // 2])
     return tuple(HALF * (a + b) for a, b in zip(*places, strict=True))
@@ -285,7 +285,7 @@ def elements_of(system: System) -> tuple[tuple[Applied, Element], ...]:
 
 
 def undeclared(system: System, state: State) -> str:
-    """Which element acts otherwise than it is declared at a state; "" where none does.
+    """Message that names an element which acts otherwise than it is declared, at a state; "".
 
     Raises:
         NoValue: something has no value there.
@@ -300,7 +300,7 @@ def undeclared(system: System, state: State) -> str:
 
 
 def acting(system: System, state: State, force: str) -> Any:
-    """What an element pulls [N], or turns its second body back with [N m], by its declaration at a state."""
+    """Pull of an element [N], or its moment on the second body [N m], by its declaration at a state."""
     (element,) = (each for applied, each in elements_of(system) if applied.name == force)
     return ActingElement(system, state, element).law[0]
 
@@ -326,7 +326,7 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
 
 
 def _energy(stated: Any, due: Any) -> str:
-    """That an energy is another one."""
+    """Message if a stated energy differs from the due one; ""."""
     same = abs(stated - due) <= ZERO_AT_50 * (1 + abs(due))
     return "" if same else f"has the energy {float(stated):.10g} for {float(due):.10g}"
 
@@ -375,7 +375,7 @@ class ActingElement(InNumbers):
     element: Element
 
     def wrong(self, applied: Applied) -> str:
-        """What of its loads and its energy is otherwise."""
+        """Message if the loads or the energy of the element are not those of its law; ""."""
         pull, energy = self.law
         reach: Any = 1 + max(map(abs, (x for end in self.ends for x in end)), default=0)
         stated = pushes_of(self.motion, self.state, applied.loads)
@@ -397,7 +397,7 @@ class ActingElement(InNumbers):
 
     @cached_property
     def direction(self) -> Numbers:
-        """Of the pull on the first end."""
+        """Direction of the pull on the first end, a unit vector; 0 for a spring whose ends coincide."""
         along = self.element.along
         v: Numbers = minus(self.ends[1], self.ends[0]) if along is None else self.vector(self.scene.vector(along))
         if along is None and self._is_spring_without_length and not any(v):
@@ -406,7 +406,7 @@ class ActingElement(InNumbers):
 
     @property
     def _is_spring_without_length(self) -> bool:
-        """Whether k l is all that it pulls: that is smooth where its ends meet."""
+        """True if the pull is k l alone, which is smooth where the ends meet."""
         element = self.element
         springs = element.stiffness is not None and element.damping is None and element.pull is None
         return springs and self._slack == 0
@@ -462,7 +462,7 @@ class ActingElement(InNumbers):
     # -- what acts -------------------------------------------------------------------------------------------
 
     def of_pull(self, pull: Any) -> Pushes:
-        """By the law."""
+        """Wrench of a pull on each body."""
         found: Pushes = {}
         if not self.element.points:
             for body, sign in zip(self.element.bodies, (1, -1), strict=True):
@@ -486,7 +486,7 @@ class ActingElement(InNumbers):
 
 
 def threads_of(system: System) -> dict[str, Thread]:
-    """What runs straight from point to point, by its constraint, where that is closed."""
+    """Threads of strings and links, by the name of their constraint, where that is closed."""
     closed = {row.constraint for row in system.constraints.rows}
     threads = {
         name: constraint.thread() for name, constraint in system.scope.model.constraints.items() if name in closed
@@ -495,7 +495,7 @@ def threads_of(system: System) -> dict[str, Thread]:
 
 
 def strung_otherwise(system: System, state: State) -> str:
-    """Which string or link runs or pulls otherwise than it is declared; "" where none does.
+    """Message that names a string or link which runs or pulls otherwise than it is declared; "".
 
     Raises:
         NoValue: something has no value there, or the constraints do not hold.
@@ -509,7 +509,7 @@ def strung_otherwise(system: System, state: State) -> str:
 
 @dataclass(frozen=True)
 class _Stop:
-    """Where a thread is led: its place over the graph; the centre, a (0 of a point) and the axis in numbers."""
+    """Stop of a thread: its place over the graph; the centre, the radius a (0 for a point) and the axis in numbers."""
 
     body: str | None
     place: Vector
@@ -550,7 +550,7 @@ class _Strung(InNumbers):
 
     @property
     def _wrong_length(self) -> str:
-        """Of what says how long it is."""
+        """Message if the length is not the declared one; ""."""
         if self.thread.length is None:
             return ""
         declared = self.one(self._scene.value(self.thread.length))
@@ -574,7 +574,7 @@ class _Strung(InNumbers):
         return ropes
 
     def _direction(self, first: _Stop, second: _Stop) -> Numbers:
-        """Of the line that touches both."""
+        """Direction of the line that is tangent to both stops."""
         D: Numbers = minus(second.center, first.center)
         self._refuse_turned_over(first, second, D)
         along = direction_at(D)
@@ -632,7 +632,7 @@ class _Strung(InNumbers):
 
     @property
     def _rigid(self) -> bool:
-        """Whether it is led over places that are fixed in their bodies."""
+        """True if all stops are fixed in their bodies."""
         named = [self._scene.place(item) for item in self.thread.stops if isinstance(item, str)]
         named += [self._scene.own_place(x.body, None) for x in self.thread.stops if not isinstance(x, str) and x.body]
         return not any(self.motion.moves(place) for _, place in named)

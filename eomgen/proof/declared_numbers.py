@@ -44,7 +44,7 @@ FUNCTIONS: Mapping[str, Callable[..., float]] = {
 
 
 def numbers_otherwise(data: bytes, model: Model) -> str:
-    """Which number of the file is another one in the model; "" where all are the same."""
+    """Message that names a number which differs between the file and the model; "" where all agree."""
     try:
         found = tomllib.loads(data.decode("utf-8-sig").replace("\r\n", "\n"))
     except (ValueError, RecursionError):  # what our reader forgives
@@ -62,7 +62,7 @@ def _parameters(found: Mapping[str, Any], model: Model) -> Iterator[str]:
 
 
 def _starts(found: Mapping[str, Any], model: Model) -> Iterator[str]:
-    """Of coordinates and inputs what is written as a plain number."""
+    """Differences of starts and inputs that are written as plain numbers, in words or ""."""
     for table, parts, keys in (
         ("coordinates", model.coordinates, ("start", "speed", "near")),
         ("inputs", model.inputs, ("value",)),
@@ -88,7 +88,7 @@ def _apart(name: str, found: float, due: float) -> str:
 
 
 def _size(text: Any) -> float | None:
-    """Of a unit; None of one that is not understood."""
+    """Size of a unit in SI; None where it is not understood."""
     if not isinstance(text, str):
         return None
     size, at, below, whole = 1.0, 0, False, text.replace(" ", "")
@@ -105,7 +105,7 @@ def _size(text: Any) -> float | None:
 
 
 def _value(value: Any, known: Mapping[str, float]) -> float | None:
-    """Of a number, or of a formula of parameters; None of what Python does not read."""
+    """Value of a number, or of a formula of parameters; None where Python cannot read it."""
     if isinstance(value, (int, float)) and not isinstance(value, bool):
         return float(value)
     if not isinstance(value, str):
@@ -117,7 +117,7 @@ def _value(value: Any, known: Mapping[str, float]) -> float | None:
 
 
 def _evaluated(node: ast.expr, known: Mapping[str, float]) -> float:
-    """Of sums, products, powers and functions; anything else is no key of what is known here."""
+    """Value of a formula of sums, products, powers and functions; a KeyError for anything else."""
     match node:
         case ast.Constant(value=int() | float() as value):
             return float(value)
@@ -145,7 +145,7 @@ PARTS = (Fraction(0), Fraction(3, 10), Fraction(4, 5))  # of a gap
 
 
 def other_functions(model: Model) -> Iterator[Check]:
-    """Whether they go through their samples; none where there are none."""
+    """Check that functions through samples go through them; none where the model has no such functions."""
     laws = [found for found in map(_sampled, _expressions(model)) if found is not None]
     if laws:
         name = "functions through samples go through them, and between them as they are declared"
@@ -165,7 +165,7 @@ def _sampled(law: Expression) -> tuple[Sampled, DeclaredSamples] | None:
 
 
 def _wrong(law: tuple[Sampled, DeclaredSamples]) -> str:
-    """Where the function is another one, or ""."""
+    """Message that names an instant at which the function has another value; ""."""
     function, given = law
     times = given.times
     gaps = np.unique(np.linspace(0, len(times) - 2, MOST).astype(int))

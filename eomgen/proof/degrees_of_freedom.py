@@ -51,7 +51,7 @@ SUMMAND = re.compile(r"([+-]?)\s*(?:(\d+)\*)?(\d+) \([^)]*\)")  # of a count: "3
 
 
 def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
-    """What of the count is otherwise by differences; "" where nothing is, or nothing was counted."""
+    """Message if the count of degrees of freedom is another by differences; "" too where nothing was counted."""
     if found.by_formula is not None and _summed(found.formula) != found.by_formula:
         return f"the count {found.formula} is {_summed(found.formula)}, not {found.by_formula}"
     if found.by_rank is None:
@@ -68,7 +68,10 @@ def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
 
 
 def _unnamed(constraints: Constraints, found: Freedom) -> str:
-    """That fewer rows are named as redundant than the count by components lacks; "" where constraints act on no body.
+    """Message if fewer rows are named as redundant than the count by components lacks; "".
+
+    The count takes off every component that is held: what it lacks of the degrees of freedom by rank is held twice.
+    Nothing is compared where a constraint acts on no body.
 
     The count takes off every component that is held: what it lacks of the degrees of freedom by rank is held twice.
     """
@@ -79,7 +82,7 @@ def _unnamed(constraints: Constraints, found: Freedom) -> str:
 
 
 def standing_otherwise(structure: Structure) -> str:
-    """What of a structure's rank is otherwise in doubles; "" where nothing is."""
+    """Message if the rank of a structure is another in doubles; ""."""
     state = values_of_parameters(structure.system.scope, Random(3))
     try:
         at = evaluate(tuple(structure.at.values()), state, fifty_digits())
@@ -102,7 +105,7 @@ def _doubles(v: Vector, known: State) -> np.ndarray:
 
 
 def lines_otherwise(lines: Sequence[str], reported: Mapping[str, Any], found: Freedom) -> str:
-    """What is printed of a count, or told machines of it, otherwise than it was found; ""."""
+    """Message if a count is printed, or reported to machines, otherwise than it was found; ""."""
     due = {
         "degrees_of_freedom": found.by_rank,
         "by_formula": found.by_formula,
@@ -119,7 +122,7 @@ def lines_otherwise(lines: Sequence[str], reported: Mapping[str, Any], found: Fr
 
 
 def _line_otherwise(line: str, reported: Mapping[str, Any]) -> str:
-    """That a line says another thing than machines get."""
+    """Message if a line differs from what machines get; ""."""
     for pattern, name in NUMBERS:
         number = pattern.fullmatch(line)
         if number is not None and int(number[1]) != reported[name]:
@@ -137,7 +140,7 @@ def _line_otherwise(line: str, reported: Mapping[str, Any]) -> str:
 
 
 def _unsaid(lines: Sequence[str], reported: Mapping[str, Any]) -> Iterator[str]:
-    """That a redundant row is not named, or one that is not redundant."""
+    """Message if a redundant row is not named, or one that is not redundant is."""
     rows = [row for row in map(REDUNDANT.fullmatch, lines) if row is not None]
     said = [(row[2], int(row[1]), [] if row[3] in NO_CONSTRAINTS else row[3].split(", ")) for row in rows]
     due = [(row["tie"], row["row"], row["follows_from"]) for row in reported["redundant"]]
@@ -203,7 +206,7 @@ def _rank(lines: Iterable[Sequence[float]]) -> int:
 
 
 def _lines(constraints: Constraints, rows: Sequence[Row], state: State) -> list[list[float]]:
-    """What each row has for each speed."""
+    """Coefficients of each row, one a speed, by differences."""
     scope, lines = constraints.motion.scope, [list[float]() for _ in rows]
     places = [k for k, row in enumerate(rows) if row.gap is not None]
     gaps = tuple(row.gap for row in rows if row.gap is not None)
@@ -242,7 +245,7 @@ def rows_that_stay(system: System) -> tuple[tuple[Row, Scalar], ...]:
 
 
 def open_at_start(system: System, state: State) -> str:
-    """Which of them is open at the start, with the parameters of a state; "" where none is.
+    """Message that names a row which is not satisfied at the start, with the parameters of a state; "".
 
     Raises:
         NoValue: something has no value there.
@@ -262,7 +265,7 @@ def springs_of_the_start(system: System) -> tuple[Applied, ...]:
 
 
 def pulled_at_start(system: System) -> str:
-    """Which of them is not slack where the motion starts, all constraints closed; "" where all are.
+    """Message that names a spring which is not slack at the start, all constraints satisfied; "".
 
     Raises:
         NoValue: the start is not known in numbers.
@@ -354,7 +357,7 @@ def _without(row: Sequence[Any], pivot: Sequence[Any], k: int) -> Sequence[Any]:
 
 @dataclass(frozen=True)
 class Going:
-    """How a system moves on from a state.
+    """Motion of a system from a state.
 
     Args:
         state: q, u, t, inputs and parameters.
@@ -449,7 +452,7 @@ class Nearby:
 
     @cached_property
     def _dependent_q(self) -> tuple[Node, ...]:
-        """Those that stand in what is known between positions; others stay where they are."""
+        """Dependent coordinates that stand in relations between positions; others keep their values."""
         coordinates, bound = self.equations.system.scope.model.coordinates, {*symbols_of(self.relations)}
         return tuple(q for q in self.equations.symbols.q if q in bound - {*self.q} and not coordinates[q.name].driven)
 

@@ -37,7 +37,7 @@ def _triangle(x: float, low: float, mode: float, high: float) -> float:
 def drawn_otherwise(
     over: Mapping[str, Sequence[float]], laws: Sequence[Law], draws: int, design: str, rows: Sequence[Sequence[Any]]
 ) -> Check:
-    """What is set in each run.
+    """Check that the values set in each run are of their ranges and laws.
 
     Args:
         draws: at each point of the ranges.
@@ -115,7 +115,7 @@ def _summed(name: str, column: Sequence[float | None], reported: Sequence[float 
 
 
 def _remarked(name: str, column: Sequence[float | None], remarks: Sequence[str], critical: bool, fine: float) -> str:
-    """Whether "is ... in all runs" is said exactly of what is the same in them, "goes from" of what is not."""
+    """Message if "is ... in all runs" or "goes from" is reported of the wrong column; ""."""
     values = [x for x in column if x is not None]
     reported = any(f"'{name}' is " in x and " in all runs" in x for x in remarks)
     if len(values) < 2:

@@ -83,13 +83,13 @@ class PhaseMotion:
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:
-        """What stands in the equations: rates, M, J, forcing, gamma, row after row."""
+        """Scalars of the equations: rates, M, J, forcing, gamma, row after row."""
         equations = self.equations
         matrices = (x for row in (*equations.M, *equations.J) for x in row)
         return (*self.equations.system.scope.rates, *matrices, *equations.forcing, *equations.gamma)
 
     def torn(self, code: Code, at: TriedState) -> str | None:
-        """What the code's accelerations leave of the free bodies that all constraints hold at once; "" where nothing.
+        """Message if the code's accelerations violate the equations of the free bodies with all constraints; "".
 
         None at a state in which the constraints do not hold, and where no constraint closes. Where the code's numbers
         hang on the
@@ -171,7 +171,7 @@ class RunNumbers:
             raise NoValue("the constraints contradict one another")
 
     def left_of_forces(self, a: np.ndarray, acting: np.ndarray | float = 0.0) -> float:
-        """Of M a - J^T lam = forcing + acting, rows weighted by 1/sqrt(M_kk), with the lam that leaves least.
+        """Relative residual of M a - J^T lam = forcing + acting, rows weighted by 1/sqrt(M_kk), lam by least squares.
 
         A term counts as no smaller than that of an acceleration of 1 m/s^2 or rad/s^2; nan where a has no value.
 
@@ -229,7 +229,7 @@ def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], na
 
 
 def _sure(code: Code, instant: TriedState) -> bool:
-    """Whether the code's numbers hardly change where the state does by a part in 1e12, or are nowhere there."""
+    """True if the code's numbers hardly change when the state does by a part in 1e12, or are not finite there."""
     here, *beside = (code(each) for each in (instant, *_beside(instant)))
     if not np.all(np.isfinite(here)):
         return not any(np.all(np.isfinite(each)) for each in beside)
@@ -381,14 +381,14 @@ def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -
 
 
 def _is_test(name: str, text: str) -> bool:
-    """Whether a file is a self-test, or has one at its end, as those of C."""
+    """True if a file is a self-test, or ends with one, as in C."""
     last = name.rpartition("/")[2]
     return not last.endswith((".json", ".md")) and ("test" in name or (last.endswith(".c") and "vectors[] = {" in text))
 
 
 @dataclass(frozen=True)
 class Judged:
-    """What a function of generated code is held against.
+    """Reference values by which a function of generated code is checked.
 
     Args:
         motion: the equations of motion.
@@ -405,7 +405,7 @@ class Judged:
     parameters: ScalarRow | None = None
 
     def check(self, written: Written, start: Sequence[TriedState]) -> Check:
-        """The written function at the start and at the states of its test vectors."""
+        """Check of the written function at the start and at the states of its test vectors."""
         name = f"{written.name} gives the symbols' numbers"
         try:
             code = written.code()
@@ -437,7 +437,7 @@ class Judged:
         return self._by_symbols(written, reported, (), name)
 
     def _by_symbols(self, written: Written, code: Code, start: Sequence[TriedState], name: str) -> Check:
-        """What is given at a state, against the symbols there."""
+        """Check of the code at given states against the symbols there."""
         if written.role is RHS:
             return equations_hold(self.motion, code, (*start, *written.instants), name)
         if self.slopes is not None:

@@ -66,7 +66,7 @@ ELSEWHERE = "motions at another closed state"
 
 @dataclass(frozen=True)
 class Demand:
-    """What the motion asks for.
+    """Residual of the equations of the free bodies, and rates of constraints.
 
     Args:
         forces: M a + c - Q - J^T lam, one a speed.
@@ -80,7 +80,7 @@ class Demand:
 
 
 def demand_of(system: System, state: State, h: Any = STEP) -> Demand:
-    """What the free bodies ask for at a state: values of all symbols, accelerations and multipliers included.
+    """Residual of the equations of the free bodies at a state, which gives all symbols, accelerations and lam too.
 
     Args:
         h: the step of differences [s].
@@ -154,8 +154,7 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
 def moved_otherwise(
     system: System, state: State, friction: Sequence[Any] = (), *, regular: float = NEARLY_SINGULAR
 ) -> str:
-    """What the accelerations of a state leave of the free bodies, whatever all their constraints carry; "" where
-    nothing.
+    """Message if the accelerations of a state violate the equations of the free bodies, for any constraint forces; "".
 
         z . (M a + c - Q) = 0  for every z with J z = 0,      d/dt (J u + sigma) = 0
 
@@ -201,7 +200,7 @@ def _of_all_rates(system: System, free: System, state: State) -> State:
 
 
 def _rounded(system: System, free: System, state: State, needed: Demand) -> np.ndarray:
-    """What the forces change by where accelerations do by COMPUTED of each: s2'' = u1' - u2' may be rounding alone."""
+    """Change of the forces with a relative change COMPUTED of accelerations: s2'' = u1' - u2' may be rounding alone."""
     rng, a = Random(1), system.symbols.a
     shaken = {x: state[x] * (1 + COMPUTED * rng.choice((-1, 1)) * rng.uniform(0.5, 1)) for x in a}
     there = _demand(free, _of_all_rates(system, free, state | shaken))
@@ -209,7 +208,7 @@ def _rounded(system: System, free: System, state: State, needed: Demand) -> np.n
 
 
 def _motions_elsewhere(free: System, state: State, regular: float) -> float:
-    """How many motions the constraints allow at another state in which they hold; without end where none is found."""
+    """Number of motions that the constraints allow at another state where they hold; infinite where none is found."""
     if ELSEWHERE not in free.found:
         try:
             there = state | generic_state(free.constraints, 1)
@@ -260,7 +259,7 @@ def _with_free_motion(system: System, free: System, state: State, h: Any = STEP)
 
 
 def _demand(system: System, state: State, h: Any = STEP) -> Demand:
-    """The same where every constraint that closes has its multiplier."""
+    """Residual for a system in which every closing constraint has its multipliers."""
     closing, bodies = system.constraints.closing, _Bodies(system, state, h)
     forces = bodies.at(bodies.formulas.direct)
     sizes = [abs(x) for x in forces]
@@ -273,13 +272,13 @@ def _demand(system: System, state: State, h: Any = STEP) -> Demand:
 
 @dataclass(frozen=True)
 class _Formulas:
-    """What is put into numbers at every state, made once."""
+    """Scalars of a system that are evaluated at every state, built once."""
 
     system: System
 
     @cached_property
     def _by_joints(self) -> list[tuple[Scalar, ...]]:
-        """Of every joint E^T by rows, r and r' in the parent's axes, s in the body's."""
+        """Pose and motion of every joint: E^T by rows, r and r' in the parent's axes, s in the body's."""
         found = []
         for link in self.system.motion.links:
             r = link.local.point(times(-1, link.point))
@@ -296,13 +295,13 @@ class _Formulas:
 
     @cached_property
     def speeds(self) -> list[list[Node]]:
-        """Of every joint those on which r' and s depend."""
+        """Speeds on which r' and s of every joint depend."""
         place = frozenset(self.system.scope.symbols.u)
         return [[x for x in symbols_of(joint[12:]) if x in place] for joint in self._by_joints]
 
     @cached_property
     def columns(self) -> tuple[Scalar, ...]:
-        """Of r' and s, entry by entry, the slopes along those."""
+        """Derivatives of r' and s by these speeds, entry by entry."""
         pairs = zip(self._by_joints, self.speeds, strict=True)
         return tuple(x for joint, own in pairs for y in joint[12:] for x in gradient(y, own))
 
@@ -323,7 +322,7 @@ class _Formulas:
 
     @cached_property
     def direct(self) -> tuple[Scalar, ...]:
-        """Along every speed the bias of rotors, less what acts at no place."""
+        """Bias of rotors along every speed, less the generalized forces without a place."""
         loads = self.system.loads
         acting = [x + y for x, y in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
         rotors = armature_bias(self.system.motion, len(self.system.scope.symbols.u))
@@ -331,12 +330,12 @@ class _Formulas:
 
     @cached_property
     def rates(self) -> tuple[Scalar, ...]:
-        """Of closing rows."""
+        """Velocities of closing rows."""
         return tuple(row.velocity for row in self.system.constraints.closing)
 
     @cached_property
     def slopes(self) -> tuple[Scalar, ...]:
-        """Of what no twist sees of closing rows, along every speed."""
+        """Derivatives by every speed of the parts of closing rows that are not functions of twists."""
         u = self.system.scope.symbols.u
         return tuple(x for row in self.system.constraints.closing for x in gradient(row.direct, u))
 
@@ -388,7 +387,7 @@ class _Bodies(InNumbers):
 
     @property
     def _inertia(self) -> list[Wrench]:
-        """What the motion of every body takes, about its origin in its axes."""
+        """Inertia wrench of every body, about its origin in its axes."""
         return [_taken(mass, *motion) for mass, motion in zip(self._masses, self._motions, strict=True)]
 
     @cached_property
@@ -435,7 +434,7 @@ class _Bodies(InNumbers):
 
     @property
     def _through_joints(self) -> list[Wrench]:
-        """What every body needs through its joint, about its origin in its axes; leaves pass theirs on."""
+        """Wrench that every body needs through its joint, about its origin in its axes; leaves pass theirs on."""
         found = [
             Wrench(minus(taken.tau, given.tau), minus(taken.f, given.f))
             for taken, given in zip(self._inertia, self._applied, strict=True)
@@ -499,7 +498,7 @@ def _size(vector: Sequence[Any]) -> Any:
 
 
 def _turn(joint: Sequence[Any]) -> Matrix:
-    """From the child's axes to the parent's."""
+    """Rotation matrix from the child's axes to the parent's."""
     return matrix_of((joint[0:3], joint[3:6], joint[6:9]))
 
 
@@ -522,7 +521,7 @@ ALONG = {f"reaction_{couple}{axis}": (couple, k) for couple in ("", "couple_") f
 
 
 def named_otherwise(balance: Balance, state: State) -> str:
-    """Which reaction is not along the axis of the ground by which it is called; "" where all are.
+    """Message that names a reaction which is not along the ground axis of its name; "".
 
     Raises:
         NoValue: something has no value there.
@@ -549,7 +548,7 @@ def drives_beside(reactions: Reactions) -> dict[str, str]:
 
 
 def driven_otherwise(reactions: Reactions, state: State) -> str:
-    """Which drive is not what the free bodies ask for along its coordinate once that is let go; "" where all are.
+    """Message that names a drive which is not the force that the free bodies need along its released coordinate; "".
 
     Raises:
         NoValue: none is determinate with another way.
@@ -576,7 +575,7 @@ class _Named(InNumbers):
 
     @cached_property
     def values(self) -> list[Any]:
-        """Of every component, at random."""
+        """Random values of every component."""
         rng = Random(17)
         return [fifty_digits().number(rng.randint(20, 90)) / 7 for _ in self.balance.components]
 

@@ -28,7 +28,7 @@ Pairs = list[tuple[Scalar, Scalar]]
 
 @dataclass(frozen=True)
 class Claim:
-    """What must hold, as pairs of scalars that are the same function; labels: what each pair is about."""
+    """Identity to prove: pairs of scalars that must be the same function; labels name each pair."""
 
     name: str
     pairs: Pairs
@@ -175,7 +175,7 @@ def _carried_power(system: System) -> Scalar:
 
 
 def _own_motion(scope: Any) -> dict[Node, Scalar]:
-    """What moves by itself: time, and the coordinates along nu."""
+    """Derivatives by time at zero speeds: 1 for time, and nu for the coordinates."""
     return {scope.symbols.t: 1, **dict(zip(scope.symbols.q, scope.nu, strict=True))}
 
 

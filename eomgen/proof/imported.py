@@ -49,7 +49,10 @@ FIXED: FloatPose = (np.eye(3), np.zeros(3))
 
 
 def sdf_otherwise(text: str | bytes, model: Model) -> str:
-    """Which body is not as the file has it; "" where all are that are called alike in both, and of what is not read."""
+    """Message that names a body which differs from the SDF file; "" too for what is not read.
+
+    Bodies are compared that have the same name in both.
+    """
     from xml.etree import ElementTree
 
     try:
@@ -71,7 +74,7 @@ def _nested(model: Element) -> bool:
 
 
 def _old(root: Element) -> bool:
-    """Whether axes may stand in other frames than today's."""
+    """True if axes may stand in other frames than those of today's SDF."""
     version = [int(x) for x in root.get("version", "1.7").split(".")[:2]]
     return version < [1, 7] or next(root.iter("use_parent_model_frame"), None) is not None
 
@@ -101,7 +104,7 @@ class _Imported:
         return self.posed.bodies.get(link)
 
     def frame(self, name: str, below: tuple[str, ...] = ()) -> FloatPose:
-        """Of a link, joint or frame in the model."""
+        """Pose of a link, joint or frame in the model."""
         if name in ("", "__model__"):
             return FIXED
         if name == "world":
@@ -114,7 +117,7 @@ class _Imported:
         return posed_further(self.frame(base, (*below, name)), _pose(pose))
 
     def stands(self, link: Element) -> str:
-        """Where all coordinates are 0, the link in the world."""
+        """Message if a link, with all coordinates 0, stands elsewhere in the world; ""."""
         name = self.body(str(link.get("name")))
         if name is None:
             return ""
@@ -212,7 +215,7 @@ def _as_said(inertial: Element) -> np.ndarray:
 
 
 def _all_solid(link: Element) -> bool:
-    """Whether each of its collisions is of a kind that is measured here, in axes of the link."""
+    """True if each collision of a link has a shape that is measured here, in axes of the link."""
     shapes = link.findall("collision")
     poses = [shape.find("pose") for shape in shapes]
     known = all(any(shape.find(f"geometry/{tag}") is not None for tag in SHAPES) for shape in shapes)
@@ -303,7 +306,7 @@ TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
 
 
 def imported_otherwise(text: str | bytes, model: Model) -> str:
-    """Which body is not as the file has it; "" where all are that are called alike in both."""
+    """Message that names a body which differs from the file; "" where all that have the same name in both agree."""
     from xml.etree import ElementTree
 
     try:
@@ -318,7 +321,7 @@ def imported_otherwise(text: str | bytes, model: Model) -> str:
 
 
 def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[str]]) -> str:
-    """What of a model its URDF neither says nor is told to leave out, by what is declared; "" where all is told.
+    """Message for a declared part of a model that its URDF neither contains nor reports as left out; "".
 
     Args:
         left_out: {what URDF cannot say: where it is}.
@@ -358,7 +361,7 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
 
 
 def without_units(model: Model) -> str:
-    """Which parameter of the weight, or coordinate along which a joint pushes, an import left without a unit; ""."""
+    """Message that names a parameter of the weight, or a coordinate of a joint's spring, without a unit; ""."""
     acts = (act for force in model.forces.values() for act in force.acts)
     weights = (x for act in acts if isinstance(act, PushOfMass) for x in act.acceleration)
     joints = (part.joint for part in model.bodies.values() if part.joint is not None)
@@ -370,7 +373,7 @@ def without_units(model: Model) -> str:
 
 
 def _given(posed: PosedModel, value: Any) -> bool:
-    """Whether a value is told, and is another than 0."""
+    """True if a value is given, and is not 0."""
     return value is not None and (bool(value.names) or posed.number(value) != 0)
 
 
@@ -391,7 +394,7 @@ class _ImportedUrdf:
         return self.posed.bodies.get(link)
 
     def coordinate(self, joint: Element) -> str | None:
-        """By which the child of a hinge or slide moves; None of others."""
+        """Coordinate by which the child of a hinge or slide moves; None of other joints."""
         part = self.model.bodies.get(self.body(_named(joint, "child")) or "")
         if joint.get("type") not in (*TURNING, *SLIDING) or part is None or part.joint is None:
             return None

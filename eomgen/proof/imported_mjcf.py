@@ -45,7 +45,7 @@ Left = tuple[str, tuple[str, ...]]  # what of a file has no counterpart, and eac
 def mjcf_otherwise(
     path: str, source: bytes, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[Left]
 ) -> str:
-    """Which body is not as MuJoCo has it; "" where all are that are called alike in both.
+    """Message that names a body which differs from MuJoCo's; "" where all that have the same name in both agree.
 
     Args:
         source: the file as it was read, where `path` is a pipe.
@@ -98,7 +98,7 @@ class _Compiled:
         return own if own is not None and quaternion_names(own) else None
 
     def lacks(self, left_out: Sequence[Left]) -> list[str]:
-        """Of motors that are left out by name, which could be in the model; they push nothing from now on."""
+        """Names of motors that are left out and could be in the model; they do not push from now on."""
         m, found = self.m, []
         number = {m.actuator(k).name or f"motor{k}": k for k in range(m.nu)}
         could: dict[str, Callable[[int], bool]] = {
@@ -118,15 +118,15 @@ class _Compiled:
         return found
 
     def _is_on(self, k: int) -> bool:
-        """Whether neither a flag nor its group switches a motor off."""
+        """True if no flag and no group switches a motor off."""
         return not (self._off("ACTUATION") or int(self.m.opt.disableactuator) & 1 << int(self.m.actuator_group[k]) % 31)
 
     def _is_carried(self, k: int) -> bool:
-        """Whether what a motor acts on is of a body that moves, or none of its places is known."""
+        """True if a motor acts on a body that moves, or on no site."""
         return bool(self.m.actuator_trntype[k] != SITE or self.m.site_bodyid[self.m.actuator_trnid[k][0]] != 0)
 
     def _is_reached(self, k: int) -> bool:
-        """Whether a motor acts on a joint, on a tendon that is a sum of joints or straight, or at a site."""
+        """True if a motor acts on a joint, on a tendon that is a sum of joints or straight, or at a site."""
         m, way, target = self.m, self.m.actuator_trntype[k], int(self.m.actuator_trnid[k][0])
         if way == TENDON:
             wraps = m.wrap_type[m.tendon_adr[target] :][: m.tendon_num[target]]
@@ -136,7 +136,7 @@ class _Compiled:
         return bool(way == JOINT or (way == SITE and m.actuator_trnid[k][1] < 0))
 
     def _is_linear(self, k: int) -> bool:
-        """Whether the force of a motor along a single length is linear in it, its rate and the input."""
+        """True if the force of a motor along a single length is linear in it, its rate and the input."""
         m, way, target = self.m, self.m.actuator_trntype[k], int(self.m.actuator_trnid[k][0])
         along = way == TENDON or (way in (JOINT, IN_PARENT) and m.jnt_type[target] not in (FREE, BALL))
         linear = m.actuator_gaintype[k] in (FIXED, AFFINE) and m.actuator_biastype[k] in (FIXED, AFFINE)
@@ -144,7 +144,7 @@ class _Compiled:
         return bool(along and linear and np.isfinite(constants).all())
 
     def has(self, left_out: Sequence[str]) -> Iterator[str]:
-        """What is said to be left out."""
+        """Names of things that are said to be left out, and that MuJoCo has."""
         m = self.m
         there = {
             "motors by plugins": m.nplugin,
@@ -163,7 +163,7 @@ class _Compiled:
         return bool(self.m.opt.disableflags & int(getattr(self.mujoco.mjtDisableBit, f"mjDSBL_{flag}")))
 
     def _limits(self) -> Iterator[Any]:
-        """Which motors, joints and tendons have bounds of what motors do; older MuJoCos have not all of them."""
+        """Masks of motors, joints and tendons whose motor forces are bounded; older versions of MuJoCo lack some."""
         return (getattr(self.m, f"{each}limited") for each in LIMITS if hasattr(self.m, f"{each}limited"))
 
     def stands(self) -> Iterator[str]:

@@ -98,7 +98,7 @@ class InNumbers:
         return self._stands[body]
 
     def velocity(self, body: str | None, P: Numbers) -> Numbers:
-        """Of the material point of a body at P: R (v + w x R^T (P - p))."""
+        """Velocity of the material point of a body at P: R (v + w x R^T (P - p))."""
         if body is None:
             return ZERO
         (R, p), twist = self._stand(body), self.motion.link(body).twist
@@ -108,11 +108,11 @@ class InNumbers:
 
 
 Pushes = dict[str, tuple[Numbers, Numbers]]
-"""Of each body (moment about the ground's origin, force), ground axes."""
+"""(moment about the ground's origin, force) on each body, in ground axes."""
 
 
 def pushes_of(motion: Motion, state: State, loads: Iterable[Any]) -> Pushes:
-    """By what loads and rows say; what acts at no place is none."""
+    """Wrench of each load and row on each body; a load without a place is left out."""
     found: Pushes = {}
     for load in loads:
         if isinstance(load, PointForce):
@@ -198,7 +198,7 @@ def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) 
 
 
 def _times_of_samples(system: System) -> set[tuple[Any, ...]]:
-    """Of each thing that samples give."""
+    """Times of the samples of each function that is given by samples."""
     if SAMPLES not in system.found:
         system.found[SAMPLES] = {given.times for _, _, given in given_samples(system.scope.model)}
     found: set[tuple[Any, ...]] = system.found[SAMPLES]

@@ -70,7 +70,7 @@ MOST_TRIPLES = 60  # of bodies whose three centres are looked at
 def instant_checks(
     state: KinematicState, motions: Sequence[BodyMotion] = (), relative: Sequence[tuple[str, str]] = ()
 ) -> Iterator[Check]:
-    """Of what is printed of a state.
+    """Checks of a printed kinematic state.
 
     Args:
         motions: of the bodies, as they are printed.
@@ -147,7 +147,7 @@ REST = Seen(ZERO, ZERO, ZERO, IDENTITY, NONE, NONE, ZERO, ZERO)
 
 @dataclass(frozen=True)
 class _Proof:
-    """What is wrong with each, in words; None where there is nothing to look at.
+    """Tests of a kinematic state; each gives what is wrong in words, "", or None where there is nothing to check.
 
     Args:
         state: what is printed.
@@ -187,7 +187,10 @@ class _Proof:
         return now, first, second
 
     def wrong_degrees_of_freedom(self) -> str | None:
-        """Against the rank of the slopes of the gaps there; in a special position, of those in another one."""
+        """Message if the degrees of freedom are not those by the rank of the gradients of the gaps; "".
+
+        In a singular position those of another position count too. None: there are no constraints.
+        """
         system, reported = self.state.system, self.state.degrees_of_freedom
         if not system.symbols.u or all(row.identical for row in system.constraints.rows):
             return None
@@ -215,13 +218,13 @@ class _Proof:
 
     @cached_property
     def size(self) -> tuple[Any, Any]:
-        """What is usual of velocities and of accelerations."""
+        """Largest velocity and largest acceleration of the bodies."""
         speeds = [abs(x) for body in self.bodies.values() for x in (*body.v, *body.w)]
         rates = [abs(x) for body in self.bodies.values() for x in (*body.a, *body.e)]
         return max(speeds, default=0), max(rates, default=0)
 
     def differs(self, stated: Sequence[Any], found: Sequence[Any], order: int, tolerance: float = 0.0) -> bool:
-        """Whether velocities (order 1) or accelerations (2) are not the same.
+        """True if velocities (order 1) or accelerations (2) differ.
 
         A quaternion of doubles turns as its length allows, which is 1 to their digits only.
         """
@@ -232,7 +235,7 @@ class _Proof:
 
     @property
     def tolerance(self) -> float:
-        """Of what equations say of the state, which may be known in doubles only."""
+        """Tolerance of the state's equations; the state may be known in doubles only."""
         return DIFFERENCE_AT_50 if self.state.exact and not self.state.rounded else COMPUTED
 
     # -- constraints and what is given ------------------------------------------------------------------------------
@@ -350,7 +353,7 @@ class _Proof:
             yield f"the least speed between {first} and {last}", (self.one(least) - _least(*ends),), 1
 
     def wrong_kinds(self, motions: Sequence[BodyMotion]) -> str | None:
-        """Of each body what it does at the instant, and what it must then do by its kind in the long run."""
+        """Message if a body's kind of motion at the instant, or in the long run, is wrong; ""."""
         for motion in motions:
             seen, still = self.bodies[motion.body], (0, 0, 0)
             turns, moves = (self.differs(still, x, 1, self.tolerance) for x in (seen.w, seen.velocity(ZERO)))
@@ -365,7 +368,7 @@ class _Proof:
         return "" if motions else None
 
     def _against_kind(self, kind: Kind, seen: Seen, *, turns: bool, moves: bool) -> str:
-        """What its kind does not allow."""
+        """Message if the kind of motion does not allow what is seen; ""."""
         still = kind.name == "rest" or "translation" in kind.name
         if (still and turns) or (kind.name == "rest" and moves):
             return "it turns, or moves"
@@ -445,7 +448,7 @@ def _least(start: Numbers, end: Numbers) -> Any:
 
 
 def _degrees_of_freedom_left(system: System, values: Mapping[Node, Any]) -> int:
-    """How many speeds the constraints leave: by differences of their gaps along each speed, else by their rates."""
+    """Degrees of freedom: by differences of the gaps of the constraints along each speed, else by their rates."""
     symbols, scope, digits = system.symbols, system.scope, fifty_digits()
     rows = [row for row in system.constraints.rows if not row.identical]
     speeds = {u.name for u in symbols.u}
@@ -509,7 +512,7 @@ class NearbyStates:
             return None
 
     def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
-        """What functions of q and t are worth, and their first and second rates."""
+        """Values of functions of q and t, and their first and second time derivatives."""
         now, first, second = self._way.along(scalars)
         return now, first, second if self._accelerations is not None else [math.nan] * len(now)
 
@@ -562,7 +565,7 @@ class NearbyStates:
         return sum(evaluate(given, known, fifty_digits()), start=0 * SECOND_STEP)
 
     def worked(self, body: str | None = None) -> Any:
-        """Of every body F . v + tau . w, and s' times the effort of every joint."""
+        """Power: F . v + tau . w of every body, and s' times the effort of every joint."""
         system = self.state.equations.system
         loads, known = system.loads, dict(self._way.now)
         if any(isinstance(load, GeneralizedForce) for force in loads.applied for load in force.loads):
@@ -607,7 +610,7 @@ class NearbyStates:
             add_push(pushes, name, *((own, ZERO) if all(map(is_zero, slide)) else (cross(place, own), own)))
 
     def acting(self, force: str) -> Any:
-        """Of what is declared between two points, or two bodies, by the twists."""
+        """Force of an element between two points, or moment between two bodies, by its declaration."""
         return acting(self.state.equations.system, self.state.values, force)
 
     def demanded(self, coordinate: str) -> Any:
@@ -624,11 +627,11 @@ class NearbyStates:
         return found[constraint, 1]
 
     def root(self, x: Any) -> Any:
-        """Of a number."""
+        """Square root."""
         return fifty_digits().functions["sqrt"](x)
 
     def eigenvalues(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
-        """Of a symmetric matrix, ascending."""
+        """Eigenvalues of a symmetric matrix, ascending."""
         context = rows[0][0].context
         found: list[Any] = sorted(context.eigsy(context.matrix(rows), eigvals_only=True))
         return found
@@ -651,7 +654,7 @@ def _rows(flat: Sequence[Any]) -> Matrix:
 
 
 def second_definition(state: NumericState, call: Call) -> str:
-    """That a function of the motion is not worth what its second definition says, in words; "".
+    """Message if the value of a function of the motion differs from that of its second definition; "".
 
     Raises:
         NoValue: it has no value by one of the two.

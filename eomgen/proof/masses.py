@@ -43,7 +43,7 @@ AXES = "xyz"
 
 @dataclass(frozen=True)
 class Stated:
-    """What is stated of bodies about a point.
+    """Stated mass properties of bodies about a point.
 
     Args:
         of: how they are called.
@@ -65,7 +65,7 @@ class Stated:
 
 
 def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node, float]) -> Iterator[Check]:
-    """Of every shape, of the parts of bodies, and of all that is stated.
+    """Checks of every shape, of the parts of bodies, and of all stated mass properties.
 
     Args:
         numbers: of all symbols that stand in it.
@@ -183,7 +183,7 @@ def _in_order(found: Mapping[str, float]) -> dict[str, float]:
 
 
 def _differs(A: np.ndarray, B: np.ndarray) -> bool:
-    """Of the 4 x 4, each entry against the mass and the radius of the body."""
+    """True if two 4 x 4 matrices differ, each entry compared with the mass and the radius of the body."""
     radius, mass = (
         max(abs(x) for x in pair) ** 0.5 for pair in ((np.trace(A[:3, :3]), np.trace(B[:3, :3])), (A[3, 3], B[3, 3]))
     )
@@ -193,7 +193,7 @@ def _differs(A: np.ndarray, B: np.ndarray) -> bool:
 
 @dataclass(frozen=True)
 class _Proof:
-    """What is wrong, in words.
+    """Tests of mass properties; each gives what is wrong in words, or "".
 
     Args:
         motion: of the bodies.
@@ -219,7 +219,7 @@ class _Proof:
     # -- shapes ----------------------------------------------------------------------------------------------
 
     def shapes(self, bodies: Sequence[str]) -> Iterator[Check]:
-        """Of all parts of these bodies."""
+        """Checks of the shapes of all parts of these bodies."""
         wrong, impossible, any_ = "", "", False
         for body in bodies:
             for shape in self.shapes_of(body):

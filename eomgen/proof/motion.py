@@ -75,7 +75,7 @@ class Leg:
 
     @cached_property
     def integrated(self) -> np.ndarray:
-        """Which of the stretches between neighbours the integrator went through."""
+        """Mask of the intervals between neighbouring states that the integrator went through."""
         found = np.diff(self.t) > 0
         for start, end in self.carried:
             found &= (self.t[1:] <= start) | (self.t[:-1] >= end)
@@ -84,7 +84,7 @@ class Leg:
 
 @dataclass(frozen=True)
 class Promise:
-    """What a run promises: 10 (rtol size + atol) a step.
+    """Accuracy that a run promises: an error of at most 10 (rtol size + atol) for each step.
 
     Args:
         rtol, atol: tolerances of the run.
@@ -106,18 +106,18 @@ class Promise:
         return self.of_one_step(size) * max(self.steps, 1)
 
     def open(self, size: float) -> float:
-        """How far constraints may be open, where states are of some size."""
+        """Limit of the error of constraints, for states of a size."""
         return PER_STEP * (self.atol + SUMMED * size) if self.projected else self.limit(size)
 
 
 def run_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
-    """That the code that ran is that of the equations, and its steps come where they should."""
+    """Checks that the code that ran is that of the equations, and that its steps are repeated by another method."""
     moving = _moving(legs)
     return (_code(moving), _steps(moving, promise)) if moving else ()
 
 
 def watched_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
-    """What a run watches anyway: its energy against the power, its constraints and norms."""
+    """Checks that every run makes: energy against power, constraints, and norms of quaternions."""
     moving = _moving(legs)
     if not moving:
         return ()
@@ -138,7 +138,7 @@ def _moving(legs: Sequence[Leg]) -> list[Leg]:
 
 
 def _code(legs: Sequence[Leg]) -> Check:
-    """At the start, the end and between of every phase, as far as the work allows; a phase fails first."""
+    """Check of the code at the start, the end and between, of every phase; a phase that fails decides."""
     name = f"the code that ran ({legs[0].code.target}) gives the symbols' numbers"
     made: dict[int, Leg] = {id(leg.code): leg for leg in reversed(legs)}
     found = [_code_of(leg, name) for leg in reversed(made.values())]
@@ -156,7 +156,7 @@ def _code_of(leg: Leg, name: str) -> Check:
 
 
 def _steps(legs: Sequence[Leg], promise: Promise) -> Check:
-    """From states of the run to the next, taken again in halves: |difference| <= 10 (rtol |x| + atol)."""
+    """Check of steps, repeated in two halves: |difference| <= 10 (rtol |x| + atol)."""
     name, how = "steps taken again from states of the run end where it came", f"{EXPLICIT}, half steps"
     size = max(float(np.max(np.abs(leg.x), initial=0.0)) for leg in legs)
     limit, judged = promise.of_one_step(size), 0
@@ -285,7 +285,7 @@ def _constraints(legs: Sequence[Leg], promise: Promise) -> Check | None:
 
 
 def _leverage(leg: Leg, scalars: tuple[Scalar, ...], k: int) -> float:
-    """How far what an error of the k-th state moves is opened by it, at least as far: a rod of 1e9 m that turns."""
+    """Factor by which an error of the k-th state opens a scalar, at least 1; large for a rod of 1e9 m that turns."""
     symbols = leg.equations.symbols
     slopes = tuple(x for scalar in scalars for x in gradient(scalar, (*symbols.q, *symbols.u)))
     one = replace(leg, t=leg.t[k : k + 1], x=leg.x[k : k + 1])
@@ -420,7 +420,7 @@ def followed(
 
 
 def other_energies(equations: EquationsOfMotion, state: State) -> str:
-    """Which energy is another one at a state; "" where neither is."""
+    """Message if T or V at a state is not that of the bodies and forces; ""."""
     terms = {"T": [*_of_motion(equations.system)], "V": [*_of_places(equations.system)]}
     values = iter(evaluate((equations.T, equations.V, *terms["T"], *terms["V"]), state, fifty_digits()))
     stated = {"T": next(values), "V": next(values)}
@@ -447,7 +447,10 @@ def _of_motion(system: System) -> Iterator[Scalar]:
 
 
 def _of_places(system: System) -> Iterator[Scalar]:
-    """Of weights and given energies as they are declared; springs' and pulls' own are looked at by themselves."""
+    """Potential energies of weights, given energies and springs in joints, as they are declared.
+
+    Elements between points are checked by themselves, and enter with the energy that they state.
+    """
     scope = system.scope
     for applied in system.loads.applied:
         for act in scope.model.forces[applied.name].acts:

@@ -28,7 +28,7 @@ DigitColumn = Sequence[Any]
 
 @dataclass(frozen=True)
 class Beside:
-    """What one motion does against the reference, over h.
+    """Difference of one motion from the reference motion, divided by h.
 
     Args:
         q, q1, q2: of the coordinates that are printed, and their first and second rates.
@@ -46,7 +46,7 @@ class Beside:
 
 @dataclass(frozen=True)
 class SmallTurn:
-    """What a label of a small turn stands for.
+    """Meaning of a label of a small rotation.
 
     Args:
         four: the quaternion.
@@ -88,7 +88,7 @@ class Differences:
 
     @cached_property
     def _turns(self) -> dict[Node, SmallTurn]:
-        """What each label of a small turn among the coordinates stands for."""
+        """Small rotation for each of its labels among the coordinates."""
         return self._named(self.small.whole.coordinates, "")
 
     @cached_property
@@ -114,7 +114,7 @@ class Differences:
 
     @property
     def is_part(self) -> bool:
-        """Whether not all of them were asked."""
+        """True if only a part of the coordinates was requested."""
         return len(self.small.numbers.coordinates) < len(self.moved)
 
     def along(self, step: Mapping[Node, Any], h: Any = STEP) -> Beside:
@@ -155,7 +155,7 @@ class Differences:
         return apply(R, w)[turn.axis], apply(R, plus(cross(before, w), rate))[turn.axis]
 
     def _read(self, late: Going, early: Going) -> Iterator[tuple[DigitColumn, DigitColumn]]:
-        """Of the coordinates that are printed where they are, and their first and second rates."""
+        """Values of the printed coordinates, and their first and second time derivatives."""
         labels = self.moved if self.is_part else self.small.numbers.coordinates
         readings = [[self._one(going, label) for label in labels] for going in (late, early)]
         for order in range(3):
@@ -231,7 +231,7 @@ class Differences:
 
 
 def _product(a: DigitColumn, b: DigitColumn) -> list[Any]:
-    """Of quaternions."""
+    """Product of two quaternions."""
     a0, a1, a2, a3 = a
     b0, b1, b2, b3 = b
     return [

@@ -83,13 +83,13 @@ def spoken(text: str) -> str:
 
 
 def said_by(tex: str) -> str:
-    r"""What a formula says that is only a character of a sentence: $\cdot$, $^{2}$; "" of any other."""
+    r"""Character that a formula stands for in a sentence: $\cdot$, $^{2}$; "" for any other formula."""
     raised = _RAISED.fullmatch(tex)
     return raised[1] if raised else _CHARACTERS.get(tex, "")
 
 
 def latex_page(text: str) -> Iterator[PageBlock]:
-    """What stands on a page of LaTeX."""
+    """Blocks of a page of LaTeX."""
     body = text.partition("\\begin{document}\n")[2].rpartition("\\end{document}")[0]
     lines = body.split("\n")
     while lines:
@@ -129,7 +129,7 @@ def _parted(table: str) -> tuple[str, str, str]:
 
 
 def markdown_page(text: str) -> Iterator[PageBlock]:
-    """What stands on a page of Markdown."""
+    """Blocks of a page of Markdown."""
     for fenced, block in _markdown_blocks(text):
         if fenced:
             yield PageBlock("lines", lines=tuple(block.split("\n")))
@@ -208,7 +208,7 @@ def _line(text: str, character: Callable[[str, int], tuple[str, int]]) -> Iterat
 
 
 def _formula_ends(text: str, k: int) -> int:
-    """Where a formula ends; a dollar in its own \\text belongs to it."""
+    """Index at which a formula ends; a dollar in its own \\text belongs to it."""
     depth = 0
     while k < len(text):
         if text[k] == "\\":
@@ -247,7 +247,7 @@ PAGES: Mapping[str, Callable[[str], Iterable[PageBlock]]] = {"latex": latex_page
 
 
 def unlike_words(found: Sequence[PagePart], wanted: str) -> int | None:
-    """How many of the parts say these words; None where they say others."""
+    """Number of parts that say these words; None where they say others."""
     rest, k = spoken(wanted), 0
     while rest:
         if k == len(found):
@@ -291,7 +291,7 @@ def tokens_of(tex: str) -> Tokens:
 
 
 def between_equals(tokens: Tokens) -> list[Tokens]:
-    """What stands between the equality signs, brackets and braces not looked into."""
+    """Sides between the equality signs that are not inside brackets or braces."""
     found: list[list[str]] = [[]]
     depth = 0
     for x in tokens:
@@ -305,7 +305,7 @@ def between_equals(tokens: Tokens) -> list[Tokens]:
 
 @dataclass(frozen=True)
 class SetLetters:
-    """How symbols are set.
+    """Typesetting of symbols.
 
     Args:
         bare: the LaTeX of each symbol by its name without primes.
@@ -357,7 +357,7 @@ def _undotted(tokens: Tokens) -> tuple[Tokens, int]:
 
 
 def closing_brace(tokens: Tokens, k: int) -> int:
-    """Where the brace that opens at k closes."""
+    """Index at which the brace that opens at k closes."""
     depth = 0
     for i in range(k, len(tokens)):
         depth += (tokens[i] == "{") - (tokens[i] == "}")
@@ -487,7 +487,7 @@ class TypesetReading:
         return found
 
     def _bare(self) -> Tree:
-        """What a function is of that stands without brackets behind it: as far as letters and numbers go."""
+        """Argument of a function without brackets: as far as letters and numbers go."""
         found = [self._power()]
         while (token := self._next()) and token not in _ENDS and not self._begins_function(token):
             if token == r"\cdot":

@@ -1,4 +1,4 @@
-"""What a picture shows at a state -> a check: bodies, springs and arrows are where and as long as the model says.
+"""Picture of a state -> check: bodies, springs and arrows have the places and lengths of the model.
 
     R^T (r - p) of what is drawn of a body fills the box of its shape, by places inside it as its mass is summed up;
     without a shape it joins the body's own places, and where others hang on it, and is as round as it rolls;
@@ -61,7 +61,7 @@ class ReportedArrow:
 
 @dataclass(frozen=True)
 class ReportedPicture:
-    """What a picture shows at one state, places of the ground's axes, d = 2 or 3 each.
+    """Content of a picture at one state, places in ground axes, d = 2 or 3 coordinates each.
 
     Args:
         bodies: of each body that is drawn by lengths its places, n x d.
@@ -90,7 +90,7 @@ class ReportedPicture:
 
 
 def pictures_reported(reported: Iterable[tuple[NumericState, ReportedPicture]]) -> Iterator[Check]:
-    """Of each state what is shown of it."""
+    """Check of the pictures of some states."""
     tally = Tally(NAME, HOW)
     for state, picture in reported:
         shown = _Shown(state.equations.system, state.values, state, picture)
@@ -133,7 +133,7 @@ class _Shown(InNumbers):
 
     @property
     def near(self) -> float:
-        """How far a place may be off."""
+        """Tolerance of a place [m]."""
         return DRAWN * self.picture.size
 
     @property
@@ -183,7 +183,7 @@ class _Shown(InNumbers):
         return self._unknown_place(link, own, seat)
 
     def _own(self, link: BodyLink, drawn: np.ndarray | None) -> np.ndarray:
-        """What is drawn of a body, in its axes, that is somewhere."""
+        """Places drawn of a body, in its axes, without those that are not finite."""
         places = np.zeros((0, self.d)) if drawn is None else drawn
         return self._in_axes(link, places[np.isfinite(places).all(axis=1)])
 
@@ -222,7 +222,7 @@ class _Shown(InNumbers):
         return float(self.one(self.system.scope.value(expression)))
 
     def _apart(self, found: Corners, right: Corners) -> str:
-        """Which corner is elsewhere; what is round may reach a little beyond places on a grid."""
+        """Message if the corners of a box are elsewhere; a round shape may reach a little beyond grid places; ""."""
         near = BETWEEN_PLACES * float(np.max(right[1] - right[0])) + self.near
         off = max(float(np.max(np.abs(a - b))) for a, b in zip(found, right, strict=True))
         sizes = [" x ".join(f"{x:.4g}" for x in high - low) for low, high in (found, right)]
@@ -239,7 +239,7 @@ class _Shown(InNumbers):
         return [self.placed(link.point)] if link.joint is not None and link.joint.carries_reaction else []
 
     def _is_long(self, link: BodyLink) -> bool:
-        """Whether it has two places so far apart that a line between them is seen; its mass centre may be one."""
+        """True if a body has two places far enough apart to be joined by a visible line; its mass centre may be one."""
         places = [*self._declared(link).values(), *self._seats(link)]
         center = self.motion.points[link.name].get("center")
         for more in ([], [] if center is None else [self.placed(center)]):
@@ -249,7 +249,7 @@ class _Shown(InNumbers):
         return False
 
     def _unknown_place(self, link: BodyLink, own: np.ndarray, seat: np.ndarray) -> str:
-        """That a body's lines end where nothing of it is, or leave out a place of it.
+        """Message if a body's lines end where none of its places is, or leave out one of them; "".
 
         Args:
             seat: where its joint sits, in its axes.
@@ -265,7 +265,7 @@ class _Shown(InNumbers):
         return f"{outside[0]} is left out" if outside else ""
 
     def _rolled(self, name: str) -> list[TouchingRound]:
-        """As what a body without a shape rolls, where a constraint says how large it is."""
+        """Round shapes with which a body without a shape rolls, where a constraint says how large they are."""
         meetings = [constraint.meeting() for constraint in self.system.scope.model.constraints.values()]
         found = [each.what for each in meetings if each is not None and isinstance(each.what, TouchingRound)]
         return [x for x in found if x.body == name and (x.radius is not None or x.semiaxes is not None)]
@@ -285,7 +285,7 @@ class _Shown(InNumbers):
         return "is not as large as it rolls" if np.any(off > BETWEEN_PLACES * h + self.near) else "", own[~on]
 
     def _wrong_mass(self, link: BodyLink, drawn: np.ndarray) -> str:
-        """That the ellipsoid for a body has another middle or other moments: A = m (b^2 + c^2)/5."""
+        """Message if the ellipsoid for a body has another centre or other moments: A = m (b^2 + c^2)/5; ""."""
         mass = mass_properties(self.system.scope, link.name)
         low, high = drawn.min(axis=0), drawn.max(axis=0)
         size = float(np.max(high - low))
@@ -313,7 +313,7 @@ class _Shown(InNumbers):
         return f"ends {off:.4g} m beside its points" if off > self.near else ""
 
     def _ends_of(self, name: str) -> list[np.ndarray]:
-        """Of a spring or damper: its points; of one in a joint where this sits, and where the body is held."""
+        """Ends of a spring or damper: its points, or the seat of its joint and the place where the body is held."""
         force = self.system.scope.model.forces.get(name)
         if force is not None:
             points = () if force.element is None else force.element.points
@@ -323,7 +323,7 @@ class _Shown(InNumbers):
         return [self.placed(self.motion.position(x)) for x in ((above, link.before.p), (name, link.point))]
 
     def wrong_joint(self, symbol: str, body: str, at: np.ndarray) -> str:
-        """That the symbol of a joint stands elsewhere, or is one of the ground's where nothing of it is the ground."""
+        """Message if the symbol of a joint stands elsewhere, or wrongly shows a joint with the ground; ""."""
         link = self.motion.link(body)
         places = self._ends_of(body)
         if min(float(np.linalg.norm(at - place)) for place in places) > self.near:
@@ -332,7 +332,7 @@ class _Shown(InNumbers):
         return f"is shown as a {symbol}" if grounded is not None and grounded != (link.parent < 0) else ""
 
     def wrong_symbol(self, places: np.ndarray) -> str:
-        """That a symbol has no place, or is as large as all the rest."""
+        """Message if a symbol has no place, or is as large as the whole picture; ""."""
         finite = places[np.isfinite(places).all(axis=1)]
         if not len(finite):
             return "has no place"
@@ -345,12 +345,12 @@ class _Shown(InNumbers):
         return f"{off:.4g} m beside its place" if off > self.near else ""
 
     def wrong_length(self, name: str, drawn: float) -> str:
-        """That a dimension line is longer or shorter than what stands beside it."""
+        """Message if a dimension line has another length than its label; ""."""
         right = abs(self._named(name))
         return f"{drawn:.6g} m for {right:.6g} m" if abs(drawn - right) > self.near else ""
 
     def wrong_angle(self, name: str, drawn: float) -> str:
-        """That an arc is another angle than what stands beside it, whole turns apart."""
+        """Message if an arc has another angle than its label, apart from whole turns; ""."""
         right = self._named(name)
         off = min(abs((drawn - turned + np.pi) % (2 * np.pi) - np.pi) for turned in (right, -right))
         return f"{drawn:.6g} for {right:.6g}" if off > DRAWN else ""
@@ -363,7 +363,7 @@ class _Shown(InNumbers):
         return float(self.one(found[name]))
 
     def wrong_arrows(self, role: str) -> str:
-        """That an arrow goes another way than its force, is of another scale than the others, or elsewhere."""
+        """Message if an arrow has another direction than its force, another scale than the others, or place; ""."""
         scales: list[tuple[str, float]] = []
         largest = 0.0
         for arrow in self.picture.arrows:
@@ -432,7 +432,7 @@ class _Shown(InNumbers):
 
 
 def picture_of_page(reported: Mapping[str, Any], slots: Sequence[float]) -> ReportedPicture:
-    """What a page draws by the scene that it is told, with the numbers of a frame in its slots."""
+    """Picture that a page draws by its scene, with the numbers of a frame in its slots."""
     return _Page(reported, slots).picture
 
 

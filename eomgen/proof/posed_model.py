@@ -70,18 +70,18 @@ class PosedModel:
         return np.array([float(x) for x in evaluate(scalars, self.known, FLOAT)])
 
     def number(self, expression: Any) -> float:
-        """What a field of the model is worth; 0 of none."""
+        """Value of a field of the model; 0 for a missing one."""
         return 0.0 if expression is None else float(self.at((self.motion.scope.value(expression),))[0])
 
     def pose(self, body: str | None) -> FloatPose:
-        """Of a body in the ground; of the ground itself."""
+        """Pose of a body in the ground; for None, that of the ground itself."""
         if body is None:
             return np.eye(3), np.zeros(3)
         pose = self.motion.link(body).pose
         return self.at(tuple(x for row in pose.R for x in row)).reshape(3, 3), self.at(tuple(pose.p))
 
     def between(self, above: str | None, body: str) -> FloatPose:
-        """Of a body in the axes of another."""
+        """Pose of a body in the axes of another."""
         (R, p), (R0, p0) = self.pose(body), self.pose(above)
         return R0.T @ R, R0.T @ (p - p0)
 
@@ -93,7 +93,7 @@ class PosedModel:
         return found
 
     def follows(self) -> Iterator[str]:
-        """What equations between coordinates leave that are there because one mimics another."""
+        """Messages of equations between coordinates, from `mimic` of an import, that do not hold."""
         for name, constraint in self.model.constraints.items():
             gap = getattr(constraint, "gap", None)
             if gap is not None and not gap.calls and name.startswith("mimic"):
@@ -125,7 +125,7 @@ def pose_back(pose: FloatPose) -> FloatPose:
 
 
 def poses_differ(found: FloatPose, due: FloatPose) -> bool:
-    """Whether two poses differ."""
+    """True if two poses differ."""
     away = max(abs(found[0] - due[0]).max(), abs(found[1] - due[1]).max())
     return bool(away > COMPUTED * (1 + abs(due[1]).max()))
 
@@ -149,7 +149,7 @@ def turn_about(n: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _by_remark(parts: Mapping[str, Any]) -> dict[str, str]:
-    """What something was called in another program's file -> its name here."""
+    """Names here by the names that parts had in another program's file."""
     found: dict[str, str] = {}
     for name, part in parts.items():
         kind, _, rest = (part.about or "").partition(" ")
@@ -170,7 +170,7 @@ Quaternion = tuple[Any, Numbers]
 
 
 def misplaced(system: System, state: State) -> str:
-    """Which body does not stand as its joint is declared at a state; "" where none does.
+    """Message that names a body which does not stand as its joint is declared, at a state; "".
 
     Raises:
         NoValue: something has no value there.
@@ -242,7 +242,7 @@ class _Seated(InNumbers):
 
     @property
     def _seat(self) -> Numbers:
-        """Where the joint sits: a point of the parent, or `at`."""
+        """Place of the joint: a point of the parent, or `at`."""
         joint = self.link.joint
         if joint is None:
             return ZERO
@@ -289,7 +289,7 @@ class _Seated(InNumbers):
     # -- numbers ---------------------------------------------------------------------------------------------
 
     def _typed(self, expression: Any) -> Any:
-        """What is declared; nothing is 0."""
+        """Value of a declared expression; 0 for a missing one."""
         return self.one(0 if expression is None else self.motion.scope.value(expression))
 
     def _unit(self, axis: Any) -> Numbers:
@@ -338,7 +338,7 @@ Y, Z = (0, 1, 0), (0, 0, 1)
 
 @dataclass(frozen=True)
 class Touch:
-    """Where two things touch at a state.
+    """Contact of two surfaces at a state.
 
     Args:
         first, second: the nearest points of both, ground axes.
@@ -352,7 +352,7 @@ class Touch:
 
 @dataclass(frozen=True)
 class _Form:
-    """What touches, in numbers: a ball, a wheel about an axis (ground axes) with a tyre, or an ellipsoid."""
+    """Surface that touches, in numbers: a ball, a wheel about an axis (ground axes) with a tyre, or an ellipsoid."""
 
     radius: Any
     tube: Any = 0
@@ -361,7 +361,7 @@ class _Form:
 
 
 def meetings_of(system: System) -> dict[str, Meeting]:
-    """What touches what in every constraint that is closed."""
+    """Pairs of surfaces that touch, by the name of the constraint, for every closed constraint."""
     closed = {row.constraint for row in system.constraints.rows}
     constraints = system.scope.model.constraints
     found = {name: constraints[name].meeting() for name in constraints if name in closed}
@@ -369,7 +369,7 @@ def meetings_of(system: System) -> dict[str, Meeting]:
 
 
 def apart(system: System, state: State) -> str:
-    """Which contact does not touch, or parts, at a state; "" where none does.
+    """Message that names a contact which does not touch, or opens, at a state; "".
 
     Raises:
         NoValue: something has no value there, or the constraints do not hold.
@@ -403,7 +403,7 @@ class _Contact(InNumbers):
         return self._wrong_force(touch)
 
     def _wrong_force(self, touch: Touch) -> str:
-        """Which force of the contact is no unit force at its point, along the normal or across it, or ""."""
+        """Message that names a force of the contact which is no unit force at its point, normal or tangential; ""."""
         for row in self.system.constraints.rows:
             if row.constraint != self.name:
                 continue
@@ -413,7 +413,7 @@ class _Contact(InNumbers):
         return ""
 
     def _misplaced(self, touch: Touch, label: str, pushes: Sequence[Push]) -> bool:
-        """Whether pushes do not come to a unit force at the contact on its body, and its opposite on the other."""
+        """True if pushes are not a unit force at the contact on its body, and the opposite one on the other."""
         found: dict[str, tuple[Numbers, Numbers]] = {}
         for push in pushes:
             wrench = body_wrench(self.motion, push)
@@ -431,7 +431,7 @@ class _Contact(InNumbers):
         return any(self._misdirected(touch, label, f) for f in forces)
 
     def _misdirected(self, touch: Touch, label: str, f: Numbers) -> bool:
-        """Whether a force on the first body is not of length 1, or not in its direction."""
+        """True if a force on the first body is not of length 1, or not in its direction."""
         along = sum(dot(f, e) ** 2 for e in touch.held)
         wrong: list[Any] = [dot(f, f) - 1, along - 1 if label[0] == "n" else along]
         if not isinstance(self.meeting.surface, BodyLine):
@@ -452,7 +452,7 @@ class _Contact(InNumbers):
 
     @property
     def _rigid(self) -> bool:
-        """Whether point and surface are fixed in their bodies: else velocities of material points are others."""
+        """True if point and surface are fixed in their bodies: else velocities of material points are others."""
         what, surface = self.meeting.what, self.meeting.surface
         own = self._scene.place(what.point)[1] if isinstance(what, TouchingPoint) else ZERO
         seats = [own] if isinstance(surface, (BodyLine, Groove)) else [own, self._anchor]
@@ -480,7 +480,7 @@ class _Contact(InNumbers):
 
     @cached_property
     def _form(self) -> _Form:
-        """What touches; sizes that are left out are those of the shape."""
+        """Surface that touches; sizes that are not declared are those of the body's shape."""
         what, scene = self.meeting.what, self._scene
         if isinstance(what, TouchingPoint):
             return _Form(0)

@@ -66,7 +66,7 @@ class Printed:
 
 @dataclass(frozen=True)
 class ReadBack:
-    """What is printed of a system, as scalars again.
+    """Printed formulas of a system, read back as scalars.
 
     Args:
         printed: the texts.
@@ -170,7 +170,7 @@ class ReadBack:
         return Quantities(self.equations.system).value(call)
 
     def _spin(self, body: str) -> Vector:
-        """By the pose: a derivation gives it in the axes of the body."""
+        """Angular velocity of a body by its pose, in the axes of the body as a derivation prints it."""
         motion = self.equations.system.motion
         return spin_of(motion, motion.link(body))
 
@@ -195,23 +195,23 @@ class ReadBack:
 
     @cached_property
     def _forces(self) -> dict[str, Scalar]:
-        """Along each coordinate, where none follows others and there is no friction."""
+        """Generalized forces by coordinate, where no coordinate depends on others and there is no friction."""
         names = (u.name.removesuffix("'") for u in self.equations.symbols.u)
         whole = self.equations.system.free is None and not self.equations.friction
         return dict(zip(names, self.equations.Q, strict=True)) if whole else {}
 
     def wrong(self, state: State) -> str:
-        """Which formula does not hold at a state of the motion; "" where all do."""
+        """Message that names a formula which does not hold at a state of the motion; ""."""
         return _unequal(self.equalities, state | least_multipliers(self.equations, state))
 
     def wrong_data(self, state: State) -> str:
-        """Which text is not worth what it stands for at a state, at some accelerations and multipliers; ""."""
+        """Message that names a text whose value at a state is not that of its quantity, with some a and lam; ""."""
         symbols = self.equations.symbols
         some = {x: precise(1 + 1 / k) for k, x in enumerate((*symbols.a, *symbols.lam), start=2)}
         return self.unreadable(text for _, text, _ in self.printed.texts) or _unequal(self.data, {**some, **state})
 
     def drifting(self, state: State) -> str:
-        """Which constant does not stay at a state of the motion; "" where all do.
+        """Message that names a constant whose rate is not 0 at a state of the motion; "".
 
         Raises:
             NoValue: none of them is said to stay in the piece in which the state lies.
@@ -227,8 +227,7 @@ class ReadBack:
         return ""
 
     def wrong_law(self) -> str:
-        """Which law of motion does not begin at the start, breaks a constraint or is accelerated otherwise; "" where
-        none is.
+        """Message that names a law of motion with another start or acceleration, or one that violates a constraint; "".
 
         Raises:
             NoValue: no law is read, or something has no value soon after the start.
@@ -318,7 +317,7 @@ def _has_value(x: Scalar, state: State) -> bool:
 
 
 def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:
-    """Of J^T lam = M a - forcing the multipliers of least size, at a state of the motion."""
+    """Multipliers of least norm that satisfy J^T lam = M a - forcing, at a state of the motion."""
     if not equations.J:
         return {}
     n, k, symbols = len(equations.M), len(equations.J), equations.symbols

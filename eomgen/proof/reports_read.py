@@ -120,7 +120,7 @@ class ReadCurves:
 
 @dataclass(frozen=True)
 class ReadReport:
-    """What stands in a report.
+    """Content of a report as it is read back.
 
     Args:
         blocks: one after the other.
@@ -138,7 +138,7 @@ class ReadReport:
 
 
 def unpacked(text: str) -> bytes:
-    """What a page carries packed: gzip, then base64."""
+    """Bytes that a page carries packed: gzip, then base64."""
     return gzip.decompress(b64decode(text))
 
 
@@ -332,7 +332,7 @@ def _letter(tag: str, text: str, index: bool) -> str:
 
 
 def _name(c: str) -> str:
-    """As Unicode calls a letter of a style; the italic h has another name there."""
+    """Unicode name of a letter of a style; the italic h has another name there."""
     return "ITALIC SMALL H" if c == "\u210e" else unicodedata.name(c, "")
 
 
@@ -526,7 +526,7 @@ class ColouredPoints:
 
 @dataclass(frozen=True)
 class DrawnPanel:
-    """What one panel shows.
+    """Content of one panel of a diagram.
 
     Args:
         title: what stands above it.

@@ -42,7 +42,7 @@ def balance_check(places: Sequence[Equilibrium]) -> Check:
 
 
 def _unbalanced(place: Equilibrium) -> str:
-    """Against the change that a displacement of each coordinate, or of the size of it, makes."""
+    """Message if an equation of statics has a residual, compared with its change along each coordinate; ""."""
     statics, digits = place.statics, fifty_digits()
     known: dict[Node, Any] = values_of_parameters(statics.system.scope, Random(3))
     known |= _places(place, statics.unknowns, known)
@@ -68,7 +68,7 @@ def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
 
 
 def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
-    """By how much each equation changes where every unknown does by its own size, or by 1."""
+    """Usual size of each equation: its change when every unknown changes by its own size, or by 1."""
     slopes = jacobian(statics.equations, statics.unknowns)
     values = iter(evaluate(tuple(x for row in slopes for x in row), known, fifty_digits()))
     sizes = [max(1, abs(known[x])) for x in statics.unknowns]
@@ -76,14 +76,16 @@ def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
 
 
 def pushes_check(places: Sequence[Equilibrium]) -> Check:
-    """What the free bodies ask for at rest, their weights, loads and constraints' pushes summed body by body:
-    nothing."""
+    """Check that the free bodies are in equilibrium: weights, loads and constraint forces add up to nothing."""
     name = "the multipliers at every equilibrium hold the free bodies"
     return attempted(name, BY_MOTION, lambda: _first_at(places[:MOST], _pushed))
 
 
 def _pushed(place: Equilibrium) -> str:
-    """Which speed of the free bodies is pushed; multipliers that stand in no equation push nothing."""
+    """Message that names a speed of the free bodies along which they are not in equilibrium; "".
+
+    Multipliers that stand in no equation are set to 0.
+    """
     statics = place.statics
     standing = standing_system(statics.system)
     free = standing.free or standing
@@ -117,7 +119,7 @@ def _places(place: Equilibrium, wanted: Sequence[Node], known: Mapping[Node, Any
 
 
 def resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator[Check]:
-    """Of the equilibria of a system, whose equations of motion are given."""
+    """Checks of the equilibria of a system by its equations of motion."""
     proofs = [_Proof(first, place) for place in places[:MOST]]
     yield _of_all(NOTHING_ACCELERATED, proofs, _Proof.wrong, BY_MOTION)
     said = [proof for proof in proofs if proof.place.stability.kind in ("stable", "unstable")]
@@ -127,7 +129,7 @@ def resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator
 
 
 def _of_all(name: str, proofs: Sequence[_Proof], wrong: Callable[[_Proof], str], how: str) -> Check:
-    """At every place; where one has no value and nothing is wrong, that is said."""
+    """Check at every equilibrium; unchecked where one has no value and none is wrong."""
     open_ = ""
     for k, proof in enumerate(proofs, start=1):
         try:
@@ -148,7 +150,7 @@ def _at(k: int, wrong: str) -> str:
 
 @dataclass(frozen=True)
 class _Proof:
-    """What is wrong with one place, in words.
+    """Tests of one equilibrium; each gives what is wrong in words, or "".
 
     Args:
         first: the equations of motion of its system.
@@ -193,7 +195,7 @@ class _Proof:
         return np.array(columns, dtype=object).reshape(len(columns), -1).T.astype(float)
 
     def wrong_rates(self) -> str:
-        """Which coordinate moves, or which constraint of velocities runs on, with all speeds 0."""
+        """Message that names a coordinate or velocity constraint whose rate is not 0 with all speeds 0; ""."""
         system = self.first.system
         rows = [row for row in system.constraints.closing if row.gap is None]
         names = (*(f"{q.name}'" for q in system.symbols.q), *(f"'{row.constraint}'" for row in rows))
@@ -207,8 +209,7 @@ class _Proof:
         return next(moving, "")
 
     def wrong(self) -> str:
-        """Against what a displacement of one unit, or of the size of the coordinates, accelerates, the constraints
-        let go."""
+        """Message if the system accelerates at the equilibrium, compared with that after a displacement; ""."""
         if moving := self.wrong_rates():
             return moving
         rng, numbers = Random(5), self.numbers
@@ -255,7 +256,10 @@ class _Proof:
         return ""
 
     def _wrong_when_pushed(self, q: Node, row: int) -> str:
-        """It goes back from both sides where it is stable, and from one of them it does not where it is unstable."""
+        """Message if a displacement along q is not followed by what the stated stability says; "".
+
+        Stable: it returns from both sides. Unstable: from one of them it does not.
+        """
         kind = self.place.stability.kind
         goes_back = [sign * pull < 0 for sign, pull in zip((1, -1), self._pulls(q, row), strict=True)]
         if kind == "stable" and not all(goes_back):

@@ -1,4 +1,4 @@
-"""What is told of a run: names, units, tables, columns.
+"""Reported texts of a run -> checks: names, units, starts and ends, tables and files are those of its states.
 
 A run, and what is told of it -> checks: names, units, starts and ends, tables and files are those of its states.
 
@@ -42,7 +42,7 @@ _HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
 
 @dataclass(frozen=True)
 class ReportedRun:
-    """What is told of a run.
+    """Reported texts of a run.
 
     Args:
         rows: (name with its unit, the start, the end) as texts.
@@ -311,7 +311,7 @@ def reaction_columns_hold(run: Trajectory) -> Iterator[Check]:
 
 
 def _wrong_reaction(run: Trajectory, phase: Phase, row: int, formulas: Mapping[str, Scalar]) -> str:
-    """Which column is not that of the symbols in a row, or ""."""
+    """Message that names a column whose value in a row differs from that of the symbols; ""."""
     state = state_of_row(run, phase, row)
     columns = {name: float(run.reactions[name][row]) for name in formulas if name in run.reactions}
     known = {name: x for name, x in columns.items() if np.isfinite(x)}

@@ -39,7 +39,7 @@ Reported = Scalar | str
 
 @dataclass(frozen=True)
 class ReportedSections:
-    """What is told of one body.
+    """Reported section forces of one body.
 
     Args:
         variable: the distance along its axis.
@@ -55,7 +55,7 @@ class ReportedSections:
 def sections_reported(
     found: Mapping[str, SectionForces], reported: Iterable[tuple[str, ReportedSections]], values: Mapping[str, Any]
 ) -> Iterator[Check]:
-    """Of each body what is told, as often as it is told.
+    """Checks of the reported section forces of each body, of every report of it.
 
     Args:
         values: of parameters: near to them everything has a value.
@@ -195,7 +195,7 @@ class ReportedMotion:
 
 @dataclass(frozen=True)
 class ReportedWork:
-    """How one reaction is found.
+    """Reported derivation of one reaction by virtual work.
 
     Args:
         name: of the reaction.
@@ -217,7 +217,7 @@ class ReportedWork:
 
 
 def works_reported(found: StaticReactions, state: State, reported: Iterable[ReportedWork]) -> Iterator[Check]:
-    """Of structures in the plane.
+    """Checks of reported reactions by virtual work, of structures in the plane.
 
     Args:
         state: every symbol with 50 digits.
@@ -271,7 +271,7 @@ class _Works:
         return {node: float(x) for node, x in self.state.items()}
 
     def worth(self, reported: SaidWork, R: float = 0.0, requested: str = "") -> float:
-        """In numbers, delta = 1; of the equation with R, which an unknown load has under its own name."""
+        """Value of a work with delta = 1; R is the value of the unknown, which an unknown load has by its own name."""
         if isinstance(reported, str):
             return self._of_text(reported)
         if not isinstance(reported, Node):

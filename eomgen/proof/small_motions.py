@@ -51,7 +51,7 @@ BY_DIFFERENCES = "differences at 50 digits"
 
 
 def small_motion_checks(modes: Modes) -> Iterator[Check]:
-    """Of the reference, the matrices, and the modes."""
+    """Checks of the reference state, the matrices, and the modes."""
     small = modes.small
     differences = Differences(small)
     try:
@@ -65,7 +65,7 @@ def small_motion_checks(modes: Modes) -> Iterator[Check]:
 
 
 def _reference(differences: Differences) -> Check:
-    """Nothing is accelerated there; at rest nothing moves."""
+    """Check that the reference state is without acceleration, and at rest without velocity."""
     small, origin = differences.small, differences.origin
     A = abs(small.state_matrix)
     state = [abs(float(origin.state.get(x, 0))) for x in (*small.numbers.coordinates, *small.numbers.speeds)]
@@ -104,7 +104,7 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
 
 
 def _of_part(differences: Differences) -> Check:
-    """Of the coordinates that are asked alone: they answer to forces on them as they do in the whole.
+    """Check of a part of the coordinates: they respond to forces on them as they do in the whole system.
 
     (s^2 M + s C + K)^-1 is their part of the first rows of (s 1 - A)^-1 [0; M^-1] of the whole, A and M by differences.
     """
@@ -146,7 +146,7 @@ def _in_rows(flat: Sequence[Any], rows: Sequence[Sequence[Any]]) -> list[list[An
 
 
 def _wrong_parts(modes: Modes) -> str:
-    """Which of the printed parts of C and K is not what its letter says, or ""."""
+    """Message if a printed part of C or K is not symmetric or skew as its letter says, or not part of the sum; ""."""
     small = modes.small
     whole = {letter: _numbers(small, getattr(small.exact or small.numbers, letter)) for letter in "CK"}
     parts = {
@@ -177,7 +177,7 @@ def _random(nodes: Sequence[Node], rng: Random) -> Numbers50:
 def _in_equations(
     small: SmallMotions, A: Mapping[str, list[list[Any]]], beside: Sequence[Beside], tolerance: float
 ) -> str:
-    """Of M a + C u + K q - B w and -q' + F q + E u the first row of which something is left, or ""."""
+    """Message for the first row in which M a + C u + K q = B w or q' = F q + E u does not hold; ""."""
     pushed = [[-x for x in row] for row in A["B"]]
     left = [[*m, *c, *k, *b] for m, c, k, b in zip(A["M"], A["C"], A["K"], pushed, strict=True)]
     units = [sum(map(abs, row)) for row in A["M"]]
@@ -214,7 +214,7 @@ def _moving(small: SmallMotions, beside: Sequence[Beside]) -> list[tuple[Beside,
 def _in_energy(
     small: SmallMotions, M: list[list[Any]], energies: Sequence[tuple[Any, DigitColumn, DigitColumn]], tolerance: float
 ) -> str:
-    """Of d . M d - T'' along each d what is left, or ""."""
+    """Message if d . M d = T'' does not hold along some direction d; ""."""
     along = [q1 if small.is_second_order else u for _, q1, u in energies]
     for (T, _, _), d, rows in zip(energies, along, sums_of_products(M, along), strict=True):
         products = [(x * y, abs(x) * size) for x, (y, size) in zip(d, rows, strict=True)]
@@ -224,7 +224,7 @@ def _in_energy(
 
 
 def _left(other: Any, sums: tuple[Any, Any], tolerance: float, unit: Any = 1) -> str:
-    """What is left of terms that cancel one another; "" where it is rounding, of them or of a rate of one unit.
+    """Message if terms do not cancel one another within rounding, of them or of a rate of one unit; "".
 
     Args:
         other: one of them.
@@ -254,7 +254,7 @@ SURELY = 1e-3  # of the largest root, by which another one surely grows or fades
 
 
 def mode_checks(modes: Modes) -> Iterator[Check]:
-    """Of modes, eigenvalues, characteristic polynomial, closed frequencies, stability, transfer functions."""
+    """Checks of modes, eigenvalues, characteristic polynomial, closed frequencies, stability, transfer functions."""
     proof = _Proof(modes)
     yield checked("every mode satisfies (lambda^2 M + lambda C + K) v = 0", proof.wrong_mode, FLOATS)
     yield checked("the eigenvalues are all there: their sums are the traces of A and A^2", proof.wrong_sums, FLOATS)
@@ -275,7 +275,7 @@ def mode_checks(modes: Modes) -> Iterator[Check]:
 
 @dataclass(frozen=True)
 class _Proof:
-    """What is wrong with each, in words.
+    """Tests of the modes; each gives what is wrong in words, or "".
 
     Args:
         modes: of the small motions.
@@ -299,7 +299,7 @@ class _Proof:
 
     @cached_property
     def rate(self) -> float:
-        """What is usual of the eigenvalues that are not 0."""
+        """Geometric mean of the absolute values of the eigenvalues that are not 0."""
         sizes = abs(self.values)
         sizes = sizes[sizes > SAME_PLACE * self.largest]
         return float(np.exp(np.log(sizes).mean())) if len(sizes) else 1.0
@@ -341,7 +341,7 @@ class _Proof:
         return ""
 
     def _coordinates(self, shape: Any) -> np.ndarray | None:
-        """Of the printed coordinates; None where small turns stand in their place."""
+        """Vector of a shape over the printed coordinates; None where small rotations replace some of them."""
         labels = self.modes.small.numbers.coordinates
         return np.array([shape[q] for q in labels]) if all(q in shape for q in labels) else None
 
@@ -427,15 +427,17 @@ class _Proof:
 
     @property
     def _has_chains(self) -> bool:
-        """Whether A^2 lets more motions stay than A: they grow like t."""
+        """True if A has Jordan chains at 0: A^2 has a larger null space than A, so some motions grow like t."""
         zeros = sum(x == 0 for x in self.modes.spectrum.eigenvalues)
         sizes = np.linalg.svd(self.A, compute_uv=False)
         return zeros > 0 and int(np.sum(sizes <= COMPUTED * sizes.max(initial=0))) < zeros
 
     @property
     def _drifts_away(self) -> bool:
-        """Whether what grows like t comes to where the equations are others; of constraints and small turns none is
-        said."""
+        """True if a motion that grows like t leads to where the equations are others.
+
+        With constraints and small rotations this is not decided, and False.
+        """
         small = self.modes.small
         system, e, numbers = small.first.system, small.first.equations, small.reference.numbers
         constrained = system.constraints.closing or system.elimination is not None
@@ -463,7 +465,7 @@ class _Proof:
         return self._wrong_here or first_wrong(map(self._wrong_elsewhere, range(DRAWS)))
 
     def _wrong_elsewhere(self, seed: int) -> str:
-        """With other parameters: the roots of the characteristic polynomial in numbers, which is proven by itself."""
+        """Message if a statement on stability is wrong at other parameters, by roots of the proven polynomial; ""."""
         rng, polynomial, conditions = Random(seed), self.modes.polynomial, self.modes.conditions
         if polynomial is None:
             return ""
@@ -531,6 +533,6 @@ def _value(polynomial: Polynomial, s: complex, trial: dict[Node, Any]) -> comple
 
 
 def _factor(rng: Random, positive: bool) -> Any:
-    """By which a parameter is changed: between a seventh and seven times, of what may be negative at times below 0."""
+    """Random factor of a parameter, between 1/7 and 7; now and then negative where the parameter may be."""
     size = fifty_digits().number(round(10**6 * math.exp(rng.uniform(-2, 2)))) / 10**6
     return -size if not positive and rng.random() < 0.3 else size

@@ -1,4 +1,4 @@
-"""What is printed, drawn and told machines of small motions.
+"""Reported small motions -> checks: what is printed is what machines get, and texts have the values of their numbers.
 
 What is printed of small motions -> checks: it is that which machines get of them, and texts are worth their numbers.
 
@@ -45,7 +45,7 @@ PARTS = ("damping", "gyroscopic", "circulatory")
 
 @dataclass(frozen=True)
 class PrintedModes:
-    """What is printed of small motions.
+    """Printed texts of small motions.
 
     Args:
         matrices: in numbers, by their letters.
@@ -101,7 +101,7 @@ class ReportedMotions:
             yield f"{transfer['coordinate']}/{transfer['input']}", lambda t=transfer: self._transfer(t)  # type: ignore[misc]
 
     def matrix(self, name: str) -> np.ndarray:
-        """In numbers."""
+        """Matrix of this name in numbers."""
         return self.shaped(name, np.array(self.entries[name]["value"], dtype=float))
 
     def shaped(self, name: str, found: np.ndarray) -> np.ndarray:
@@ -149,7 +149,7 @@ class ReportedMotions:
 
     @cached_property
     def A(self) -> np.ndarray:
-        """As it is told, which is proven by itself."""
+        """State matrix as it is reported; it is proven by itself."""
         return np.array(self.entries["state_matrix"], dtype=float)
 
     def _shape(self, mode: Mapping[str, Any]) -> str:
@@ -254,7 +254,7 @@ def _differ(a: np.ndarray, b: np.ndarray, share: float = COMPUTED) -> bool:
 
 
 def _is_complex(text: str, right: complex, share: float = SEVEN_DIGITS) -> bool:
-    """Whether 1.2 +- 3.4i is that number, or its conjugate."""
+    """True if a text like 1.2 +- 3.4i is that number, or its conjugate."""
     pieces = text.replace("+-", "+").replace("+ ", "+").replace("- ", "-").replace("i", "j").replace(" ", "")
     try:
         found = complex(pieces)
@@ -277,7 +277,7 @@ MOST_VALUES = 60  # of a parameter at which its roots are looked at
 
 
 def modes_drawn(entries: Mapping[str, Any], panels: Sequence[DrawnPanel]) -> Check:
-    """What stands above each mode, and the bars of those that are not swung out."""
+    """Check of the headings above each mode, and of the bars of those that are not animated."""
     return attempted(DRAWN, "modes as machines get them", lambda: _wrong_modes(entries["modes"], panels))
 
 
@@ -333,7 +333,7 @@ class Pencil:
 
     @property
     def A(self) -> np.ndarray:
-        """Of x' = A x."""
+        """Matrix A of x' = A x."""
         return np.linalg.solve(self.P, self.Q)
 
     def answers(self, omega: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -350,7 +350,7 @@ class _Drawn:
     letters: Mapping[str, str]
 
     def pencil(self, matrix: Callable[[str], np.ndarray]) -> Pencil:
-        """By matrices as they are named."""
+        """Pencil s P - Q of matrices by their names."""
         M, C, K, E, F = map(matrix, ("mass", "rates", "stiffness", "kinematic_rates", "kinematic_places"))
         if self.reported.entries["second_order"]:
             if F.any():
@@ -447,7 +447,7 @@ def _roots(points: ColouredPoints, value: float) -> list[complex]:
 
 
 def _no_roots(pencil: Pencil, roots: Sequence[complex]) -> str:
-    """That these are not all the roots of det(s P - Q), each as often as it is one."""
+    """Message if these are not all the roots of det(s P - Q), with their multiplicities; ""."""
     A = pencil.A
     if not np.isfinite(A).all():
         return ""
@@ -568,5 +568,5 @@ class _Reported:
 
 
 def away(found: np.ndarray, right: np.ndarray) -> bool:
-    """Whether two matrices differ by more than doubles make of it."""
+    """True if two matrices differ by more than rounding in doubles."""
     return bool(abs(found - right).max(initial=0) > CARRIED * (1 + abs(right).max(initial=0)))

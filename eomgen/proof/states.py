@@ -87,15 +87,14 @@ class States:
         return tuple(row.gap for row in rows if row.gap is not None and not is_zero(row.gap))
 
     def _satisfied(self, state: State) -> bool:
-        """Whether constraints that are identities about the start are so there: past its eyelet a string is too
-        long."""
+        """True if constraints that hold identically near the start hold here: past its eyelet a string is too long."""
         try:
             return all(abs(x) <= COMPUTED for x in evaluate(self._identities, state, fifty_digits()))
         except (NoValue, ZeroDivisionError):
             return True
 
     def _is_near(self, state: State) -> bool:
-        """Whether its numbers are so small that digits are left for differences, and squares for doubles."""
+        """True if the numbers are small enough to leave digits for differences, and not to overflow when squared."""
         symbols = self.system.symbols
         moving, given = (*symbols.q, *symbols.u), symbols.parameters.values()
         near = all(abs(state[x]) <= LARGEST_AT_50 for x in moving if x in state)
@@ -103,13 +102,13 @@ class States:
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:
-        """What decides between pieces, and moves."""
+        """Quantities that decide between pieces of functions and change along the motion."""
         symbols = self.system.symbols
         moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
         return switches_of(self.scalars, moving)
 
     def inside(self, state: State) -> bool:
-        """Whether the state lies between no two pieces."""
+        """True if the state does not lie on the border of two pieces."""
         return all(switch.piece(state) is not None for switch in self.switches)
 
     def _at_the_start(self) -> Iterator[TrialState]:
@@ -129,7 +128,7 @@ class States:
             return
 
     def _pieces(self) -> Iterator[Iterator[TrialState]]:
-        """Of every piece of every quantity its states, in motion and with the model's own numbers."""
+        """States in every piece of every such quantity, moving, and with the model's own parameters."""
         rng = Random(6)
         start = own_start(self.system) if self.switches else None
         if start is None:
@@ -246,7 +245,7 @@ def real_state(system: System, rng: Random) -> State:
 
 
 def refuse_open(system: System, state: State) -> None:
-    """Nothing, where the gaps and the rates of all rows are 0.
+    """Refuses a state in which the gap or the rate of a row is not 0.
 
     Raises:
         NoValue: they are not.
@@ -258,7 +257,7 @@ def refuse_open(system: System, state: State) -> None:
 
 
 def is_open(system: System, state: State) -> bool:
-    """Whether the constraints do not hold there, positions or speeds."""
+    """True if the constraints do not hold at a state, in positions or speeds."""
     try:
         refuse_open(system, state)
     except NoValue:

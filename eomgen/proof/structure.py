@@ -54,7 +54,7 @@ PREFIXES = {"": 1.0, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}  # of N and N m
 def structure_checks(
     found: StaticReactions, sections: Mapping[str, SectionForces], influence: InfluenceLine | None = None
 ) -> Iterator[Check]:
-    """Of every reaction, of the section forces by body, and of an influence line."""
+    """Checks of every reaction, of the section forces by body, and of an influence line."""
     wrong = ", ".join(reaction.name for reaction in found.disagreeing)
     both = [reaction for reaction in found.reactions if reaction.work is not None]
     if both:
@@ -124,7 +124,7 @@ def _left_out(found: StaticReactions) -> Iterator[Check]:
 
 @dataclass(frozen=True)
 class _Proof:
-    """What is wrong, in words.
+    """Tests of a structure's results; each gives what is wrong in words, or "".
 
     Args:
         found: the structure and its reactions.
@@ -155,7 +155,7 @@ class _Proof:
         return balanced_least(self.found.balance.balance, self.state)
 
     def wrong_sum(self, each: StaticSum) -> str:
-        """Where reactions of least size, or what may be added to them, give a sum another value."""
+        """Message if a sum has another value by the reactions of least norm, or changes with a self-stress; ""."""
         least, added = self._balancing
         factors = np.zeros(len(least))
         factors[list(each.combination)] = self.numbers(tuple(each.combination.values()))
@@ -176,7 +176,7 @@ class _Proof:
         return {}
 
     def along(self, forces: SectionForces) -> _Along:
-        """What acts along a body, in numbers."""
+        """Loads along a body, in numbers."""
         body = forces.axis.body
         if body not in self._loads:
             loads = MemberLoads(self.found.balance, body, forces.sizes)
@@ -192,7 +192,7 @@ class _Proof:
         return self._loads[body]
 
     def _x(self, axis: MemberAxis, place: Vector) -> float:
-        """How far along the axis a place is, body axes; off it nothing has section forces."""
+        """Distance of a place along the axis of its body; 0 off the axis, where no section forces act."""
         x = axis.distance(place)
         return 0.0 if x is None else self.one(x)
 
@@ -214,7 +214,7 @@ class _Proof:
         return ""
 
     def _value(self, piece: SectionPiece, kind: str, x: float) -> float:
-        """As it is printed, a function of x."""
+        """Value at x of a section force as it is printed."""
         section = self.found.system.scope.graph.symbol("(x of a section)")
         return float(evaluate((piece.value(kind, section),), {**self.values, section: x}, FLOAT)[0])
 
@@ -257,7 +257,7 @@ class _Proof:
             yield from ((a, b) for (a, V), (b, W) in pairwise(signs) if V * W < 0)
 
     def wrong_slopes(self, forces: SectionForces) -> str:
-        """Of the polynomials, whose derivatives have coefficients k c_k."""
+        """Message if a polynomial's derivative at some x is not its load: dM/dx = V, dV/dx = q n, dN/dx = -q t; ""."""
         along = self.along(forces)
         for piece in forces.pieces:
             start, end = self.one(piece.start), self.one(piece.end)
@@ -276,7 +276,10 @@ class _Proof:
     # -- released structures -----------------------------------------------------------------------------------
 
     def wrong_blocks(self) -> str | None:
-        """What is in one block moves with it, v = v_0 + w x r at both ends of a member; no two blocks move alike."""
+        """Message if parts of a block move otherwise than v = v_0 + w x r, or two blocks move alike; "".
+
+        None where no reaction is found by virtual work.
+        """
         plans = [(each.name, each.work.plan) for each in self.found.reactions if each.work is not None]
         for name, plan in plans[:: 1 + (len(plans) - 1) // MOST_PLANS]:
             blocks = blocks_of(plan)
@@ -402,7 +405,7 @@ class _Proof:
         return float(found[line.name.partition("(")[0]])
 
     def _distance(self, line: InfluenceLine, place: np.ndarray) -> float:
-        """How far along the axis of the cut body a place is."""
+        """Distance of a place along the axis of the cut body."""
         assert line.cut is not None
         axis = line.cut.axis
         best, away = 0.0, np.inf
@@ -492,7 +495,7 @@ def _misnamed(panel: DrawnPanel) -> str:
 
 
 def _is_on(places: np.ndarray, place: np.ndarray, size: np.ndarray) -> bool:
-    """Whether a place is on a curve; between two places of it as nearly as it is bent there."""
+    """True if a place is on a curve; between two of its points the tolerance is the bend of the curve there."""
     x, y = places.T
     if not x[0] - SAME_PLACE * size[0] <= place[0] <= x[-1] + SAME_PLACE * size[0]:
         return False
@@ -509,7 +512,7 @@ def _wrench(force: np.ndarray, arm: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class _Along:
-    """What acts along a body, body axes, in numbers.
+    """Loads along a body, in body axes, in numbers.
 
     Args:
         actions: (x, place, force, couple) each.
@@ -520,7 +523,10 @@ class _Along:
     spreads: tuple[Any, ...]
 
     def behind(self, x: float, section: np.ndarray) -> tuple[np.ndarray, float, float, float]:
-        """(R, T about the section, and what is large for each) of all behind x; line loads by Simpson's rule, exact."""
+        """Resultant R and moment T of all loads beyond x, and the size of each.
+
+        The moment is about the section. Line loads are integrated by Simpson's rule, which is exact for them.
+        """
         R, T, size, moment = np.zeros(3), 0.0, self.force, 0.0
         for at, place, force, couple in self.actions:
             T_here = _wrench(force, place - section)[2] + couple
@@ -553,6 +559,6 @@ class _Along:
 
     @cached_property
     def force(self) -> float:
-        """What is large of forces here."""
+        """Size of the forces along the body, the sum of their norms [N]."""
         spread = sum(self.largest * abs(b - a) for (a, b), *_ in self.spreads)
         return float(sum(np.linalg.norm(force) for _, _, force, _ in self.actions) + spread)

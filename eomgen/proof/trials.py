@@ -62,7 +62,7 @@ NOWHERE = "no state with values was found, at the start, near it or at random"
 
 @dataclass(frozen=True)
 class Given:
-    """How a coordinate is driven.
+    """Motion that is given of a coordinate.
 
     Args:
         coordinate: its name.
@@ -190,7 +190,7 @@ class Trials:
 
     @property
     def given(self) -> list[Given]:
-        """What is given of every driven coordinate, with nu = q' and (q')' = q''."""
+        """Given motions of every driven coordinate, with nu = q' and (q')' = q''."""
         scope, found = self.equations.system.scope, []
         for q, nu in zip(self.equations.symbols.q, self.equations.nu, strict=True):
             part, name = scope.model.coordinates[q.name], q.name
@@ -280,7 +280,7 @@ class Trials:
         return self.equations.system.free or self.equations.system
 
     def _torn(self, state: State, moving: State) -> str:
-        """What accelerations leave of the free bodies at a state in which the constraints hold.
+        """Message if accelerations violate the equations of the free bodies at a state; "".
 
         Raises:
             NoValue: they do not hold there.
@@ -361,7 +361,7 @@ class Trials:
             yield self._at_states("moments and products of inertia stand where they are declared", "50 digits", check)
 
     def contacts(self) -> Iterable[Check]:
-        """What touches touches, where it is declared; none where nothing does."""
+        """Check that declared contacts touch, and neither open nor slip; none without contacts."""
         if meetings_of(self.equations.system):
             name = "contacts lie on both surfaces, and neither part nor slip"
             yield self._at_states(name, "50 digits", lambda state: apart(self.equations.system, state))
@@ -373,7 +373,7 @@ class Trials:
             yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
 
     def kept_constraints(self) -> Iterable[Check]:
-        """What stays as at the start is closed there; none where nothing does."""
+        """Check that constraints which keep a start value are satisfied at the start; none without such constraints."""
         if rows_that_stay(self.equations.system):
             name = "constraints that keep what is at the start are closed there"
             yield self._at_states(name, "50 digits", lambda state: open_at_start(self.equations.system, state))
@@ -393,7 +393,7 @@ class Trials:
             yield self._at_states(name, "50 digits", lambda state: undeclared(self.equations.system, state))
 
     def declared(self) -> Iterable[Check]:
-        """What is applied acts, and does the work, that is declared; none where nothing is applied."""
+        """Check that applied loads act, and do virtual work, as they are declared; none where nothing is applied."""
         e = self.equations
         if e.system.loads.applied or e.system.loads.efforts or not all(map(is_zero, e.Q)):
             name = "all that is applied pushes, and does the virtual work, that its fields declare"
@@ -450,7 +450,7 @@ class Trials:
                 yield self._somewhere(name, lambda state: driven_otherwise(reactions, self._pushed(state)))
 
     def _somewhere(self, name: str, wrong: Callable[[State], str]) -> Check:
-        """Of what names mean: one state along the motion tells, they mean the same at all."""
+        """Check of the meaning of names, at one state along the motion, as they mean the same at all."""
         for _, supply in self.states.supplies:
             for place in supply:
                 try:
@@ -478,7 +478,7 @@ class Trials:
 
 
 def refuse_noise(scalars: Sequence[Scalar], state: State) -> None:
-    """Nothing, where the scalars stay the same at a state 1e-30 away.
+    """Refuses a state at which rounding decides: scalars change when it moves by 1e-30.
 
     Raises:
         NoValue: they do not: 0/0 at the state, where rounding stands for both zeros.
@@ -500,7 +500,7 @@ def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:
 
 
 def _difference(name: str, a: Any, b: Any, tolerance: float) -> str:
-    """Which entry of two vectors differs, or ""."""
+    """Message that names an entry in which two vectors differ; ""."""
     scale = 1 + max((abs(x) for x in b), default=0)
     wrong = [i for i, (x, y) in enumerate(zip(a, b, strict=True)) if not abs(x - y) <= tolerance * scale]
     return f"{name}[{wrong[0]}] is {a[wrong[0]]:.15g} against {b[wrong[0]]:.15g}" if wrong else ""

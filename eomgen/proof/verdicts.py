@@ -85,7 +85,7 @@ class Judged:
 
     @property
     def is_of_start(self) -> bool:
-        """Whether it holds in the motion from the start alone, or where something is driven by a law of time."""
+        """True if it holds in the motion from the start alone, or something is driven by a law of time."""
         words = ("from the start", "at the start", "first piece", "first integral", "any start")
         driven = any(q.motion is not None for q in self.equations.system.scope.model.coordinates.values())
         reported = driven or any(word in self.up_to for word in words)
@@ -95,7 +95,7 @@ class Judged:
 
     @property
     def _gains(self) -> bool:
-        """Whether it is an energy theorem: no energy alone is on its left."""
+        """True if it is an energy theorem: more than one energy stands on its left."""
         return self.kind == "energy" and len(self.left.code) > 1
 
     @property
@@ -116,7 +116,7 @@ class _Again:
     judged: Judged
 
     def wrong(self) -> str:
-        """That the verdict does not hold, in words; "".
+        """Message if the verdict does not hold; "".
 
         Raises:
             NoValue: the numbers do not decide it.
@@ -263,7 +263,9 @@ def _constant(sides: Sides, judged: Judged) -> Rounded:
 
 
 def _conditions(up_to: str) -> list[Expression]:
-    """What is not negative where it holds: of `what holds where x > 0 and y < 0` x and -y, of `while r <= L` L - r.
+    """Expressions that are not negative where the verdict holds.
+
+    They are x and -y for `what holds where x > 0 and y < 0`, and L - r for `while r <= L`.
 
     Raises:
         NoValue: the words are no such conditions.
@@ -346,7 +348,7 @@ class Sides:
         return Rounded(float(value), self.error * (abs(float(value)) + self._scale(name)) + ZERO_AT_50)
 
     def _scale(self, name: str) -> float:
-        """Of what size numbers of its kind are: what is near 0 is not known better than these."""
+        """Usual size of values of the same kind: smaller ones are known no better than a share of it."""
         symbols = self.state.equations.symbols
         kinds = ((*symbols.a, *symbols.lam), symbols.u, symbols.q)
         node = self.state.equations.system.scope.names[name]
@@ -365,14 +367,14 @@ class Sides:
         return total
 
     def _shifted(self, meant: Expression, name: str, by: float) -> float:
-        """What a formula is with one name shifted."""
+        """Value of a formula with one name shifted."""
         lookup = {x: self._named(x).value for x in meant.names}
         lookup = {**lookup, "pi": math.pi, name: lookup[name] + by}
         return float(meant.evaluate(lookup))
 
     @cached_property
     def _values(self) -> Mapping[Node, Any]:
-        """Of every symbol; accelerations and multipliers by dense linear algebra, where the state has them."""
+        """Values of every symbol; accelerations and multipliers by dense linear algebra, where the state has them."""
         try:
             return {**self.state.values, **self.state.unknowns}
         except NoValue:
@@ -407,7 +409,7 @@ class Sides:
         return Rounded(value, COMPUTED * abs(value) + self.error * self._size(call))
 
     def _slope(self, call: Call) -> float:
-        """Of an energy by a speed, or by a coordinate with all that this moves: by a central difference."""
+        """Derivative of an energy by a speed, or by a coordinate with all that this moves: a central difference."""
         own, values = self.state.equations.system, dict(self._values)
         energy, by, *free = call.args
         system = own.free if free and own.free else own
@@ -427,7 +429,7 @@ class Sides:
         return float((above[0] - below[0]) / (2 * STEP))
 
     def _size(self, call: Call) -> float:
-        """What of a value rounding is measured by: the speeds of the state."""
+        """Size by which the rounding of a value is measured: that of the speeds of the state."""
         return 1e-3 * max((abs(float(self._values[x])) for x in self.state.equations.symbols.u), default=0.0)
 
 
