@@ -31,7 +31,7 @@ def altered(run, column, by):
     [
         ("double_pendulum", 2, "E - E0 is the integral of the power"),
         ("cart_pole", 3, "E - E0 is the integral of the power"),
-        ("four_bar", 1, "E - E0 is the integral of the power|the constraints stay closed"),
+        ("four_bar", 1, "E - E0 is the integral of the power|the constraints are satisfied"),
         ("sliding_ladder", 0, "E - E0|constraints"),
         ("tumbling_body", 3, "E - E0|quaternions keep their norm"),
     ],

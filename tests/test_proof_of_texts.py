@@ -161,7 +161,7 @@ def test_numbers_of_other_parameters_are_a_contradiction(verb: str, name: str, m
     values = exact_parameters
     monkeypatch.setenv("EOMGEN_FRESH", "1")
     found = CliRunner().invoke(main, [verb, str(MODELS / f"{name}.toml")])
-    assert found.exit_code == 3 and "FAIL parameters are worth what the file says" in found.stdout
+    assert found.exit_code == 3 and "FAIL parameters have the values of the file" in found.stdout
 
 
 FAR = """

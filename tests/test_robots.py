@@ -549,7 +549,7 @@ def test_a_robot_that_is_read_otherwise_is_contradicted(tmp_path):
     for old, new, what in (
         ('rpy="0.3 -0.5 0.7"', 'rpy="0.7 -0.5 0.3"', "does not stand on"),
         ('multiplier="-2"', 'multiplier="2"', "leaves"),
-        ('xyz="0 0 0.2"', 'xyz="0 0 0.1"', "weighs otherwise"),
+        ('xyz="0 0 0.2"', 'xyz="0 0 0.1"', "has another mass, mass centre or inertia"),
         ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>', "does not stand on"),
     ):
         assert what in imported_otherwise(text.replace(old, new), made)

@@ -519,7 +519,7 @@ def test_pictures_and_proof(spring, tmp_path):
         assert path.stat().st_size > 5000 and reported["certificate"]["ok"] is True
         names = {check["name"]: check["status"] for check in reported["certificate"]["checks"]}
         assert names["a run made again has the same bits"] == "holds"
-        assert names["steps taken again from states of the run end where it came"] == "holds"
+        assert names["steps repeated from states of the run end at its next states"] == "holds"
         assert names["outputs of the whole run agree with its samples"] == "holds"
     found = eomgen.sweep(spring, random={"k": "uniform(10, 20)", "m": "uniform(1, 2)"}, runs=16, ask="max(x')", time=1)
     found.plot(tmp_path / "scatter.png")

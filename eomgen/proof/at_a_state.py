@@ -43,7 +43,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import BESIDE_A_PLACE, COMPUTED, RANK_NEARBY, ROUNDING, SAME_PLACE
 
 MOST = 3  # states at which all formulas are compared
-AWAY = 10  # times what nearby states make of it, by which a number may be off
+AWAY = 10  # times the change between nearby states, by which a number may be wrong
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class NumericState:
 
         Raises:
             NoValue: it has none.
-            MissingValues, DerivationError: it holds what is not known of the state.
+            MissingValues, DerivationError: it contains a quantity that is not known at the state.
         """
         quantities = Quantities(self.equations.system)
 
@@ -116,7 +116,7 @@ class NumericState:
         found, size = value_with(least), np.abs(least).max(initial=0.0) or 1.0
         others = [value_with(least + size * column) for column in added.T]
         if any(abs(x - found) > COMPUTED * size for x in others):
-            raise NoValue(f"the balance of the bodies leaves '{formula.text}' open")
+            raise NoValue(f"the equilibrium of the bodies does not determine '{formula.text}'")
         return found
 
     @cached_property
@@ -141,7 +141,7 @@ class NumericState:
 
     @cached_property
     def reactions(self) -> dict[str, float]:
-        """Every reaction that has a single value, by the name by which outputs ask for it."""
+        """Every reaction that has a single value, by its name in outputs."""
         try:
             columns = ReactionColumns(reactions_of(self.equations.system), self._rhs)
             found = columns.along(np.array([self.t]), self.x[None, :], self.p)[0]

@@ -50,7 +50,7 @@ def unchecked(name: str, why: str, how: str) -> Check:
 
 
 def attempted(name: str, how: str, wrong: Callable[[], str]) -> Check:
-    """A check of what may have no value: then it could not be made."""
+    """A check that could not be made where its quantities have no value."""
     try:
         return checked(name, wrong(), how)
     except (NoValue, ZeroDivisionError) as error:
@@ -138,7 +138,7 @@ class Tally:
             found = compared()
         except (NoValue, ZeroDivisionError) as error:
             self.left[what] = str(error) or "no value"
-        except EomgenError as error:  # the edge of a proof: whatever refuses is said to be unchecked
+        except EomgenError as error:  # an error of the model or of the derivation makes the comparison unchecked
             self.left[what] = error.what
         else:
             self.held += not found

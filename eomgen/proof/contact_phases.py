@@ -1,6 +1,6 @@
 """Contacts along a run, and the laws of friction.
 
-The phases of a run -> checks: what its contacts do within each, and that nothing but their impulses lies between.
+The phases of a run -> checks: the contacts in each, and the changes of momentum between them by impulses alone.
 
     closed, can end or slide  push N >= 0             open     gap >= 0
     sticks                     |F| <= mu |N|           slides   sense v >= 0
@@ -56,9 +56,9 @@ STATES = 100  # of a phase that are looked at
 # -- within a phase --------------------------------------------------------------------------------
 
 
-def contacts_do_as_told(phases: Sequence[Phase]) -> Iterator[Check]:
+def contacts_do_as_assumed(phases: Sequence[Phase]) -> Iterator[Check]:
     """Check that each contact presses, grips, slides or is open as its phase assumes; none without contacts."""
-    tally = Tally("contacts press, grip, slide or stand apart as their phase takes them", "reactions of the bodies")
+    tally = Tally("contacts press, grip, slide or are open as their phase assumes", "reactions of the bodies")
     for phase in phases:
         seen = _Seen(phase)
         for contact in phase.model.contacts:
@@ -399,7 +399,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
     rows = {name: rows_of_constraint(free.motion, name)[0] for name in ending}
     gaps = [row.gap for row in rows.values() if row.gap is not None]
     if any(abs(x) > CARRIED for x in evaluate(gaps, known, fifty_digits())):
-        return ""  # it does not begin in contact: where it does, somebody else says
+        return ""  # it does not begin in contact: another check says where it does
     rates = evaluate([row.velocity for row in rows.values()], known, fifty_digits())
     for name, rate in zip(rows, rates, strict=True):
         if rate > CARRIED * (1 + max(map(abs, rates))):

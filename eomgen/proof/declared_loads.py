@@ -1,4 +1,4 @@
-"""Forces, springs and strings: whether they act as their fields declare."""
+"""Forces, springs and strings at a state -> checks that they act as their fields declare."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_
 
 
 Term = tuple[Scalar, Any]
-"""(what moves, what is done for a unit of it)"""
+"""(a scalar that moves, the work for a unit of it)"""
 Placed = tuple[str | None, tuple[Scalar, ...], Numbers]
 """(body, a place of it as a function of the coordinates, the force there in ground axes)"""
 SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
@@ -202,7 +202,7 @@ class _Declared(InNumbers):
         rate = way_through(self.system, self.state).rates((s,))[0] if c else 0
         yield s, f - c * rate - k * (now - rest)
 
-    # -- what acts on bodies ---------------------------------------------------------------------------------
+    # -- loads on bodies -------------------------------------------------------------------------------------
 
     def pushes(self, acts: Iterable[Act]) -> Pushes:
         """Wrench (moment about the ground's origin, force) of acts on each body."""
@@ -274,7 +274,7 @@ def _between(places: Sequence[Sequence[Scalar]], halves: int) -> tuple[Scalar, .
 #     T = k (l - l_0) + c l' + f(l, l')      on the first along n, on the second the opposite;   V = k (l - l_0)^2 / 2
 #
 # Places and axes are those of the poses, velocities those of the twists. An angle has the whole turns of its body.
-# The laws' own lengths, rates, stretches and loads are what is proven.
+# Lengths, rates, stretches and loads of the laws are proven here.
 
 
 def elements_of(system: System) -> tuple[tuple[Applied, Element], ...]:
@@ -309,7 +309,7 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
     """effort = drive - c s' - k (s - rest), V = k (s - rest)^2 / 2: s from the poses, s' from the twists of both.
 
     Raises:
-        NoValue: the joint turns about several axes, of which no pose tells the angles.
+        NoValue: the joint turns about several axes; a pose does not determine its angles.
     """
     link, scope = system.motion.link(effort.body), system.scope
     law = link.joint.pushes()[effort.variable]
@@ -363,7 +363,7 @@ def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -
 
 
 def _by_whole_turns(angle: Any, other: Any) -> Any:
-    """The angle and as many whole turns as bring it next to another."""
+    """Angle with the number of whole turns that brings it nearest to another."""
     turn = 2 * angle.context.pi
     return angle + turn * round((other - angle) / turn)
 
@@ -434,7 +434,7 @@ class ActingElement(InNumbers):
 
     @cached_property
     def law(self) -> tuple[Any, Any]:
-        """(T, V); V None of what is no spring."""
+        """(T, V); V is None where the element is no spring."""
         element, scope = self.element, self.system.scope
         k, c = self.at((scope.value(element.stiffness), scope.value(element.damping)))
         length, rate = self.measured
@@ -459,7 +459,7 @@ class ActingElement(InNumbers):
             return dot(apart, self.direction)
         return dot(apart, direction_at(apart)) if any(apart) else 0
 
-    # -- what acts -------------------------------------------------------------------------------------------
+    # -- acts ------------------------------------------------------------------------------------------------
 
     def of_pull(self, pull: Any) -> Pushes:
         """Wrench of a pull on each body."""

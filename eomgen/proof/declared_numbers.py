@@ -1,9 +1,7 @@
-"""The numbers and samples of a file, read by another reader.
+"""Model file, the model read from it -> checks that its numbers and samples, in SI, are those of the file, in doubles.
 
-A model's file, the model read from it -> whether its numbers, in SI, are those that stand there, in doubles.
-
-The text is read once more, by tomllib; units are products of the few that stand here, formulas of parameters are worked
-out by Python. What is not understood that way says nothing: our reader's own refusals know more.
+The text is read once more, by tomllib; units are products of the few that stand here, formulas of parameters are
+evaluated by Python. Text that is not understood that way is not checked: our reader's own refusals know more.
 """
 
 from __future__ import annotations
@@ -47,7 +45,7 @@ def numbers_otherwise(data: bytes, model: Model) -> str:
     """Message that names a number which differs between the file and the model; "" where all agree."""
     try:
         found = tomllib.loads(data.decode("utf-8-sig").replace("\r\n", "\n"))
-    except (ValueError, RecursionError):  # what our reader forgives
+    except (ValueError, RecursionError):  # our reader accepts more
         return ""
     return first_wrong((*_parameters(found, model), *_starts(found, model)))
 

@@ -1,15 +1,15 @@
-"""Degrees of freedom, closed constraints, and states beside a state.
+"""Degrees of freedom, constraints that keep a start value, and states near a state.
 
-Constraints, what was counted -> whether degrees of freedom and redundant rows are so, by the rank of differences.
+Constraints, counts -> check of the degrees of freedom and redundant rows, by the rank of differences.
 
-J of every row that moves something: of a gap its differences (phi+ - phi-)/2h along the rates of the coordinates, of a
-row without a gap what its velocity has for each speed; at a state in which the constraints hold, drawn by another lot.
+J of every row that restricts the motion: for a gap its differences (phi+ - phi-)/2h along the rates of the coordinates,
+for a row without a gap the coefficients of its velocity; at a random state in which the constraints hold.
 
     f = nu - rank J,   rank of the rows that are not redundant = rank J,   a redundant row lies in the rows of its
     constraints
 
-A row that only reacts has J = 0. Of a structure the rank is that of the forces and moments of all reactions in doubles.
-What is printed is read again, and says what machines get.
+A row that only reacts has J = 0. The rank of a structure is that of the forces and moments of all reactions in doubles.
+Printed lines are read back, and must agree with the entries for machines.
 """
 
 from __future__ import annotations
@@ -181,7 +181,7 @@ def _by_differences(constraints: Constraints, state: State, found: Freedom) -> s
     still = [row for row in constraints.rows if row.identical and row.gap is not None]
     for row, line in zip(still, _lines(constraints, still, state), strict=True):
         if max(map(abs, line), default=0.0) > DIFFERENCE_AT_50:
-            return f"row {row.number} of '{row.constraint}' restricts the motion, and is told only to react"
+            return f"row {row.number} of '{row.constraint}' restricts the motion, and is reported only to react"
     rows = [row for row in constraints.rows if not row.identical]
     J = {(row.constraint, row.number): line for row, line in zip(rows, _lines(constraints, rows, state), strict=True)}
     whole = _rank(J.values())
@@ -231,14 +231,14 @@ def _moved(constraints: Constraints, state: State, by: Sequence[Any]) -> State:
     return {q: state[q] + x for q, x in zip(constraints.motion.scope.symbols.q, by, strict=True)}
 
 
-# -------- kept constraints -------------------------------------------------------------------------------------------
-# System, state -> whether what stays as at the start is closed there.
+# -------- constraints that keep a start value ------------------------------------------------------------------------
+# System, state -> check that constraints which keep a value of the start are satisfied there.
 #
 # phi(q_0, t = 0) = 0,   q_0 as the coordinates are declared to start, quaternions of length 1
 
 
 def rows_that_stay(system: System) -> tuple[tuple[Row, Scalar], ...]:
-    """The rows whose constraints say only that something stays as it is at the start, with their gaps."""
+    """Rows of constraints that keep a value of the start, with their gaps."""
     constraints = system.scope.model.constraints
     named = ((row, row.gap) for row in system.constraints.rows if row.constraint in constraints and row.gap is not None)
     return tuple((row, gap) for row, gap in named if constraints[row.constraint].stays(row.component))
@@ -299,8 +299,7 @@ def _declared_start(scope: Scope, state: State) -> dict[Any, Any]:
 
 
 # -------- nearby ----------------------------------------------------------------------------------------------
-# Equations, a state -> states beside it that the constraints allow, and how the system moves on from each, at 50
-# digits.
+# Equations, a state -> states near it that the constraints allow, and the motion from each, with 50 digits.
 #
 #     phi(q) = 0,   J u + sigma = 0               dependent coordinates and speeds follow the independent ones
 #     M a - J^T lam = forcing,   J a + gamma = 0
@@ -373,11 +372,11 @@ class Going:
 
 @dataclass(frozen=True)
 class Nearby:
-    """The states beside one of them.
+    """States near a given one.
 
     Args:
         equations: of motion.
-        relations: what vanishes between positions.
+        relations: scalars of the positions that must vanish.
         numbers: the state, all symbols with 50 digits.
         q, u: the coordinates and speeds that stay independent; driven coordinates are neither these nor sought.
     """
@@ -475,7 +474,7 @@ class Nearby:
             state = {**state, **{q: state[q] + d for q, d in zip(self._dependent_q, step, strict=True)}}
             if all(abs(d) < MET_AT_50 * (1 + abs(state[q])) for q, d in zip(self._dependent_q, step, strict=True)):
                 return state
-        raise NoValue("the constraints do not close beside the state")
+        raise NoValue("the constraints cannot be satisfied near the state")
 
 
 def _first(rows: Sequence[Sequence[Any]], n: int) -> DigitRow | None:

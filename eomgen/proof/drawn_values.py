@@ -1,9 +1,9 @@
-"""Rows of a sweep, its ranges and laws -> whether what is set and what is told of all is of these, in doubles.
+"""Rows of a sweep, its ranges and laws -> checks of the values set, and of the statements on all runs, in doubles.
 
     F(value) = u    u of the run's seed by SplitMix64 (random), one in each stratum (Latin hypercube), one in each of
                     2^k intervals (the first 2^k of a Sobol sequence)
 
-F is the distribution's own function; ranges are counted out run after run.
+F is the cumulative distribution function; ranges are counted out run after run.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ def drawn_otherwise(
         rows: (number, seed, what is set) of each run that is done.
     """
     wrong = (*_ranges(over, draws, rows), *_draws(len(over), laws, draws, design, rows))
-    return checked("what is set in each run is of its ranges and laws", first_wrong(wrong), HOW)
+    return checked("values set in each run are of their ranges and laws", first_wrong(wrong), HOW)
 
 
 def _ranges(over: Mapping[str, Sequence[float]], draws: int, rows: Sequence[Sequence[Any]]) -> Iterator[str]:
@@ -90,20 +90,20 @@ def reported_of_all(
     fine: float,
     requested: Sequence[str],
 ) -> Check:
-    """(how many, least, mean, largest) of each column, and which are called the same in all runs.
+    """Check of count, least, mean and largest value of each column, and of the columns reported the same in all runs.
 
     Args:
-        columns: what is set and asked, by name, a value of each run.
-        summary: what is told of these.
-        critical: what is to change its sign; "" of nothing.
-        fine: of a largest value, what counts as no change.
-        asked: of which columns it is told where they are the same in all runs.
+        columns: values set and requested, by name, one a run.
+        summary: reported count, least, mean and largest value of each.
+        critical: name of the column that must change its sign; "" for none.
+        fine: share of the largest value that counts as no change.
+        requested: columns for which it is reported where they are the same in all runs.
     """
     wrong = (
         *(_summed(name, columns[name], reported) for name, reported in summary.items()),
         *(_remarked(name, columns[name], remarks, name == critical, fine) for name in requested),
     )
-    return checked("what is told of all runs is of their rows", first_wrong(wrong), HOW)
+    return checked("statements on all runs are those of their rows", first_wrong(wrong), HOW)
 
 
 def _summed(name: str, column: Sequence[float | None], reported: Sequence[float | None]) -> str:

@@ -1,6 +1,4 @@
-"""Emitted code -> checks: run, and put back into the equations.
-
-Emitted code, states -> checks: what is computed is put back into the equations that it was made from.
+"""Emitted code, states -> checks: its results are put back into the equations from which it was generated.
 
     q' = N u + nu,    M a - J^T lam = forcing,    J a = -gamma
 
@@ -137,7 +135,7 @@ class RunNumbers:
     gamma: np.ndarray
 
     def left(self, dx: np.ndarray) -> tuple[float, str]:
-        """(what dx leaves of the equations, against the largest of their terms; in which); nan where it is none.
+        """Residual of the equations with dx, relative to the largest of their terms, and the equation; nan without dx.
 
         Raises:
             NoValue: a coefficient, or its square, is beyond doubles.
@@ -254,7 +252,7 @@ def values_agree(
     """Code against the symbols with 50 digits, entry by entry, relative to the largest.
 
     Args:
-        scalars: what it computes, by name, in the order of its results.
+        scalars: quantities that it computes, by name, in the order of its results.
         further: values of symbols that the states do not have: accelerations.
     """
 
@@ -279,7 +277,7 @@ def at_states(
     """A check at states, as many as the work allows.
 
     Args:
-        wrong: what is wrong at a state, or ""; None where the state says nothing.
+        wrong: what is wrong at a state, or ""; None where the state decides nothing.
         cost: graph nodes that one state takes.
     """
     count, work = 0, 0
@@ -314,7 +312,7 @@ class Written:
     Args:
         target: name of the language.
         texts: its files, {path: content}.
-        program, stem, role: what was written, under which names.
+        program, stem, role: the program, and the names under which it was written.
         vectors: the states of its test vectors.
     """
 
@@ -393,7 +391,7 @@ class Judged:
     Args:
         motion: the equations of motion.
         values: of the role "reactions": its outputs by name, in q, u and a.
-        actuators: of the role "inverse": what its outputs act along.
+        actuators: of the role "inverse": coordinates along which its outputs act.
         slopes: of the role "jacobian": (t, x, p, inputs) -> (A, B), solved for in numbers.
         parameters: of the role "regressor": pi, the columns of the first block of `values`; the second is y0.
     """
@@ -422,7 +420,7 @@ class Judged:
         return self._by_symbols(written, code, start, name)
 
     def shipped(self, written: Written) -> Check | None:
-        """The test vectors that are written beside it; None of those that are given accelerations."""
+        """Check of the test vectors that are written with it; None for a function of given accelerations."""
         if not written.vectors or self.actuators or self.parameters is not None:
             return None
         name = f"the test vectors of {written.role.main(written.stem)} are the symbols' numbers"
@@ -460,7 +458,7 @@ class Judged:
         return at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
 
     def _regressor(self, code: Code, at: Iterable[TriedState], name: str, pi: ScalarRow) -> Check:
-        """Every entry against the symbols; and Y pi + y0 put into the equations without inputs, as what pushes."""
+        """Check of every entry against the symbols, and of Y pi + y0 as forces in the equations without inputs."""
         e = self.motion.equations
         still, size, entries = dict.fromkeys(e.symbols.inputs, 0.0), len(e.symbols.u), tuple(self.values.values())
 
@@ -535,7 +533,7 @@ def start_state_tried(t: float, x0: np.ndarray | None, p0: np.ndarray | None) ->
 
 
 # -------- shipped fmu -----------------------------------------------------------------------------------------
-# An FMU as it is shipped -> whether its description says of every variable what its name says.
+# An FMU as it is shipped -> check that its description gives every variable the meaning of its name.
 #
 # der(x) is the derivative of x; the derivatives of the states are all states' and nothing else; each state and
 # parameter starts where it does in the model.
@@ -547,7 +545,7 @@ def fmu_reported(packed: bytes, states: Mapping[str, float], parameters: Mapping
     Args:
         states, parameters: where they start, by name; {} where the model has no start, or no values.
     """
-    name = "the FMU's variables are what their names say, and start as the model does"
+    name = "the FMU's variables have the meaning of their names, and start as the model does"
     return attempted(name, "its description, read back", lambda: _wrong(_description(packed), states, parameters))
 
 

@@ -1,11 +1,9 @@
-"""System, state -> what its free bodies ask for, by Newton and Euler.
-
-System, state -> what its free bodies ask for at any accelerations, in numbers: Newton and Euler for every body.
+"""System, state -> residual of the equations of its free bodies, at any accelerations: Newton and Euler, in numbers.
 
     outward:   w = E w_p + s,   wd = E wd_p + s' + E w_p x s,
                acc = E (acc_p + wd_p x r + w_p x (w_p x r) + 2 w_p x r' + r'')
     inward:    F = inertia - applied - W lam,   carried to the parent
-    r_k        = C_k . F + rotors - what acts at no place:   M a + c - Q - J^T lam
+    r_k        = C_k . F + rotors - forces without a place:   M a + c - Q - J^T lam
 
 s is the spin of a body against its parent and r its place there; their rates along a motion with the accelerations a
 are differences of numbers. No B, no energy, no derivative of a twist is used, and no equation is solved: r is compared
@@ -100,9 +98,9 @@ def demand_of(system: System, state: State, h: Any = STEP) -> Demand:
 
 
 def multipliers_demanded(system: System, state: State, friction: Sequence[Any] = ()) -> dict[tuple[str, int], float]:
-    """lam of every closing and eliminated row, by (constraint, number), for which the free bodies ask for nothing more.
+    """lam of every closing and eliminated row, by (constraint, number), with which the free bodies are in equilibrium.
 
-    Their demand is linear in lam: it is taken without any, and with each alone. Rows that share a force are left out.
+    The residual is linear in lam: it is found without any, and with each alone. Rows that share a force are left out.
 
     Args:
         friction: that of the contacts along the speeds; () where there is none.
@@ -175,7 +173,7 @@ def moved_otherwise(
     known = _of_all_rates(system, free, state)
     needed, J = _demand(free, known), rows_where_closed(free.constraints, known)
     held = np.vstack([J, *_unit_lengths(free, known)])
-    turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # what the rate of J brings is of the size J u^2
+    turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # terms of the rate of J are of the size J u^2
     a = np.abs([float(known[x]) for x in free.scope.symbols.a]) + np.fromiter(turning, float)
     for row, line in zip(free.constraints.closing, J, strict=True):
         if abs(needed.rates[row.constraint, row.number]) > COMPUTED * (1 + abs(line) @ a):
@@ -189,7 +187,7 @@ def moved_otherwise(
     for z in allowed.T:
         if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50) + abs(z @ _rounded(system, free, state, needed)):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
-            return f"the bodies are not in balance along {most.name}"
+            return f"the bodies are not in equilibrium along {most.name}"
     return ""
 
 
@@ -507,14 +505,13 @@ def _in_parts(values: Sequence[Any], length: int) -> list[list[Any]]:
 
 
 # -------- named axes ------------------------------------------------------------------------------------------
-# Balance, state -> whether reactions are what their names say, in numbers.
+# Balance, state -> check that reactions have the meaning of their names, in numbers.
 #
 #     reaction_x|y|z(owner) = R f,   reaction_couple_x|y|z(owner) = R n,      R and the sums of f and n of one body
-#     drive(q) = (M a + c - Q - J^T lam)_q,   by the free bodies, once q is let go
+#     drive(q) = (M a + c - Q - J^T lam)_q,   by the free bodies, with q released
 #
-# Components take random values: a name is linear in them. R is that of the pose of the body at the state; what a
-# component does to a body stands in the axes of its equations, which the balance of the whole in ground axes looks
-# at.
+# Components take random values: a name is linear in them. R is that of the pose of the body at the state; the wrench of
+# a component on a body is in the axes of its equations, which the equilibrium of the whole in ground axes checks.
 
 
 ALONG = {f"reaction_{couple}{axis}": (couple, k) for couple in ("", "couple_") for k, axis in enumerate("xyz")}
@@ -539,7 +536,7 @@ def named_otherwise(balance: Balance, state: State) -> str:
 
 
 def drives_beside(reactions: Reactions) -> dict[str, str]:
-    """{name of a drive: the coordinate} of those that have another way: driven by the model, and no friction beside."""
+    """{name of a drive: its coordinate}, of drives by the model's [coordinates], without friction in the system."""
     system = reactions.balance.system
     if frictions(system):
         return {}

@@ -127,8 +127,8 @@ def mass_matrix(equations: EquationsOfMotion) -> Claim:
 def energy(equations: EquationsOfMotion) -> Claim:
     """d/dt(u . dT/du - T + V) = Q_nc . u + (M a + c - Q) . u - dT/dt + dV/dt, at any a.
 
-    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are of what moves by itself. Where dependent
-    rates follow from constraints that move by themselves, what `_carried_power` says comes in addition.
+    With M a = Q - c + J^T lam it is the energy theorem; dT/dt and dV/dt are those by explicit time and nu. Where
+    dependent rates follow from constraints that depend on time, `_carried_power` is added.
     """
     scope, symbols = equations.system.scope, equations.symbols
     power = given_power(equations)
@@ -147,7 +147,7 @@ def energy_function(equations: EquationsOfMotion) -> Scalar:
 
 
 def given_power(equations: EquationsOfMotion) -> Scalar:
-    """dH/dt but for the constraints' power u . J^T lam: Q_nc . u - dT/dt + dV/dt of what moves by itself."""
+    """dH/dt without the constraints' power u . J^T lam: Q_nc . u - dT/dt + dV/dt by explicit time and nu."""
     system = equations.system
     speeds = equations.symbols.u
     powered = summed([powered_forces(system.loads), equations.friction or (0,) * len(speeds)], len(speeds))

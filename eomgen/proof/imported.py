@@ -1,4 +1,4 @@
-"""Robot files -> whether bodies stand, weigh, move as the file says."""
+"""Robot file, model -> check that bodies stand, weigh and move as the file says."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ if TYPE_CHECKING:
 AXES = {"revolute": 1, "continuous": 1, "prismatic": 1, "screw": 1, "universal": 2, "revolute2": 2}
 FELT = (("damping", "damping"), ("spring_stiffness", "stiffness"))
 SHAPES = ("box", "cylinder", "sphere")
-WATER, YES = 1000.0, ("true", "1")  # kg/m^3, what SDF takes where it is told no density
+WATER, YES = 1000.0, ("true", "1")  # kg/m^3, the density of SDF where none is given
 FIXED: FloatPose = (np.eye(3), np.zeros(3))
 
 
@@ -57,7 +57,7 @@ def sdf_otherwise(text: str | bytes, model: Model) -> str:
 
     try:
         root = ElementTree.fromstring(text.strip())
-    except ElementTree.ParseError:  # what our reader forgives
+    except ElementTree.ParseError:  # our reader accepts more
         return ""
     chosen = next((x for x in root.iter("model") if x.get("name") == model.name), None)
     if chosen is None or _nested(chosen) or _old(root):
@@ -88,7 +88,7 @@ class _Imported:
         self.posed, self.rest = PosedModel(model), PosedModel(model, self._rest())
 
     def _rest(self) -> dict[str, float]:
-        """Every coordinate 0, what nothing holds where it starts."""
+        """Every coordinate 0; a free body stands where it starts."""
         free = [joint for joint in every_joint(self.model) if joint.kind == "free"]
         names = [
             str(x)
@@ -197,13 +197,13 @@ class _Imported:
         yield from posed.follows()
 
     def weighs(self, link: Element) -> str:
-        """Mass, mass centre, inertia; of shapes by their densities where the file asks for that."""
+        """Mass, mass centre, inertia; by the shapes and their densities where the file requests that."""
         name, inertial = self.body(str(link.get("name"))), link.find("inertial")
         if name is None or inertial is None or (inertial.get("auto") in YES and not _all_solid(link)):
             return ""
         due = _by_density(link, inertial) if inertial.get("auto") in YES else _as_said(inertial)
         off = abs(self.posed.weight(name) - due).max()
-        return f"'{name}' weighs otherwise" if off > COMPUTED * (1 + abs(due).max()) else ""
+        return f"'{name}' has another mass, mass centre or inertia" if off > COMPUTED * (1 + abs(due).max()) else ""
 
 
 def _as_said(inertial: Element) -> np.ndarray:
@@ -293,15 +293,15 @@ def _angles(joint: Joint) -> tuple[str, ...]:
 # The file is read once more, by another program, and each joint is taken by itself: the child's pose in its parent's.
 
 
-UNLIMITED = 1e9  # what is written where a format wants a limit and there is none
-LIMITS = {  # as the remark of a coordinate tells them
+UNLIMITED = 1e9  # written where a format needs a limit and there is none
+LIMITS = {  # as in the remark of a coordinate
     "lower": re.compile(r"from (\S+) to "),
     "upper": re.compile(r"from \S+ to (\S+) "),
     "effort": re.compile(r"at most (\S+) N(?:\*m)?(?=,|$)"),
     "velocity": re.compile(r"at most (\S+) (?:rad|m)/s"),
 }
-G = (0.0, 0.0, -9.81)  # of what reads URDF [m/s^2]
-EXACT = ("forces", "stiffness", "armature", "given motions")  # of which nothing else is told to be left out
+G = (0.0, 0.0, -9.81)  # gravity of programs that read URDF [m/s^2]
+EXACT = ("forces", "stiffness", "armature", "given motions")  # of which nothing else is reported as left out
 TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
 
 
@@ -311,7 +311,7 @@ def imported_otherwise(text: str | bytes, model: Model) -> str:
 
     try:
         root = ElementTree.fromstring(text.strip())
-    except ElementTree.ParseError:  # what our reader forgives
+    except ElementTree.ParseError:  # our reader accepts more
         return ""
     joints = [joint for joint in root.iter("joint") if joint.find("child") is not None]
     proof = _ImportedUrdf(model, joints)
@@ -324,7 +324,7 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     """Message for a declared part of a model that its URDF neither contains nor reports as left out; "".
 
     Args:
-        left_out: {what URDF cannot say: where it is}.
+        left_out: {feature that URDF cannot express: where it is}.
     """
     from xml.etree import ElementTree
 
@@ -351,12 +351,12 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     }
     for what, names in due.items():
         if missing := [name for name in names if name not in left_out.get(what, ())]:
-            return f"{what} of '{missing[0]}' are not said, and not told to be left out"
+            return f"{what} of '{missing[0]}' are not in the file, and not reported as left out"
         if what in EXACT and (more := [name for name in left_out.get(what, ()) if name not in names]):
-            return f"{what} of '{more[0]}' are told to be left out, and are said, or are not there"
+            return f"{what} of '{more[0]}' are reported as left out, and are in the file, or are not there"
     for what, (names, there) in said.items():
         if len(names) - there != len({*left_out.get(what, ())} & {*names}):
-            return f"{what}: {len(names)}, of which {there} are said and {len(left_out.get(what, ()))} are left out"
+            return f"{what}: {len(names)}, {there} in the file and {len(left_out.get(what, ()))} are left out"
     return ""
 
 
@@ -436,10 +436,10 @@ class _ImportedUrdf:
             return ""
         due = 0.0 if dynamics is None else float(dynamics.get("damping", 0))
         found = self.posed.number(getattr(self.model.bodies[child].joint, "damping", None))
-        return "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"the joint of '{child}' is damped otherwise"
+        return "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"the joint of '{child}' has another damping"
 
     def bounded(self, joint: Element) -> str:
-        """The limits of a hinge or slide, as the remark of its coordinate tells them."""
+        """Limits of a hinge or slide, as the remark of its coordinate says."""
         q, limit = self.coordinate(joint), joint.find("limit")
         if q is None:
             return ""
@@ -455,7 +455,7 @@ class _ImportedUrdf:
         for key, none in else_none.items():
             found, wanted = float(reported[key][0]) if reported[key] else none, due.get(key, none)
             if abs(found - wanted) > COMPUTED * abs(wanted) and not (key not in due and not reported[key]):
-                return f"the limits of '{q}' are told otherwise"
+                return f"the limits of '{q}' are reported differently"
         return ""
 
     def weighs(self, link: Element) -> str:
@@ -471,7 +471,7 @@ class _ImportedUrdf:
         I = np.array([[0.0 if tensor is None else float(tensor.get(key, 0)) for key in row] for row in keys])
         due = np.array([m, *(m * p), *(R @ I @ R.T).ravel()])
         off = abs(self.posed.weight(name) - due).max()
-        return f"'{name}' weighs otherwise" if off > COMPUTED * (1 + abs(due).max()) else ""
+        return f"'{name}' has another mass, mass centre or inertia" if off > COMPUTED * (1 + abs(due).max()) else ""
 
 
 def _mimics(joints: list[Element]) -> Iterator[tuple[Element, str]]:

@@ -23,23 +23,23 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
-JOINT_WRAP, SITE_WRAP = 1, 3  # of what a tendon is of,
-JOINT, IN_PARENT, TENDON, SITE = 0, 1, 3, 4  # of what a motor pulls,
-FIXED, AFFINE = 0, 1  # and how
+JOINT_WRAP, SITE_WRAP = 1, 3  # of the path of a tendon
+JOINT, IN_PARENT, TENDON, SITE = 0, 1, 3, 4  # of the target of a motor
+FIXED, AFFINE = 0, 1  # of its gain and bias
 OTHER_THINGS = "motors on other things than joints, tendons between two places, and sites"
 NO_LAWS, OFF, STANDING = "motors that are no linear laws", "motors that are switched off", "motors on the ground"
 LIMITS = ("actuator_ctrl", "actuator_force", "actuator_act", "jnt_actfrc", "tendon_actfrc")
 PUSHED = 0.7  # of every input
-# what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
+# left out; they act by constraints of MuJoCo alone, which are in none of the forces that are compared
 OF_CONSTRAINTS = (
     *("limits of joints", "limits of tendons", "limits of free and ball joints", "limits of motors", "frictionloss"),
     *("geoms that touch", "pairs of geoms that touch", "friction of free and ball joints", "inputs of motors"),
     *("softness of equalities", "equalities that are switched off", "motion of a mocap body"),
 )
 
-DELAYS = "delays of motors"  # what pushes nothing where inputs are and were 0
+DELAYS = "delays of motors"  # act with no force where inputs are and were 0
 NAMED = (OTHER_THINGS, NO_LAWS, OFF, STANDING)  # of motors each by its name: they are silenced, and the others compared
-Left = tuple[str, tuple[str, ...]]  # what of a file has no counterpart, and each of it
+Left = tuple[str, tuple[str, ...]]  # kind of thing without a counterpart, and the names of each
 
 
 def mjcf_otherwise(
@@ -50,7 +50,7 @@ def mjcf_otherwise(
     Args:
         source: the file as it was read, where `path` is a pipe.
         equations: of the model; None: no forces are compared.
-        left_out: what of the file changes the motion and has no counterpart.
+        left_out: things of the file that change the motion and have no counterpart.
     """
     mujoco: Any = importlib.import_module("mujoco")
     try:
@@ -67,7 +67,7 @@ def mjcf_otherwise(
 
 
 class _Compiled:
-    """MuJoCo's model beside ours, at the same positions and speeds."""
+    """MuJoCo's model and ours, at the same positions and speeds."""
 
     def __init__(self, mujoco: Any, m: Any, model: Model) -> None:
         self.mujoco, self.m, self.model, self.posed = mujoco, m, model, PosedModel(model)
@@ -182,7 +182,11 @@ class _Compiled:
             R = rows.reshape(3, 3)
             I = R @ np.diag(self.m.body_inertia[k]) @ R.T
             due = np.array([m, *(m * self.m.body_ipos[k]), *I.ravel()])
-            yield f"'{name}' weighs otherwise" if abs(self.posed.weight(name) - due).max() > _fine(due) else ""
+            yield (
+                f"'{name}' has another mass, mass centre or inertia"
+                if abs(self.posed.weight(name) - due).max() > _fine(due)
+                else ""
+            )
 
     def accelerates(self, equations: EquationsOfMotion, push: float | None) -> Iterator[str]:
         """M, and Q - c with every input so large; None where something else pushes."""
@@ -217,7 +221,7 @@ class _Compiled:
         M, forces = found[: n * n].reshape(n, n), found[n * n :]
         full, due = full[np.ix_(at, at)], due[at]
         for k, name in enumerate(order):
-            yield f"the inertia that {name} meets is otherwise" if abs(M[k] - full[k]).max() > _fine(full) else ""
+            yield f"the inertia that {name} meets is another one" if abs(M[k] - full[k]).max() > _fine(full) else ""
             off = push is not None and abs(forces[k] - due[k]) > _fine(due)
             yield f"{name} is pushed by {forces[k]:.9g}, not {due[k]:.9g}" if off else ""
 

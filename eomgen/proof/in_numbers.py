@@ -59,7 +59,7 @@ def with_inputs(system: System, known: State) -> State:
 
 @dataclass(frozen=True)
 class InNumbers:
-    """A system at a state; what stands in it has a value, or NoValue is raised."""
+    """System at a state; its quantities have a value there, or NoValue is raised."""
 
     system: System
     state: State
@@ -133,7 +133,7 @@ def add_push(pushes: Pushes, body: str | None, moment: Numbers, force: Numbers) 
 
 
 def pushed_otherwise(found: Pushes, due: Pushes, size: Any) -> str:
-    """The first body that is pushed otherwise than is due, where forces times arms are of some size; ""."""
+    """First body on which a wrench differs from the due one, relative to the size of forces times arms; ""."""
     nothing = (ZERO, ZERO)
     for body in dict.fromkeys((*found, *due)):
         pairs = zip(found.get(body, nothing), due.get(body, nothing), strict=True)
@@ -148,7 +148,7 @@ class Way:
     """The states of a motion a step h before an instant, at it, and a step after.
 
     Args:
-        side: 1 or -1: at it, and one, two and three steps after or before, where what is given bends at the instant.
+        side: 1 or -1: at it, and one, two and three steps after or before, where a given function has a corner there.
     """
 
     states: tuple[State, ...]
@@ -216,7 +216,7 @@ def instant_of(system: System, t: float) -> Any:
 
 
 def _side(system: System, state: State) -> int:
-    """1 or -1: at a sample of what is given a motion is differentiated inside the samples; 0: elsewhere."""
+    """1 or -1 at the first or last sample of a given function, to differentiate inside the samples; 0 elsewhere."""
     t, knots = state.get(system.symbols.t, 0), _times_of_samples(system)
     if not any(abs(x - t) < ZERO_AT_50 for times in knots for x in map(fifty_digits().number, times)):
         return 0

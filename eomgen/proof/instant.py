@@ -79,8 +79,8 @@ def instant_checks(
     proof = _Proof(state)
     checks = [
         ("the degrees of freedom are those that the gaps of the constraints leave", proof.wrong_degrees_of_freedom),
-        ("the constraints stay closed along the motion", proof.wrong_constraints),
-        ("what is given holds", proof.wrong_given),
+        ("the constraints are satisfied along the motion", proof.wrong_constraints),
+        ("given velocities and accelerations hold", proof.wrong_given),
         ("velocities and accelerations of points are the differences of their places", proof.wrong_points),
         ("spins and angular accelerations are the differences of the bodies' axes", proof.wrong_fields),
         ("centres of rotation have no velocity against each other", proof.wrong_centers),
@@ -150,7 +150,7 @@ class _Proof:
     """Tests of a kinematic state; each gives what is wrong in words, "", or None where there is nothing to check.
 
     Args:
-        state: what is printed.
+        state: the printed state.
     """
 
     state: KinematicState
@@ -238,7 +238,7 @@ class _Proof:
         """Tolerance of the state's equations; the state may be known in doubles only."""
         return DIFFERENCE_AT_50 if self.state.exact and not self.state.rounded else COMPUTED
 
-    # -- constraints and what is given ------------------------------------------------------------------------------
+    # -- constraints and given equations ----------------------------------------------------------------------------
 
     def wrong_constraints(self) -> str | None:
         """phi stays 0: its first and second differences; of velocity rows W^T xi + s_t and its difference."""
@@ -335,7 +335,7 @@ class _Proof:
         return "" if looked else None
 
     def _points_of(self, motion: BodyMotion, seen: Seen) -> Iterator[tuple[str, Sequence[Any], int]]:
-        """(what, what vanishes there, of which order)."""
+        """(name, vector that vanishes there, order of its derivative)."""
         if motion.center is not None:
             yield "the centre", seen.velocity(self.here(motion.center)), 1
         if motion.pole is not None and self.accelerated:
@@ -422,7 +422,7 @@ class _Proof:
 
 
 def _turning(rate: Matrix, R: Matrix) -> Numbers:
-    """The spin of R' R^T, and the angular acceleration of R'' R^T: half of what is skew."""
+    """Angular velocity by the skew part of R' R^T, and angular acceleration by that of R'' R^T."""
     A = product(rate, transposed(R))
     half = fifty_digits().number(1) / 2
     return times(half, (A[2][1] - A[1][2], A[0][2] - A[2][0], A[1][0] - A[0][1]))
@@ -473,7 +473,7 @@ def _degrees_of_freedom_left(system: System, values: Mapping[Node, Any]) -> int:
 
 
 # -------- second definitions ----------------------------------------------------------------------------------
-# A system at a state in numbers -> what output functions are worth there by their second definitions.
+# A system at a state in numbers -> values of output functions there by their second definitions.
 #
 # Poses and masses alone are evaluated, at the state and a moment before and after it, with 50 digits:
 #
@@ -525,7 +525,7 @@ class NearbyStates:
     def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Numbers, Numbers]]:
         """(m, r, v): with P the integral of d d^T dm about the mass centre C, at C +- e_i and C +- (e_i + e_j)
 
-            m_i = (P_ii - sum_j P_ij)/2,     m_ij = P_ij/2,     and at C what is left of m.
+            m_i = (P_ii - sum_j P_ij)/2,     m_ij = P_ij/2,     and at C the rest of m.
 
         Some of these masses are negative; energy, momentum and moments of inertia are linear in them.
         """
@@ -618,7 +618,7 @@ class NearbyStates:
         return drive_demanded(self.state.equations.system, coordinate, self.state.values | self.state.unknowns)[0]
 
     def held(self, constraint: str) -> Any:
-        """lam of a constraint of one row, by the balance of the free bodies on which all constraints push."""
+        """lam of a constraint of one row, by the free bodies, on which all constraints act."""
         equations, known = self.state.equations, self.state.values | self.state.unknowns
         friction = evaluate(equations.friction or (), known, fifty_digits())
         found = multipliers_demanded(equations.system, known, friction)
@@ -661,7 +661,7 @@ def second_definition(state: NumericState, call: Call) -> str:
         DerivationError: it has no meaning there.
     """
     second = FUNCTIONS[call.name].second
-    assert second is not None, "asked of those that have one"
+    assert second is not None, "only for functions that have one"
     if any(abs(x) > LARGEST_AT_50 for x in state.numbers.values()):
         raise NoValue("coordinates or speeds too large for differences")
     found = state.number(Quantities(state.equations.system).value(call))

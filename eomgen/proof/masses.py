@@ -1,4 +1,4 @@
-"""Bodies, what is stated of their masses -> checks: each shape against a quadrature of all that it fills.
+"""Bodies, stated mass properties -> checks: each shape against a quadrature of the points that it fills.
 
 A shape is the image of [0, 1]^d under maps of its own (`cells`), which know nothing of mass or inertia. With weights
 w of Gauss and Legendre times the measure of the map, and from them alone,
@@ -50,7 +50,7 @@ class Stated:
         bodies: by name, of which the sum is taken.
         in_ground: in ground axes; else in those of the one body.
         point: about which, in these axes.
-        values: by name without what they are of: "m", "x_C", "I_xx", "J_xy", "I_1", "k_1", "P_x", "J_P", "J_axis".
+        values: by name without its argument: "m", "x_C", "I_xx", "J_xy", "I_1", "k_1", "P_x", "J_P", "J_axis".
         axes: the principal axes, the rows of R, in numbers; None where they are not known.
         axis: (a point of it, its direction) of "J_axis".
     """
@@ -105,7 +105,7 @@ def other_masses(motion: Motion) -> Iterator[Check]:
 
 
 def tried(scope: Scope) -> dict[Node, float]:
-    """Values of parameters without one, and somewhere for what moves: what is stated holds at any orientation."""
+    """Values of parameters without one, and of coordinates: mass properties hold at any orientation."""
     rng, symbols = Random(3), scope.symbols
     known = {x: float(v) for x, v in values_of_parameters(scope, rng).items()}
     known |= {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
@@ -163,7 +163,7 @@ def _measure(slopes: np.ndarray) -> np.ndarray:
 
 
 def _moments_of(mass: MassProperties, numbers: Any) -> np.ndarray:
-    """S of what is stated: P = tr(I) 1 / 2 - I + m c c^T."""
+    """S of the stated values: P = tr(I) 1 / 2 - I + m c c^T."""
     m, *flat = numbers((mass.m, *mass.com, *(x for row in mass.I for x in row)))
     c, I = np.array(flat[:3]), np.reshape(flat[3:], (3, 3))
     P = np.trace(I) / 2 * np.eye(3) - I + m * np.outer(c, c)
@@ -248,7 +248,7 @@ class _Proof:
     # -- bodies ----------------------------------------------------------------------------------------------
 
     def own(self, body: str) -> np.ndarray:
-        """S of a body about its origin, its axes: by quadrature; what is given by numbers as it is given."""
+        """S of a body about its origin, in its axes: by quadrature of shapes; declared numbers as they are."""
         if body not in self._known:
             part = self.motion.scope.model.bodies[body]
             if part.parts is not None:
@@ -288,7 +288,7 @@ class _Proof:
         densities = [self.numbers((p.mass.m,))[0] / filled(p.piece.shape, self.value)[0] for p in shared]
         return f"the densities of '{body}' differ" if np.ptp(densities) > COMPUTED * max(map(abs, densities)) else ""
 
-    # -- what is stated --------------------------------------------------------------------------------------
+    # -- stated values ---------------------------------------------------------------------------------------
 
     def about(self, stated: Stated, point: Sequence[float] | np.ndarray) -> np.ndarray:
         """S of its bodies about a point, in its axes."""
@@ -301,7 +301,7 @@ class _Proof:
         return S
 
     def wrong(self, stated: Stated) -> Iterator[tuple[str, str]]:
-        """(name, difference) of what is not as the points of the bodies say.
+        """(name, difference) of stated values that are not those of the points of the bodies.
 
         Raises:
             NoValue: doubles do not hold it.
@@ -311,12 +311,12 @@ class _Proof:
         found = dict(zip(names, self.numbers([stated.values[name] for name in names]), strict=True))
         for name, x in _in_order(found).items():
             kind = name.partition("_")[0]
-            power = 2 if kind == "k" else 1  # a root of what is 0 but for rounding is no rounding
+            power = 2 if kind == "k" else 1  # the root of a rounding error is no rounding error
             if not abs(x**power - expected[name] ** power) <= COMPUTED * sizes[kind] ** power:
                 yield name, f": {x:.10g} against {expected[name]:.10g}"
 
     def _expected(self, stated: Stated) -> tuple[dict[str, float], dict[str, float]]:
-        """(each value, what is large for its kind)"""
+        """(each value, the size of its kind)"""
         origin, S = self.about(stated, (0, 0, 0)), self.about(stated, self.numbers(stated.point))
         m, P = S[3, 3], S[:3, :3]
         if not np.all(np.abs(np.stack([origin, S])) < LARGEST_SQUARED):

@@ -1,7 +1,4 @@
-"""A run -> checks: its steps, energy, constraints and norms.
-
-A run -> checks: the code that ran, its steps, the energy, the constraints and the norms, all at states that it visited.
-"""
+"""Run -> checks: the code that ran, its steps, the energy, the constraints and the norms, at states that it visited."""
 
 from __future__ import annotations
 
@@ -45,10 +42,10 @@ class Leg:
     Args:
         equations, p: its equations, and the parameters' values.
         code: the right-hand side that ran.
-        t, x: n instants in order, those asked for and the integrator's steps, and the states there.
+        t, x: n instants in order, the requested ones and the integrator's steps, and the states there.
         carried: starts and ends of singular crossings, in which nothing was integrated.
         pulled: whether its constraints were pulled together by Baumgarte's rows.
-        known: what was compiled of its equations, for all runs by them.
+        known: compiled functions of its equations, for all runs by them.
     """
 
     equations: EquationsOfMotion
@@ -89,8 +86,8 @@ class Promise:
     Args:
         rtol, atol: tolerances of the run.
         steps: how many it took.
-        projected: whether each of them ended on the constraints: what opens does not add up.
-        levelled: whether each of them ended on the level of the energy of the start, where speeds say enough of it.
+        projected: True if each step was projected onto the constraints, so that their errors do not add up.
+        levelled: True if each step was put back on the energy of the start, where the speeds allow it.
     """
 
     rtol: float
@@ -157,7 +154,7 @@ def _code_of(leg: Leg, name: str) -> Check:
 
 def _steps(legs: Sequence[Leg], promise: Promise) -> Check:
     """Check of steps, repeated in two halves: |difference| <= 10 (rtol |x| + atol)."""
-    name, how = "steps taken again from states of the run end where it came", f"{EXPLICIT}, half steps"
+    name, how = "steps repeated from states of the run end at its next states", f"{EXPLICIT}, half steps"
     size = max(float(np.max(np.abs(leg.x), initial=0.0)) for leg in legs)
     limit, judged = promise.of_one_step(size), 0
     for leg in legs:
@@ -216,7 +213,7 @@ def energy_kept(legs: Sequence[Leg], promise: Promise) -> Check:
 
 
 def _level(legs: Sequence[Leg], promise: Promise) -> Check | None:
-    """|E - E(0)| <= rounding of E_max at every step that ends with a kinetic energy worth the name."""
+    """|E - E(0)| <= rounding of E_max at every step whose kinetic energy is not negligible."""
     if not promise.levelled:
         return None
     name, how = "speeds put the energy on the level of the start", "T and V at the steps"
@@ -260,7 +257,7 @@ def _constraints(legs: Sequence[Leg], promise: Promise) -> Check | None:
 
     Where it is not, 10 (rtol |q| + atol) steps and 10 (rtol |u| + atol) steps.
     """
-    name, how = "the constraints stay closed", "gaps and their velocities at the steps, eliminated rows too"
+    name, how = "the constraints are satisfied", "gaps and their velocities at the steps, eliminated rows too"
     judged = 0
     for leg in legs:
         rows = [row for row in leg.equations.system.constraints.rows if not row.identical]
@@ -316,13 +313,13 @@ def _function(leg: Leg, scalars: tuple[Scalar, ...]) -> np.ndarray:
 
 
 # -------- power -----------------------------------------------------------------------------------------------
-# Equations, states along a motion -> what its energy does: H - H(0) against the integral of the power.
+# Equations, states along a motion -> check of its energy: H - H(0) against the integral of the power.
 #
 #     H = u . dT/du - T + V    (T + V where nothing moves by itself)
-#     dH/dt = Q_nc . u + u . J^T lam + d(V - T)/dt of what moves by itself
+#     dH/dt = Q_nc . u + u . J^T lam + d(V - T)/dt by explicit time and driven coordinates
 #
 # The integral is taken along the motion by an explicit method of order 8, one step from each state to the next, with
-# the error that its formulas of orders 5 and 3 tell.
+# the error estimated by its formulas of orders 5 and 3.
 
 
 Rates = Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -336,7 +333,7 @@ class Energies:
     Args:
         p: the parameters' values.
         pulled: whether the constraints take power by being open: Baumgarte's rows.
-        known: what was compiled of the equations, whatever the parameters' values.
+        known: compiled functions of the equations, for any values of the parameters.
     """
 
     equations: EquationsOfMotion
@@ -346,7 +343,7 @@ class Energies:
 
     @cached_property
     def power(self) -> Scalar:
-        """dH/dt = Q_nc . u + u . J^T lam + what moves by itself."""
+        """dH/dt = Q_nc . u + u . J^T lam + d(V - T)/dt by explicit time and driven coordinates."""
         equations = self.equations
         found = given_power(equations)
         for sigma, row, lam in zip(equations.sigma, equations.J, equations.symbols.lam, strict=True):
@@ -414,7 +411,7 @@ def followed(
 # -------- energies --------------------------------------------------------------------------------------------
 # System, state -> whether T and V are those of its bodies: their constant parts, which no equation of motion knows.
 #
-#     T = sum of (m v_C . v_C + w . I w)/2 by the twists,      V = - sum of m g . r_C, and what else has one
+#     T = sum of (m v_C . v_C + w . I w)/2 by the twists,      V = - sum of m g . r_C, and the other potentials
 #
 # Rotors, springs of joints and given energies are taken from their fields.
 

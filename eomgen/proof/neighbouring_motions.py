@@ -1,7 +1,7 @@
-"""Small motions -> what motions beside their reference do, by differences of the equations of motion.
+"""Small motions -> motions near their reference, by differences of the equations of motion.
 
-A motion starts at q_0 + h d, u_0 + h e, inputs w_0 + h f; the equations of motion say how it goes on. Nothing of how
-constraints are taken out is used, and no derivative.
+A motion starts at q_0 + h d, u_0 + h e, inputs w_0 + h f; the equations of motion say how it goes on. The elimination
+of constraints and derivatives are not used.
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class SmallTurn:
 
 @dataclass(frozen=True)
 class Differences:
-    """Motions beside the reference of small motions.
+    """Motions near the reference of small motions.
 
     Args:
         small: the small motions.
@@ -109,7 +109,7 @@ class Differences:
 
     @cached_property
     def moved(self) -> tuple[Node, ...]:
-        """Every coordinate that carries the motion, those that are not asked too."""
+        """Every coordinate that carries the motion, those that are not requested too."""
         return tuple(x for x in self.small.whole.coordinates if x not in self.small.left_out)
 
     @property
@@ -224,7 +224,7 @@ class Differences:
         return late + early - 2 * here, q1, u
 
     def _rates(self, state: Numbers50) -> Going:
-        """The rates of the coordinates at a state; of accelerations nothing is asked."""
+        """Rates of the coordinates at a state; accelerations are not needed."""
         symbols, scope = self.nearby.equations.symbols, self.nearby.equations.system.scope
         q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True))
         return Going(state, q1, dict.fromkeys(symbols.q, 0), dict.fromkeys(symbols.u, 0))

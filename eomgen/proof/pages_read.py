@@ -1,8 +1,6 @@
-r"""LaTeX and Markdown as they leave -> numbers.
+r"""Page of LaTeX or Markdown as it is written -> its blocks in order: headings, words, formulas, tables; and numbers.
 
-A page as it leaves, LaTeX or Markdown -> what stands on it, one after the other: headings, words, formulas, tables.
-
-A reader of its own: it knows what \subsection*, $$ and | mean, and nothing of what wrote them.
+The reader knows the meaning of \subsection*, $$ and |, and shares nothing with the writer.
 """
 
 from __future__ import annotations
@@ -67,7 +65,7 @@ class PageBlock:
         words: of a heading and a paragraph.
         sides: of a formula.
         rows: of a table, its head first.
-        lines: what stands as it is.
+        lines: lines of a block that is printed verbatim.
     """
 
     kind: str
@@ -171,7 +169,7 @@ def displayed(rows: str) -> Iterator[PageBlock]:
 
 
 def _cells(row: str, between: str) -> list[str]:
-    """The cells of a row; what is escaped or stands in a formula parts none."""
+    """Cells of a row; a bar that is escaped or stands in a formula does not separate cells."""
     found, in_formula, k = [""], False, 0
     while k < len(row):
         step = 2 if row[k] == "\\" else 1
@@ -260,7 +258,7 @@ def unlike_words(found: Sequence[PagePart], wanted: str) -> int | None:
 
 
 # -------- typeset ---------------------------------------------------------------------------------------------
-# Formulas as they are typeset -> numbers: a reader of LaTeX that shares nothing with what sets it.
+# Formulas as they are typeset -> numbers: a reader of LaTeX that shares nothing with the writer.
 #
 # It reads as a person does: what stands side by side is multiplied, \sin x ends where the next function, sign or
 # bracket begins, a\big/b is a quotient, dots over a letter are rates of it.
@@ -334,7 +332,7 @@ class SetLetters:
 
     @property
     def alike(self) -> list[str]:
-        """Names of symbols that nobody can tell apart."""
+        """Names of symbols that look the same in print."""
         return [" and ".join(names) for names in self._known.values() if len(names) > 1]
 
     def at(self, tokens: Tokens, k: int) -> tuple[str, int]:
@@ -567,7 +565,7 @@ def names_of_tree(tree: Tree) -> Iterable[str]:
             yield from names_of_tree(part)
 
 
-def worth(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
+def value_of(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
     """A tree in numbers.
 
     Raises:
@@ -580,8 +578,8 @@ def worth(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
         return values[parts[0]]
     if op == "select":
         condition, if_true, if_false = parts
-        return worth(if_true if worth(condition, values, arithmetic) else if_false, values, arithmetic)
-    known = [worth(part, values, arithmetic) for part in parts]
+        return value_of(if_true if value_of(condition, values, arithmetic) else if_false, values, arithmetic)
+    known = [value_of(part, values, arithmetic) for part in parts]
     if op == "sum":
         return sum(known[1:], start=known[0])
     if op == "product":

@@ -1,4 +1,4 @@
-"""Motion -> whether what all rests on is of the file: parameters by its reader's arithmetic, shapes by filling."""
+"""Motion -> checks of the data: parameters by the reader's arithmetic, shapes by quadrature."""
 
 from __future__ import annotations
 
@@ -29,4 +29,4 @@ def other_parameters(scope: Scope) -> Iterator[Check]:
     pairs = [(name, there.get(name, math.nan), float(right)) for name, right in known.items()]
     wrong = [f"'{name}': {x:.10g} for {y:.10g}" for name, x, y in pairs if not abs(x - y) <= COMPUTED * abs(y)]
     if wrong:
-        yield checked("parameters are worth what the file says", "; ".join(wrong[:3]), "floating point")
+        yield checked("parameters have the values of the file", "; ".join(wrong[:3]), "floating point")

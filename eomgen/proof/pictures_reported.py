@@ -1,11 +1,11 @@
 """Picture of a state -> check: bodies, springs and arrows have the places and lengths of the model.
 
-    R^T (r - p) of what is drawn of a body fills the box of its shape, by places inside it as its mass is summed up;
-    without a shape it joins the body's own places, and where others hang on it, and is as round as it rolls;
-    what has no two places is an ellipsoid of its mass and moments, A = m (b^2 + c^2)/5, a dot or a symbol
+    R^T (r - p) of the drawing of a body fills the box of its shape, by places inside it as its mass is summed up;
+    without a shape it joins the body's own places and those of its joints, and is as round as it rolls;
+    a body without two places is an ellipsoid of its mass and moments, A = m (b^2 + c^2)/5, a dot or a symbol
     a spring goes from its one end to the other;   an arrow is k F, one k for all of one kind, and is at the place of F
 
-What is drawn is taken as it is: places on the ground, from the strokes of a picture, or the marks that a page is told.
+The drawing is read as it is: places on the ground, from the strokes of a picture, or the marks of a page.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW, STANDS_FOR_A_MASS
 
-NAME = "what is drawn is where the model says"
+NAME = "drawn parts are where the model says"
 HOW = "poses and places in 50 digits, shapes by places inside them"
 LARGE_SYMBOL = 0.5  # of all that is drawn; a symbol is a tenth of it
 GRID = np.linspace(0.0, 1.0, 9)  # places inside a shape, along each of its parameters
@@ -310,7 +310,7 @@ class _Shown(InNumbers):
         if len(right) != 2:
             return "there is no such spring"
         off = max(float(np.linalg.norm(a - b)) for a, b in zip(self.picture.ends[name], right, strict=True))
-        return f"ends {off:.4g} m beside its points" if off > self.near else ""
+        return f"ends {off:.4g} m from its points" if off > self.near else ""
 
     def _ends_of(self, name: str) -> list[np.ndarray]:
         """Ends of a spring or damper: its points, or the seat of its joint and the place where the body is held."""
@@ -342,7 +342,7 @@ class _Shown(InNumbers):
     def wrong_point(self, name: str) -> str:
         right = self.placed(self.scene.position(self.scene.place(name)))
         off = float(np.linalg.norm(self.picture.points[name] - right))
-        return f"{off:.4g} m beside its place" if off > self.near else ""
+        return f"{off:.4g} m from its place" if off > self.near else ""
 
     def wrong_length(self, name: str, drawn: float) -> str:
         """Message if a dimension line has another length than its label; ""."""
@@ -359,7 +359,7 @@ class _Shown(InNumbers):
         symbols = self.system.symbols
         found = {**symbols.parameters, **{q.name: q for q in symbols.q}}
         if name not in found:
-            raise NoValue("nobody knows it")
+            raise NoValue("it is not known")
         return float(self.one(found[name]))
 
     def wrong_arrows(self, role: str) -> str:
@@ -428,7 +428,7 @@ class _Shown(InNumbers):
         return None if at is None else (at, total)
 
 
-# -- what a page is told -------------------------------------------------------------------------------------------
+# -- the scene of a page ------------------------------------------------------------------------------------------
 
 
 def picture_of_page(reported: Mapping[str, Any], slots: Sequence[float]) -> ReportedPicture:

@@ -1,10 +1,10 @@
 """Poses of bodies and contacts from the declaration alone.
 
-A model at values of its coordinates that are nothing special -> poses and weights of its bodies, in doubles.
+Model at random values of its coordinates -> poses and weights of its bodies, in doubles.
 
     T = (R, p) of a body in the axes of the ground
 
-What proofs of imported robots share, which know a robot by another reading: names as they are in the robot's file.
+The proofs of imported robots share this; they read a robot by another reader, with the names of the robot's file.
 """
 
 from __future__ import annotations
@@ -37,12 +37,12 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
-REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": what something was called
+REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": name in the other file
 FloatPose = tuple[np.ndarray, np.ndarray]
 
 
 class PosedModel:
-    """A model and values of its coordinates, quaternions of norm 1; some may be set otherwise."""
+    """Model and values of its coordinates, quaternions of norm 1; some may be set to other values."""
 
     def __init__(self, model: Model, values: Mapping[str, float] | None = None) -> None:
         self.model, self.motion = model, motion_of(scope_of(model))
@@ -318,7 +318,7 @@ def _apart(a: Numbers, b: Numbers) -> bool:
 
 
 # -------- contact geometry ------------------------------------------------------------------------------------
-# System, state -> whether what touches touches: the nearest points of both surfaces coincide, and move as one.
+# System, state -> check of contacts: the nearest points of both surfaces coincide, and move as one.
 #
 # The surfaces are taken as they are declared (`Meeting`), the places from the poses, velocities from the twists.
 #
@@ -329,7 +329,7 @@ def _apart(a: Numbers, b: Numbers) -> bool:
 #     wheel on a ball      the same, of the tyre's section about the place of its centre line nearest to A
 #     point on a line      P, and its foot on the line
 #
-# What such a contact does it does there: a unit lam pushes with 1 N along the normal, what holds or brakes across it
+# The contact acts there: a unit lam pushes with 1 N along the normal, rows that hold or brake act across it
 # with 1 N across it, both at P and opposite on both bodies. That the rows' wrenches are such is looked at too.
 
 
@@ -473,7 +473,7 @@ class _Contact(InNumbers):
 
     @property
     def _center(self) -> Numbers:
-        """The point, or the centre of what is round, ground axes."""
+        """The point, or the centre of a round surface, ground axes."""
         what, scene = self.meeting.what, self._scene
         place = scene.place(what.point) if isinstance(what, TouchingPoint) else scene.own_place(what.body, what.center)
         return self.carried(place[0], self.vector(place[1]))

@@ -1,8 +1,8 @@
-"""Printed formulas -> whether they hold, read back by our grammar: a derivation that is printed is proven as printed.
+"""Printed formulas -> checks of them, read back by our grammar: a derivation is proven as it is printed.
 
-Every side of a = b = c is read and worth the same along the motion, at accelerations and multipliers that the equations
-of motion give. A letter that is first met on the left stands for what follows. What is said to stay constant does so to
-the next instant: the state a step later and a step earlier, to first order, with 50 digits.
+All sides of a = b = c are read and have the same value along the motion, at accelerations and multipliers from the
+equations of motion. A letter that first stands on a left side is a name for the right side. A constant of motion has
+the same value a step earlier and later, to first order, with 50 digits.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class Printed:
 
     Args:
         formulas: the sides of each.
-        constants: what is said to stay constant along every motion, and while what: "y >= 0 and t <= t0", "".
-        letters: what a letter that only formulas define is worth by another way.
+        constants: constants of motion, and the condition under which they are constant: "y >= 0 and t <= t0", "".
+        letters: values, found by another way, of letters that only formulas define.
         texts: (where, text, the scalar that it stands for).
         definitions: (name, text) of parts that have a name in these texts, each before its use.
         laws: (coordinate, text) of motions from the start as functions of the time.
@@ -77,12 +77,12 @@ class ReadBack:
 
     @property
     def equalities(self) -> list[tuple[str, Scalar, Scalar]]:
-        """(what is on the left, a, b) of sides that are to be the same."""
+        """(text of the left side, a, b) of sides that must be equal."""
         return self._formulas[0]
 
     @cached_property
     def _formulas(self) -> tuple[list[tuple[str, Scalar, Scalar]], dict[str, Scalar]]:
-        """(the equalities, what each name stands for that they define)."""
+        """(the equalities, the meaning of each name that they define)."""
         energies = {"T": self.equations.T, "V": self.equations.V}
         own, names = self._symbols, {**energies, **self._symbols}
         found = []
@@ -99,7 +99,7 @@ class ReadBack:
 
     @cached_property
     def constants(self) -> list[tuple[str, Scalar, tuple[Scalar, ...]]]:
-        """(the text, what it stands for, what must be negative for it to stay constant)."""
+        """(text of a constant, its scalar, scalars that must be negative for it to stay constant)."""
         found = []
         for text, while_ in self.printed.constants:
             x, limits = self._read(text, self._formulas[1]), self._limits(while_)
@@ -138,7 +138,7 @@ class ReadBack:
 
     @staticmethod
     def unreadable(texts: Iterable[str]) -> str:
-        """The first expression that our grammar does not read; "" as it must be."""
+        """Message for the first expression that our grammar does not read; ""."""
         for text in texts:
             try:
                 parse(text, references=True) if len(text) <= LONGEST else None
@@ -148,7 +148,7 @@ class ReadBack:
 
     @cached_property
     def data(self) -> list[tuple[str, Scalar, Scalar]]:
-        """(where, what the text says, what it stands for)."""
+        """(name, scalar of the text, scalar of its quantity)."""
         names = dict(self._symbols)
         for name, text in self.printed.definitions:
             read = self._read(text, names)
@@ -158,7 +158,7 @@ class ReadBack:
         return [(where, read, x) for where, read, x in found if read is not None]
 
     def _value(self, call: Call) -> Scalar:
-        """A function of the motion, as outputs ask it; energies, forces and spins by their names."""
+        """A function of the motion, as outputs request it; energies, forces and angular velocities by their names."""
         of = str(call).partition("(")[2][:-1]
         known = {"V": self._potentials, "Q": self._forces}.get(call.name, {})
         if of in known:
@@ -220,9 +220,9 @@ class ReadBack:
         said = [(text, x) for text, x, limits in self.constants if self._is_met(limits, state)]
         if not said:
             raise NoValue("nothing is said of this piece")
-        worths, rates, _ = way_through(self.equations.system, state).along([x for _, x in said])
-        for (text, _), worth, rate in zip(said, worths, rates, strict=True):
-            if abs(rate) > COMPUTED * (1 + abs(worth)):
+        values, rates, _ = way_through(self.equations.system, state).along([x for _, x in said])
+        for (text, _), value, rate in zip(said, values, rates, strict=True):
+            if abs(rate) > COMPUTED * (1 + abs(value)):
                 return f"{text} changes by {float(rate):.3g} in a second"
         return ""
 
@@ -241,13 +241,13 @@ class ReadBack:
         start = self._declared_start()
         closed = not e.J or not _broken(e, start)
         for instant in (precise(0),) if closed else ():
-            for q, (worth, rate, _) in _along(laws, start, instant).items():
-                for what, found, due in (("is", worth, start[q]), ("moves by", rate, start[speeds[f"{q.name}'"]])):
+            for q, (value, rate, _) in _along(laws, start, instant).items():
+                for what, found, due in (("is", value, start[q]), ("moves by", rate, start[speeds[f"{q.name}'"]])):
                     if abs(found - due) > COMPUTED * (1 + abs(due)):
                         return f"{q.name} {what} {float(found):.9g} at the start, not {float(due):.9g}"
         for instant in SOON:
             moved = _along(laws, start, instant)
-            state = {**start, e.symbols.t: instant, **{q: worth for q, (worth, _, _) in moved.items()}}
+            state = {**start, e.symbols.t: instant, **{q: value for q, (value, _, _) in moved.items()}}
             state |= {speeds[f"{q.name}'"]: rate for q, (_, rate, _) in moved.items()}
             if len(laws) == len(names) and (constraint := _broken(e, state)):
                 return f"'{constraint}' does not hold at t = {float(instant):.3g} s"

@@ -20,7 +20,7 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
     Args:
         texts: of each reaction by its name, a function of q, u, t and accelerations.
     """
-    tally = Tally("formulas, read back, are the reactions of the bodies' balance", "50 digits against doubles")
+    tally = Tally("formulas, read back, are the reactions of the free bodies", "50 digits against doubles")
     states = list(moving_states(equations))
 
     def compared(name: str, text: str) -> str:
@@ -48,9 +48,9 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
 
 
 def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapping[str, float]) -> Iterator[Check]:
-    """Each number at the start is what its formula is worth there with 50 digits: as printed, else as it was solved."""
+    """Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved."""
     tally = Tally("formulas, read back, give the numbers at the start", "50 digits against doubles")
-    unreported = Tally("numbers too long to print a formula for are those of the balance", "50 digits against doubles")
+    unreported = Tally("numbers without a printed formula are those of the free bodies", "50 digits against doubles")
     solved = {} if values.keys() <= texts.keys() else determinate(reactions_of(start.equations.system))
     size = max(map(abs, values.values()), default=0.0)
 

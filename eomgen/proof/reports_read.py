@@ -1,9 +1,9 @@
-"""A report and its figures as they leave -> what stands in them.
+"""Report and its figures as they are written -> their content.
 
-A report as it leaves, HTML, LaTeX, Markdown or a notebook -> what stands in it, one thing after the other.
+A report is HTML, LaTeX, Markdown or a notebook; its content is a list of blocks in their order.
 
 A page of HTML carries its large parts packed; they are unpacked here. Formulas in a line are read from their MathML,
-those that stand alone from the LaTeX that the page shows who runs no program. Curves are read with their axes.
+displayed ones from the LaTeX that a page shows where no scripts run. Curves are read with their axes.
 """
 
 from __future__ import annotations
@@ -111,7 +111,7 @@ class ReadCurves:
 
     Args:
         curves: of each class its path, n x 2, in the units of its axes.
-        near: how far a place may be off along both axes: what a digit of the page is worth.
+        near: tolerance of a place along both axes: the size of a digit of the page.
     """
 
     curves: tuple[tuple[str, np.ndarray], ...]
@@ -124,10 +124,10 @@ class ReadReport:
 
     Args:
         blocks: one after the other.
-        copied: texts that a button copies, with the formulas beside it.
+        copied: texts that a button copies, with the formulas next to it.
         drawings: the curves of each drawing that has some, by its caption.
         legends: of each drawing its curves by class and name.
-        files: what it carries, by name: content, and the columns that it tells of.
+        files: files that it carries: name, content, and the columns that are named.
     """
 
     blocks: tuple[PageBlock, ...]
@@ -167,7 +167,7 @@ class _HtmlReading:
         for section in main.elements:
             played = section.given.get("id") == "motion" and any(section.all("script"))
             for each in section.elements:
-                if not (played and each.tag == "p"):  # words of what is played
+                if not (played and each.tag == "p"):  # words of a player of a motion
                     self._element(each)
         parts = (self.blocks, self.copied, self.drawings, self.legends, self.files)
         return ReadReport(*map(tuple, parts))  # type: ignore[arg-type]
@@ -194,7 +194,7 @@ class _HtmlReading:
             annotated = next(markup_of(self.apart["formulas"][self.shown]).all("annotation")).text
             self.shown += 1
             if annotated != tex:
-                raise ValueError("a formula reads otherwise where no program runs")
+                raise ValueError("a formula is another where no scripts run")
             found += displayed(tex.removeprefix("\\begin{aligned}\n").removesuffix("\n\\end{aligned}"))
         self.blocks += found
         for button in each.all("button"):
@@ -372,7 +372,7 @@ def _scale(ticks: list[tuple[float, float]]) -> tuple[float, float, float]:
     places, values = np.array(sorted(ticks)).T
     slope, zero = np.polyfit(places, values, 1) if len(places) > 1 else (0.0, values[0])
     off = float(np.max(np.abs(zero + slope * places - values)))
-    if len(set(values)) < len(values):  # of numbers that are alike nobody can tell the places apart
+    if len(set(values)) < len(values):  # the places of equal numbers cannot be told apart
         off = np.inf
     return float(zero), float(slope), off
 
@@ -424,7 +424,7 @@ def html_report(text: str) -> ReadReport:
 
 
 def latex_report(text: str) -> ReadReport:
-    """A report as LaTeX: what stands under pictures and in its proof as words."""
+    """A report as LaTeX: texts under pictures and in its proof are words."""
     lines = _unhidden(text).split("\n")
     found = []
     for line in lines:
@@ -454,7 +454,7 @@ def notebook_report(text: str) -> ReadReport:
 
 
 def columns_reported(content: bytes) -> dict[str, np.ndarray]:
-    """The columns of a table that a page carries: a line that tells of them, then their differences.
+    """Columns of a table that a page carries: a line that names them, then their differences.
 
     A difference is a whole number, its sign the lowest bit, seven bits a byte, the lowest first.
     """
@@ -464,7 +464,7 @@ def columns_reported(content: bytes) -> dict[str, np.ndarray]:
 
 
 def columns_unpacked(reported: Mapping[str, object], packed: bytes) -> Iterable[np.ndarray]:
-    """The columns that are told of."""
+    """Columns that are named."""
     octets = np.frombuffer(packed, dtype=np.uint8)
     if not len(octets):
         return
@@ -486,9 +486,9 @@ def columns_unpacked(reported: Mapping[str, object], packed: bytes) -> Iterable[
 
 
 # -------- drawn panels ----------------------------------------------------------------------------------------
-# A figure as it is saved -> what its panels show: curves, points and names by their data, axes by their words.
+# A figure as it is saved -> content of its panels: curves, points and names by their data, axes by their words.
 #
-# What is read are the artists of matplotlib that are drawn; how it turns them into dots is its own matter.
+# The drawn artists of matplotlib are read, not the dots that it makes of them.
 
 
 _LABEL = re.compile(r"(?P<what>.*?)(?: \[(?P<unit>[^\]]*)\])?")
@@ -511,7 +511,7 @@ class DrawnCurve:
 
 @dataclass(frozen=True)
 class ColouredPoints:
-    """Points that tell a value by their colour.
+    """Points that show a value by their colour.
 
     Args:
         places: n x 2.
@@ -529,14 +529,14 @@ class DrawnPanel:
     """Content of one panel of a diagram.
 
     Args:
-        title: what stands above it.
-        x, y: what stands at its axes.
+        title: text above it.
+        x, y: texts at its axes.
         scales: of both, "linear" or "log".
         is_turned: whether y grows downward.
         curves: in their order, lines across the whole panel left out.
         points: those that have colours.
         bars: (name, height) of each.
-        names: what is written beside places: (text, place).
+        names: texts next to places: (text, place).
         hidden: whether a curve leaves the panel.
     """
 
@@ -604,7 +604,7 @@ def _named(label: str) -> str:
 
 
 def said_of(label: str) -> tuple[str, str]:
-    """(what stands at an axis, its unit), of "M of beam [kN m]"."""
+    """Quantity and unit of the text at an axis, "M of beam [kN m]"."""
     found = _LABEL.fullmatch(label)
     assert found is not None
     return found["what"], found["unit"] or ""

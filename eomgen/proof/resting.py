@@ -1,4 +1,4 @@
-"""Places of rest -> checks by the equations of motion: nothing is accelerated there, and what is said of stability.
+"""Equilibria -> checks by the equations of motion: no acceleration there, and the stated stability.
 
     a = 0 at u = 0;      d a_i/dq_j, by differences, has the eigenvalues -w^2 of small motions about the place
 
@@ -30,14 +30,16 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, SHARE, ZERO_AT_50
 
 MOST = 12  # places that are looked at
-ASIDE = fifty_digits().number(1) / 100  # of a coordinate or 1: beside a place where nothing pushes back at first
+ASIDE = (
+    fifty_digits().number(1) / 100
+)  # of a coordinate or 1: near an equilibrium where the restoring force begins with a higher power
 BY_MOTION = "50 digits"
-NOTHING_ACCELERATED = "nothing is accelerated at the equilibria"
+NOTHING_ACCELERATED = "no acceleration at the equilibria"
 
 
 def balance_check(places: Sequence[Equilibrium]) -> Check:
     """Q + J^T lam = 0 and phi = 0, put back into the equations of statics."""
-    name = "the forces balance and the constraints close at every equilibrium"
+    name = "forces balance and constraints are satisfied at every equilibrium"
     return attempted(name, BY_MOTION, lambda: _first_at(places, _unbalanced))
 
 
@@ -124,7 +126,7 @@ def resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator
     yield _of_all(NOTHING_ACCELERATED, proofs, _Proof.wrong, BY_MOTION)
     said = [proof for proof in proofs if proof.place.stability.kind in ("stable", "unstable")]
     if said:
-        what = "what is said of stability is so of small motions"
+        what = "stated stability is that of small motions"
         yield _of_all(what, said, _Proof.wrong_stability, "differences at 50 digits")
 
 
@@ -172,7 +174,7 @@ class _Proof:
 
     @cached_property
     def nearby(self) -> Nearby:
-        """The states beside it, speeds all 0."""
+        """States near it, all speeds 0."""
         system = self.first.system
         along = self.place.stability.along or tuple(q for q in system.symbols.q if q in self.place.statics.q)
         return Nearby(self.first.equations, self.first.relations, self.numbers, tuple(along), system.symbols.u)
@@ -227,9 +229,9 @@ class _Proof:
         return ""
 
     def _moved(self, aside: Mapping[Node, Any], farther: Any) -> Any:
-        """The largest acceleration of a displacement so much farther, for each unit of it.
+        """Largest acceleration of a displacement that is larger by a factor, divided by this displacement.
 
-        Where the slopes of all forces vanish, as of k (x - sin x) at 0, those far from there tell what is usual.
+        Where the derivatives of all forces vanish, as of k (x - sin x) at 0, a large displacement gives the scale.
         """
         late, early = (
             self.nearby.going({**self.numbers, **{q: self.numbers[q] + s * farther * d for q, d in aside.items()}}).a
@@ -238,8 +240,11 @@ class _Proof:
         return max((abs(late[u] - early[u]) / (2 * STEP * farther) for u in late), default=0)
 
     def wrong_stability(self) -> str:
-        """One freedom that is pushed aside: what it does. Of several the eigenvalues of the slopes of the free
-        coordinates along themselves: positive ones grow."""
+        """Message if the stated stability is wrong; "".
+
+        For one degree of freedom the motion after a displacement decides, for several the eigenvalues of da/dq of the
+        free coordinates: a positive one grows.
+        """
         kind = self.place.stability.kind
         rows = {u.name.removesuffix("'"): i for i, u in enumerate(self.first.system.symbols.u)}
         along = [q.name for q in self.place.stability.along]
@@ -263,9 +268,9 @@ class _Proof:
         kind = self.place.stability.kind
         goes_back = [sign * pull < 0 for sign, pull in zip((1, -1), self._pulls(q, row), strict=True)]
         if kind == "stable" and not all(goes_back):
-            return "said to be stable, and what is pushed aside does not come back"
+            return "said to be stable, and a displacement does not return"
         if kind == "unstable" and all(goes_back):
-            return "said to be unstable, and what is pushed aside comes back"
+            return "said to be unstable, and every displacement returns"
         return ""
 
     def _pulls(self, q: Node, row: int) -> list[Any]:

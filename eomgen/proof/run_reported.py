@@ -1,9 +1,7 @@
 """Reported texts of a run -> checks: names, units, starts and ends, tables and files are those of its states.
 
-A run, and what is told of it -> checks: names, units, starts and ends, tables and files are those of its states.
-
-What is told is read as it stands, "theta1 [deg]", "-1.27834046", a line of a file, and looked up among the states by
-its name; that a column bears the right name shows where it is the integral of the one that is its rate.
+A reported text is read as it stands, "theta1 [deg]", "-1.27834046", a line of a file, and compared with the state of
+its name; a column has the right name if it is the integral of the column that is its rate.
 """
 
 from __future__ import annotations
@@ -34,7 +32,7 @@ from eomgen.symbolic.expression.units import parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED, NINE_DIGITS
 
-NAME, HOW = "what is told of the run is what it went through", "states by their names, texts read back"
+NAME, HOW = "reported values of the run are those of its states", "states by their names, texts read back"
 ROWS = 3  # of a file or table that are looked at: its first, middle and last
 FINE = 50  # instants that show how a coordinate goes between them
 _HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
@@ -58,7 +56,7 @@ class ReportedRun:
 
 
 def run_reported(run: Trajectory, model: Model, reported: ReportedRun) -> Iterator[Check]:
-    """Everything that is told of a run, against its states."""
+    """Checks of all reported texts of a run against its states."""
     return _RunReported(run, model, reported).checks()
 
 
@@ -72,7 +70,7 @@ class _RunReported:
         tally = Tally(NAME, HOW)
         for head, *texts in self.reported.rows:
             tally.add(head, partial(self._ends, head, texts))
-        tally.add("the columns told", self._complete)
+        tally.add("the reported columns", self._complete)
         for name in self.run.coordinates:
             if f"{name}'" in self.own and len(self.run.t) > FINE:
                 tally.add(f"{name}'", partial(self._is_rate, name))
@@ -113,7 +111,7 @@ class _RunReported:
         return match["name"], parse_unit(unit).size
 
     def _unit(self, name: str) -> str | None:
-        """A unit that a column has by what it is."""
+        """Unit of a column by the kind of its quantity."""
         if name in ("t", "energy"):
             return {"t": "s", "energy": "J"}[name]
         if name.startswith("drive("):  # J by the unit of its coordinate, which may be inferred alone
@@ -135,10 +133,10 @@ class _RunReported:
         return ""
 
     def _complete(self) -> str:
-        """No column is left out, and none told twice."""
+        """Message if a column is left out, or reported twice; ""."""
         named = [match["name"] for head, *_ in self.reported.rows if (match := _HEAD.fullmatch(head))]
         if len(self.run.t) and sorted(named) != sorted(self.own):
-            return ", ".join(set(self.own).symmetric_difference(named)) or "one is told twice"
+            return ", ".join(set(self.own).symmetric_difference(named)) or "one is reported twice"
         return ""
 
     def _column(self, head: str, texts: Sequence[str]) -> str:
@@ -252,25 +250,25 @@ def _apart(found: float, right: float, share: float) -> str:
 
 
 def _none_apart(found: float | None, right: float | None) -> str:
-    """The same for what may be missing: null stands for what is not finite."""
+    """Difference of two values that may be missing, in words; null stands for a value that is not finite."""
     if right is None or not np.isfinite(right):
         return "" if found is None else f"{found:.10g} for none"
     return f"nothing for {right:.10g}" if found is None else _apart(found, float(right), COMPUTED)
 
 
 # -------- run columns -----------------------------------------------------------------------------------------
-# A run -> checks: its columns of reactions and outputs are those of balance, formulas and second definitions.
+# A run -> checks: its columns of reactions and outputs are those of free bodies, formulas and second definitions.
 
 
-COLUMN_ROWS, EXACTLY = "a run has a row at every instant that was asked", "floating point"
+COLUMN_ROWS, EXACTLY = "a run has a row at every requested instant", "floating point"
 MOST = 4  # phases that are looked at, each in its middle
 
 
 def rows_left_out(run: Trajectory, instants: np.ndarray | None) -> Iterator[Check]:
-    """A contradiction where an instant that was asked, and passed, has no row, or rows do not go on; else nothing.
+    """A failing check where a requested instant, which the run passed, has no row, or rows do not ascend; else none.
 
     Args:
-        instants: that were asked; None: none in particular.
+        instants: requested instants; None: the run's own.
     """
     if instants is None or not len(run.t):
         return
@@ -294,9 +292,9 @@ def _middles(run: Trajectory) -> Iterator[tuple[Phase, int]]:
 def reaction_columns_hold(run: Trajectory) -> Iterator[Check]:
     """A(q) rho = b solved by rank in doubles, against its solution in symbols with 50 digits; () where none reacts.
 
-    Both share A and b, which the balance of every body proves at other states.
+    Both share A and b, which the equilibrium of every body proves at other states.
     """
-    tally = Tally("columns of reactions are those of the balance", "symbols with 50 digits")
+    tally = Tally("columns of reactions are those of the free bodies", "symbols with 50 digits")
     work = 0
     if not run.reactions:
         return iter(())

@@ -1,8 +1,6 @@
-"""Virtual work and section forces as they are told.
+"""Reported section forces -> a check: by the names of their columns they are those that were found.
 
-Section forces as they are told -> a check: by the names of their columns they are those that were found.
-
-    dM/dx = V between the ends of each piece,   V = 0 and M as told at an extreme,   N, V, M the piece's polynomials
+    dM/dx = V between the ends of each piece,   V = 0 and M as stated at an extreme,   N, V, M the piece's polynomials
 
 Taken as they stand, at random values of all symbols: each under the head that it is printed under, and for machines.
 """
@@ -33,7 +31,7 @@ from eomgen.symbolic.expression.text import LONGEST, parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
-NAME, HOW = "section forces as they are told are those that were found", "heads and texts read back, random values"
+NAME, HOW = "reported section forces are those that were found", "heads and texts read back, random values"
 Reported = Scalar | str
 
 
@@ -68,7 +66,7 @@ def sections_reported(
 
 def _wrong(forces: SectionForces, reported: ReportedSections, near: Mapping[str, float]) -> str:
     if len(reported.pieces) != len(forces.pieces) or len(reported.extremes) != len(forces.extremes):
-        return f"{len(reported.pieces)} pieces and {len(reported.extremes)} extremes are told"
+        return f"{len(reported.pieces)} pieces and {len(reported.extremes)} extremes are reported"
     values = _Values(reported.variable, near)
     for piece, row in zip(forces.pieces, reported.pieces, strict=True):
         start, end = values.of(piece.start), values.of(piece.end)
@@ -103,7 +101,7 @@ class _Values:
 
     Args:
         variable: the distance along the axis.
-        near: values of those that have one, beside which these lie.
+        near: values of symbols that have one; the random values lie near them.
     """
 
     def __init__(self, variable: str, near: Mapping[str, float]) -> None:
@@ -146,19 +144,18 @@ class _Values:
         return self.known[name]
 
 
-# -------- works told ------------------------------------------------------------------------------------------
-# Steps of virtual work as they are told -> a check: the blocks move as their constraints let them, the loads work so
-# much.
+# -------- reported works --------------------------------------------------------------------------------------
+# Reported steps of virtual work -> a check of the motions of the blocks and of the works of the loads.
 #
 # Taken as they stand, tables by their heads and texts for machines, at one choice of the parameters, delta = 1:
 #
 #     v(P) = v_0 + w x P of each block,    w x C = -v_0 at its centre
 #     sum of the wrenches of component j with it = along k_j        where R = sum k_j rho_j: nothing else does work
-#     work of each force as its fields declare it,    along (R - given) + sum of works = 0,    R by the bodies' balance
+#     work of each force as its fields declare it,    along (R - given) + sum of works = 0,    R by the free bodies
 
 
-WORKS_NAME = "virtual displacements and works are told as they are"
-WORKS_HOW = "wrenches of every constraint, declared forces, balance of the bodies"
+WORKS_NAME = "reported virtual displacements and works are right"
+WORKS_HOW = "wrenches of every constraint, declared forces, equilibrium of the bodies"
 MIDDLE = "middle of "
 SaidWork = Scalar | str
 
@@ -235,7 +232,7 @@ def works_reported(found: StaticReactions, state: State, reported: Iterable[Repo
 class _Works:
     """
     Args:
-        state: with unknown loads 0; whole: with what they come to.
+        state: with unknown loads 0; whole: with their values.
     """
 
     found: StaticReactions
@@ -245,24 +242,24 @@ class _Works:
     def wrong(self, reported: ReportedWork) -> str:
         reaction = self.found.by_name[reported.name]
         field = _Field(self, reported)
-        along, R = self.worth(reported.along), self.balanced(reaction)
+        along, R = self.value_of(reported.along), self.balanced(reaction)
         factors = self.factors(reaction)
         for j, (owner, _) in enumerate(self.found.structure.pushes):
             work, size = field.work_of(j)
             if abs(work - along * factors.get(j, 0.0)) > CARRIED * (size + abs(along)):
-                return f"what moves does the work {work:.6g} along {self.found.structure.names[j]} of {owner}"
+                return f"the constraint does the work {work:.6g} along {self.found.structure.names[j]} of {owner}"
         if wrong := field.wrong_works():
             return wrong
-        given = 0.0 if reaction.work is None else self.worth(reaction.work.given)
-        total = sum(self.worth(work) for _, work in reported.works)
-        size = sum(abs(self.worth(work)) for _, work in reported.works) + abs(along * R)
+        given = 0.0 if reaction.work is None else self.value_of(reaction.work.given)
+        total = sum(self.value_of(work) for _, work in reported.works)
+        size = sum(abs(self.value_of(work)) for _, work in reported.works) + abs(along * R)
         if abs(along * (R - given) + total) > CARRIED * (1 + size):
-            return f"the works come to {total:.6g}, for {-along * (R - given):.6g}"
+            return f"the works add up to {total:.6g}, for {-along * (R - given):.6g}"
         values = (("machines", reported.value), ("people", reported.last))
-        if off := next((who for who, x in values if abs(self.worth(x) - R) > CARRIED * (1 + abs(R))), ""):
-            return f"another value is told to {off} than {R:.10g}"
-        here, beside = (self.worth(reported.left, R + step, reported.name) for step in (0, 1))
-        if abs(here) > CARRIED * (1 + size) or abs(abs(beside - here) - abs(along)) > CARRIED * (1 + abs(along)):
+        if off := next((who for who, x in values if abs(self.value_of(x) - R) > CARRIED * (1 + abs(R))), ""):
+            return f"another value is reported to {off} than {R:.10g}"
+        here, nearby = (self.value_of(reported.left, R + step, reported.name) for step in (0, 1))
+        if abs(here) > CARRIED * (1 + size) or abs(abs(nearby - here) - abs(along)) > CARRIED * (1 + abs(along)):
             return "the equation that is printed is another one"
         return field.wrong_rows()
 
@@ -270,7 +267,7 @@ class _Works:
     def numbers(self) -> dict[Node, float]:
         return {node: float(x) for node, x in self.state.items()}
 
-    def worth(self, reported: SaidWork, R: float = 0.0, requested: str = "") -> float:
+    def value_of(self, reported: SaidWork, R: float = 0.0, requested: str = "") -> float:
         """Value of a work with delta = 1; R is the value of the unknown, which an unknown load has by its own name."""
         if isinstance(reported, str):
             return self._of_text(reported)
@@ -306,7 +303,7 @@ class _Works:
         return balanced_least(self.found.balance.balance, self.whole)[0]
 
     def balanced(self, reaction: StaticReaction) -> float:
-        """R by the balance of the bodies in numbers."""
+        """R by the equilibrium of the bodies in numbers."""
         given = 0 if reaction.named is None else reaction.named.given
         (own,) = evaluate((given,), self.whole, fifty_digits())
         return float(sum(k * self._least[j] for j, k in self.factors(reaction).items())) + float(own)
@@ -332,18 +329,18 @@ class _Works:
 
 @dataclass(frozen=True)
 class _Field:
-    """Velocities of all that moves, as machines are told of the blocks."""
+    """Velocities of all moving bodies and nodes, as the blocks are reported to machines."""
 
     proof: _Works
     reported: ReportedWork
 
     @cached_property
     def motions(self) -> dict[str, np.ndarray]:
-        """body or node -> (w, v_x, v_y) of the point at the ground's origin; what is not told is at rest."""
+        """body or node -> (w, v_x, v_y) of the point at the ground's origin; one that is not reported is at rest."""
         found: dict[str, np.ndarray] = {}
         ends = {f"{truss} {member}": pair for truss, member, pair in members_of(self.proof.found.system)}
         for block in self.reported.blocks:
-            own = np.array([self.proof.worth(x) for x in (block.spin, *block.shift[:2])])
+            own = np.array([self.proof.value_of(x) for x in (block.spin, *block.shift[:2])])
             for part in block.parts:
                 found |= dict.fromkeys(ends.get(part, (part,)), own)
         return found
@@ -366,12 +363,12 @@ class _Field:
         return float(self.motions.get(body, np.zeros(3))[0])
 
     def wrong_works(self) -> str:
-        """The work of a force is that of what its fields declare."""
+        """Message if the reported work of a force is not that of its declared fields; ""."""
         model = self.proof.found.system.scope.model
         for who, works in (("machines", self.reported.works), ("people", self.reported.printed)):
             stated: dict[str, float] = {}
             for name, work in works:
-                stated[name] = stated.get(name, 0.0) + self.proof.worth(work)
+                stated[name] = stated.get(name, 0.0) + self.proof.value_of(work)
             for name in model.forces:
                 due = 0.0
                 for body, (moment, force) in declared_pushes(self.proof.found.system, self.proof.state, name).items():
@@ -379,7 +376,7 @@ class _Field:
                         six = np.array([moment[2], force[0], force[1]], dtype=float)
                         due += float(six @ self.motions.get(body, np.zeros(3)))
                 if abs(stated.get(name, 0.0) - due) > CARRIED * (1 + abs(due)):
-                    return f"{name} works {stated.get(name, 0.0):.6g}, as {who} are told, for {due:.6g}"
+                    return f"{name} works {stated.get(name, 0.0):.6g}, as reported to {who}, for {due:.6g}"
         return ""
 
     def wrong_rows(self) -> str:
@@ -387,13 +384,13 @@ class _Field:
         if len(self.reported.rows) != len(self.reported.blocks):
             return f"{len(self.reported.rows)} blocks are printed of {len(self.reported.blocks)}"
         for k, (row, block) in enumerate(zip(self.reported.rows, self.reported.blocks, strict=True), start=1):
-            own = np.array([self.proof.worth(x) for x in (block.spin, *block.shift[:2])])
-            moved = np.array([self.proof.worth(x) for x in row.shift])
+            own = np.array([self.proof.value_of(x) for x in (block.spin, *block.shift[:2])])
+            moved = np.array([self.proof.value_of(x) for x in row.shift])
             if row.center is not None:
-                x, y = (self.proof.worth(x) for x in row.center)
-                moved = self.proof.worth(row.spin) * np.array([y, -x])
+                x, y = (self.proof.value_of(x) for x in row.center)
+                moved = self.proof.value_of(row.spin) * np.array([y, -x])
             if np.any(
-                np.abs([self.proof.worth(row.spin) - own[0], *(moved - own[1:])]) > CARRIED * (1 + abs(own).max())
+                np.abs([self.proof.value_of(row.spin) - own[0], *(moved - own[1:])]) > CARRIED * (1 + abs(own).max())
             ):
                 return f"block {k} is printed with another motion"
         for row in self.reported.places:
@@ -401,7 +398,7 @@ class _Field:
             places = [self.proof.place(each) for each in words]
             if all(places):
                 due = np.mean([self.at(*place) for place in places if place is not None], axis=0)
-                moved = np.array([self.proof.worth(x) for x in row.shift])
+                moved = np.array([self.proof.value_of(x) for x in row.shift])
                 if np.any(np.abs(moved - due) > CARRIED * (1 + abs(due).max())):
                     return f"{row.at} is printed with the shift {moved}, for {due}"
         return ""

@@ -1,15 +1,13 @@
-"""Checks of small motions: matrices, modes.
+"""Modes -> checks of small motions: the printed matrices against differences of the equations of motion.
 
-Modes -> checks of small motions: the printed matrices against differences of the equations of motion.
-
-A motion beside the reference starts at q_0 + h d, u_0 + h e, inputs w_0 + h f in a random direction; the equations of
-motion say how it goes on. What it does against the reference, over h, must satisfy what is printed:
+A motion near the reference starts at q_0 + h d, u_0 + h e, inputs w_0 + h f in a random direction; the equations of
+motion say how it goes on. Its difference from the reference, divided by h, must satisfy the printed equations:
 
     M dq'' + C dq' + K dq = B dw,      or  M du' + C du + K dq = B dw,  dq' = F dq + E du,      x' = A x + B_x w
 
-M against the kinetic energy: d . M d is the second difference of T along d. Shared with what is proven: the state of
-the reference, the equations of motion (proven by themselves) and the choice of coordinates; no derivative, nothing of
-how constraints are taken out.
+M against the kinetic energy: d . M d is the second difference of T along d. Shared with the linearization are the state
+of the reference, the equations of motion (proven by themselves) and the choice of coordinates, but no derivative and no
+elimination of constraints.
 """
 
 from __future__ import annotations
@@ -74,7 +72,7 @@ def _reference(differences: Differences) -> Check:
     wrong = [
         f"{u.name} changes by {float(origin.a[u]):.3g}"
         for u in differences.nearby.u
-        if abs(origin.a[u]) > COMPUTED * (usual.get(u) or most) + ZERO_AT_50  # of one that nothing asks: the others
+        if abs(origin.a[u]) > COMPUTED * (usual.get(u) or most) + ZERO_AT_50  # without a row: the largest
     ]
     name = "the equations of motion hold at the reference, without acceleration"
     return checked(name, "; ".join(wrong), "50 digits")
@@ -98,7 +96,7 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
         "mass": _in_energy(small, exact["M"], energies, tolerance),
     }
     form = "M q'' + C q' + K q = B w" if small.is_second_order else "M u' + C u + K q = B w, q' = F q + E u"
-    yield checked(f"motions beside the reference satisfy {form}", wrong["motion"], BY_DIFFERENCES)
+    yield checked(f"motions near the reference satisfy {form}", wrong["motion"], BY_DIFFERENCES)
     yield checked("they satisfy x' = A x + B w", wrong["state"], BY_DIFFERENCES)
     yield checked("M is the second derivative of the kinetic energy along them", wrong["mass"], BY_DIFFERENCES)
 
@@ -118,7 +116,7 @@ def _of_part(differences: Differences) -> Check:
         answer = np.linalg.inv(pencil)
         away = abs(answer - whole(s)[np.ix_(requested, requested)]).max() / abs(answer).max()
         wrong = wrong or ("" if away <= CARRIED else f"their answers differ by {away:.2g}")
-    return checked("the coordinates that are asked move as they do in the whole", wrong, "differences, floating point")
+    return checked("requested coordinates move as they do in the whole system", wrong, "differences, floating point")
 
 
 def _entries(modes: Modes) -> dict[str, list[list[Any]]]:
@@ -237,7 +235,7 @@ def _left(other: Any, sums: tuple[Any, Any], tolerance: float, unit: Any = 1) ->
 
 
 # -------- modes -----------------------------------------------------------------------------------------------
-# Modes -> checks of what is said of small motions: put back into the matrices, which are proven by themselves.
+# Modes -> checks of small motions: modes and values are put back into the matrices, which are proven by themselves.
 #
 # (lambda^2 M + lambda C + K) v = 0,   sum lambda = tr A,   sum lambda^2 = tr A^2,   p(s) = det(s^2 M + s C + K)
 
@@ -259,14 +257,14 @@ def mode_checks(modes: Modes) -> Iterator[Check]:
     yield checked("every mode satisfies (lambda^2 M + lambda C + K) v = 0", proof.wrong_mode, FLOATS)
     yield checked("the eigenvalues are all there: their sums are the traces of A and A^2", proof.wrong_sums, FLOATS)
     if modes.spectrum.oscillating:
-        name = "after a period 1/f a free motion is back, smaller by what its damping ratio says"
+        name = "after a period 1/f a free motion returns, reduced as its damping ratio says"
         yield checked(name, proof.wrong_period, FLOATS)
     if modes.polynomial is not None:
         yield checked("the characteristic polynomial is the determinant", proof.wrong_polynomial, "50 digits")
     if proof.closed:
         name = "frequencies in closed form are those of eigenvalues in numbers"
         yield checked(name, proof.wrong_frequency, FLOATS)
-    yield checked("what is said of stability is so of the eigenvalues of A", proof.wrong_stability, FLOATS)
+    yield checked("stated stability is that of the eigenvalues of A", proof.wrong_stability, FLOATS)
     if modes.conditions.expressions:
         yield proof.conditions()
     if modes.transfers:
@@ -310,7 +308,7 @@ class _Proof:
     def wrong_mode(self) -> str:
         """(A - lambda) x = 0 with the printed coordinates of the shape; the speeds of x as they then must be.
 
-        Beside a steady motion A^2 x = 0: some motions of the eigenvalue 0 lead to others, which go on at other rates.
+        Near a steady motion A^2 x = 0: some motions of the eigenvalue 0 lead to others, which go on at other rates.
         """
         n = len(self.modes.small.numbers.coordinates)
         for k, mode in enumerate(self.modes.spectrum.modes, start=1):
@@ -377,7 +375,9 @@ class _Proof:
             upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in E[i]] for i, row in enumerate(F)]
             lower = [[*K[i], *(s * x + c for x, c in zip(M[i], C[i], strict=True))] for i in range(n)]
             rows = upper + lower
-            sizes = [max(map(abs, row)) or one for row in rows]  # mpmath takes for singular what is small beside 1
+            sizes = [
+                max(map(abs, row)) or one for row in rows
+            ]  # mpmath takes for singular what is small compared with 1
             scaled = [[x / size for x in row] for row, size in zip(rows, sizes, strict=True)]
             det = one.context.det(one.context.matrix(scaled)) * one.context.fprod(sizes)
             size = sum(abs(c * s**k) for k, c in enumerate(p.coefficients))

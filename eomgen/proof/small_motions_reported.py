@@ -1,9 +1,7 @@
 """Reported small motions -> checks: what is printed is what machines get, and texts have the values of their numbers.
 
-What is printed of small motions -> checks: it is that which machines get of them, and texts are worth their numbers.
-
-Everything is taken as it stands, {"exact": [["c_f + c_r"]], "value": [[0.0]]}, M = [m  0], "mode 2", "oscillates and
-fades". The entries for machines are proven by themselves (`linear_entries`), but for the shapes and transfer functions:
+Texts are read as they stand, {"exact": [["c_f + c_r"]], "value": [[0.0]]}, M = [m  0], "mode 2", "oscillates and
+fades". The entries for machines are proven by themselves (`linear_entries`), except shapes and transfer functions:
 
     (A - lambda) (v, u) = 0 with some u,     W = (s 1 - A)^-1 B at a number s
 """
@@ -38,7 +36,7 @@ from eomgen.symbolic.numeric.tolerances import (
     SOLVED,
 )
 
-NAME, HOW = "what is printed of small motions is what machines get of them", "texts and numbers read back"
+NAME, HOW = "printed small motions are those that machines get", "texts and numbers read back"
 MATRICES = ("mass", "rates", "stiffness", "input", "kinematic_rates", "kinematic_places")
 PARTS = ("damping", "gyroscopic", "circulatory")
 
@@ -117,7 +115,7 @@ class ReportedMotions:
         return len(self.entries["coordinates"])
 
     def _texts(self, entry: Mapping[str, Any]) -> str:
-        """Each exact text is worth its number."""
+        """Checks that each exact text has the value of its number."""
         if entry["exact"] is None or entry["value"] is None:
             return ""
         numbers = np.array(entry["value"], dtype=float)
@@ -133,7 +131,7 @@ class ReportedMotions:
         """A text of the grammar in numbers.
 
         Raises:
-            NoValue: it holds what has none.
+            NoValue: it contains a symbol without a value.
         """
         if len(text) > 10 * LONGEST:
             raise NoValue("too long to be read back")
@@ -243,7 +241,7 @@ class ReportedMotions:
 
 
 def _differ(a: np.ndarray, b: np.ndarray, share: float = COMPUTED) -> bool:
-    """Entries are judged beside the largest of their rows and columns."""
+    """Entries are compared on the scale of the largest of their rows and columns."""
     if a.size == b.size == 0:
         return False
     if a.shape != b.shape:
@@ -264,14 +262,14 @@ def _is_complex(text: str, right: complex, share: float = SEVEN_DIGITS) -> bool:
 
 
 # -------- small motions drawn ---------------------------------------------------------------------------------
-# What is drawn of small motions -> checks: curves, roots and bars are those of the matrices that machines get.
+# Drawn small motions -> checks: curves, roots and bars are those of the matrices that machines get.
 #
-# Curves are read from their picture; W and the roots s by M, C and K as they are told, not by A:
+# Curves are read from their picture; W and the roots s follow from the reported M, C and K, not from A:
 #
 #     [s 1 - F, -E; K, s M + C] (q, u) = (0, B w),    det = 0,    sum s = tr A,    sum s^2 = tr A^2
 
 
-DRAWN, BY_PENCIL = "what is drawn of small motions is what they are", "by M, C, K and B at what is drawn"
+DRAWN, BY_PENCIL = "drawn small motions are those of the equations", "by M, C, K and B at what is drawn"
 MOST_CURVES, MOST_MODES = 8, 9  # pairs of which Bode's diagrams are drawn, modes that are drawn
 MOST_VALUES = 60  # of a parameter at which its roots are looked at
 
@@ -311,7 +309,7 @@ def responses_drawn(entries: Mapping[str, Any], panels: Sequence[DrawnPanel], le
 def roots_drawn(
     entries: Mapping[str, Any], panels: Sequence[DrawnPanel], letters: Mapping[str, str], model: Model
 ) -> Check:
-    """The roots over a parameter: each of those drawn at the value that its colour tells, and no other.
+    """Check of the roots over a parameter: each is drawn at the value of its colour, and there are no others.
 
     Args:
         letters: how the names of parameters are set.
@@ -379,7 +377,7 @@ class _Drawn:
         of_colour = {curve.color: curve.places for curve in phases.curves}
         for curve in sizes.curves:
             if curve.label not in names:
-                return f"nobody knows {curve.label}"
+                return f"no quantity is known as {curve.label}"
             j, k = names.pop(curve.label)
             turned = of_colour.get(curve.color, np.zeros((0, 2)))
             if not np.array_equal(curve.places[:, 0], omega) or not np.array_equal(turned[:, 0], omega):
@@ -409,7 +407,7 @@ class _Drawn:
         what, unit = said_of(points.label)
         name = next((x for x in model.parameters if what == f"${self.letters[x]}$"), None)
         if name is None or panel.scales != ("linear", "linear") or panel.hidden:
-            return f"nobody knows {what}" if name is None else "the axes are not those of the points"
+            return f"no quantity is known as {what}" if name is None else "the axes are not those of the points"
         begun = {complex(*x) for curve in panel.curves for x in curve.places}
         values = list(dict.fromkeys(points.values.tolist()))
         for value in values[:: 1 + (len(values) - 1) // MOST_VALUES]:
@@ -465,7 +463,7 @@ def _no_roots(pencil: Pencil, roots: Sequence[complex]) -> str:
 
 
 # -------- linear entries --------------------------------------------------------------------------------------
-# What is told machines of small motions -> whether its entries are by their names what they are called.
+# Entries for machines of small motions -> checks that they have the meaning of their names.
 #
 # x' = A x + B_x w,   A = [F E; -M^-1 K, -M^-1 C],   B_x = [0; M^-1 B],   C = D + G, K = S + H D = D^T, G = -G^T, H =
 # -H^T;   eigenvalues of A;   f = Im lambda, f/2pi, zeta = -Re lambda/|lambda|
@@ -485,7 +483,7 @@ def linear_entries(entries: Mapping[str, Any], A: np.ndarray, B: np.ndarray) -> 
         wrong = first_wrong(
             (reported.parts(), reported.state_form(), reported.state_space(), reported.eigenvalues(), reported.modes())
         )
-        yield checked("what is told machines is what its names say, by the state matrix", wrong, "floating point")
+        yield checked("numbers for machines are those of their names, by the state matrix", wrong, "floating point")
 
 
 class _Reported:

@@ -1,6 +1,6 @@
-"""System -> the states at which it is proved: its own start, one inside each piece of what it is made of, random ones.
+"""System -> states at which it is proved: its own start, one in each piece of its piecewise functions, random ones.
 
-A state at which something has no value is not a failure: another near it is taken, and where there is none, none.
+A state at which something has no value is not a failure: another near it is taken; if there is none, it is left out.
 """
 
 from __future__ import annotations
@@ -32,14 +32,14 @@ MOST = 12  # pieces of one quantity that are visited, evenly spread; 1000 sample
 
 @dataclass(frozen=True)
 class TrialState:
-    """A state, and what is to be said where something differs there."""
+    """A state, and the words that name it where something differs there."""
 
     state: State
     remark: str = ""
 
 
 class Supply:
-    """Places that are made when they are asked for, and kept."""
+    """States that are made when they are needed, and cached."""
 
     def __init__(self, source: Iterable[TrialState]) -> None:
         self._source, self._kept = iter(source), list[TrialState]()
@@ -61,7 +61,7 @@ class States:
     """The states of a system; of each supply the first one is taken at which there are values.
 
     Args:
-        scalars: all that is looked at: what of it has pieces is looked at in each of them.
+        scalars: all scalars to check; piecewise ones are checked in each of their pieces.
     """
 
     system: System
@@ -143,7 +143,7 @@ class States:
     def _in_piece(
         self, piece: tuple[int, int], start: State, visited: set[tuple[int, int]], rng: Random
     ) -> Iterator[TrialState]:
-        """States in one piece; what else they lie in is visited with them."""
+        """States in one piece; the other pieces in which they lie count as visited."""
         k, j = piece
         switch, symbols = self.switches[k], self.system.symbols
         moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
@@ -181,7 +181,7 @@ class States:
 def own_start(system: System) -> State | None:
     """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold.
 
-    One state for all that ask: what is found of it, its accelerations, is found once.
+    One state serves all checks: its accelerations are found once.
     """
     if OWN_START not in system.found:
         system.found[OWN_START] = _own_state(system, Random(5))

@@ -2,11 +2,11 @@
 
     N = R . t,  V = -R . n,  M = T        of all that acts behind the section (R, and T about it): from the other end
     dM/dx = V,   dV/dx = q . n,   dN/dx = -q . t
-    G rho = -e                            reactions to a unit load at a place of an influence line, by balance
+    G rho = -e                            reactions to a unit load at a place of an influence line, by equilibrium
 
-Diagrams are read from their picture: every place of a curve, and every number beside one, in the unit at its axis.
+Diagrams are read from their picture: every place of a curve, and every number next to one, in the unit at its axis.
 
-Reactions are found in two ways before they come here, by virtual work and by the balance of the bodies.
+Reactions are found in two ways before they come here, by virtual work and by the equilibrium of the bodies.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ IN_NUMBERS = "floating point"
 MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread
 PARTS = tuple((2 * k + 1) / 16 for k in range(8))  # of a piece, at which the sign of V is looked at
 QUARTERS = (0.25, 0.75)  # of a straight piece, at which straight lines are compared
-DRAWN = "N, V, M and influence lines are drawn as they are"
+DRAWN = "drawn N, V, M and influence lines are right"
 HOW_DRAWN = "curves and numbers of the picture, from the other end and by unit loads"
 LETTERS = dict(zip("NVM", KINDS, strict=True))
 PREFIXES = {"": 1.0, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}  # of N and N m
@@ -58,18 +58,18 @@ def structure_checks(
     wrong = ", ".join(reaction.name for reaction in found.disagreeing)
     both = [reaction for reaction in found.reactions if reaction.work is not None]
     if both:
-        yield checked("virtual work and the balance of the bodies give the same reactions", wrong, "exact")
+        yield checked("virtual work and the equilibrium of the bodies give the same reactions", wrong, "exact")
     yield from _left_out(found)
     proof = _Proof(found)
-    name = "every body, every pair and the whole are in balance"
+    name = "every body, every pair and the whole are in equilibrium"
     yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7)))
-    name = "reactions that are named by x, y and z are those along the ground's axes"
+    name = "reactions named by x, y and z are those along the ground's axes"
     yield attempted(name, "50 digits", lambda: named_otherwise(found.balance.balance, proof.state))
     if found.sums and not found.structure.unknowns:
-        name = "sums that are told have one value, whatever self-stress there is"
+        name = "stated sums have one value, whatever the self-stress"
         yield checked(name, first_wrong(map(proof.wrong_sum, found.sums)), IN_NUMBERS)
     if found.structure.system.loads.applied:
-        name = "all that is applied pushes as its fields declare"
+        name = "applied loads act as their fields declare"
         yield attempted(name, "50 digits", lambda: acting_otherwise(found.structure.system, proof.state))
     if sections:
         for name, wrong_one in (
@@ -115,11 +115,11 @@ def state_of(found: StaticReactions) -> dict[Node, Any]:
 
 
 def _left_out(found: StaticReactions) -> Iterator[Check]:
-    """A contradiction where something that holds the bodies is in none of the reactions that are told; else nothing."""
+    """A failing check where a component that holds the bodies is in none of the reported reactions; else none."""
     reported = {j for reaction in found.reactions if reaction.named for j in reaction.named.combination}
     missing = [c.name for j, c in enumerate(found.structure.components) if j not in reported]
     if missing:
-        yield checked("every reaction is told", ", ".join(missing), "exact")
+        yield checked("every reaction is reported", ", ".join(missing), "exact")
 
 
 @dataclass(frozen=True)
@@ -136,7 +136,7 @@ class _Proof:
 
     @cached_property
     def state(self) -> dict[Node, Any]:
-        """Every symbol with 50 digits; parameters without a value are something, unknown loads what they come to."""
+        """Every symbol with 50 digits; parameters without a value are random, unknown loads have their solution."""
         structure = self.found.structure
         known: dict[Node, Any] = values_of_parameters(structure.system.scope, Random(3))
         for given in (structure.at, self.found.balance.unknowns):
@@ -230,11 +230,11 @@ class _Proof:
                 return f"at x = {x:.6g} of '{forces.axis.body}' V = {V:.6g} and M = {T:.10g} for {M:.10g}"
         for a, b in self._turns(forces):
             if not any(a < x < b for x, _ in stated):
-                return f"M has an extreme between x = {a:.6g} and {b:.6g} of '{forces.axis.body}', which is not told"
+                return f"M has an extreme between x = {a:.6g} and {b:.6g} of '{forces.axis.body}', not reported"
         return ""
 
     def _behind(self, forces: SectionForces, piece: SectionPiece, x: float) -> tuple[float, float, float, float]:
-        """(V, M, and what is large for each) at a place of a piece, from the other end."""
+        """(V, M, size of each) at a place of a piece, from the other end."""
         leg = piece.leg
         t, n = self.numbers(leg.along), self.numbers(leg.left)
         R, T, size, moment = self.along(forces).behind(x, self.numbers(leg.start) + (x - self.one(leg.x)) * t)
@@ -326,7 +326,7 @@ class _Proof:
         yield from ((0.0, first), (1.0, last if "." in last else f"{first.partition('.')[0]}.{last}"))
 
     def _by_load(self, line: InfluenceLine, body: str, place: np.ndarray) -> float:
-        """The force under the unit load at a place of a body, by the balance of all bodies."""
+        """Force due to the unit load at a place of a body, by the equilibrium of all bodies."""
         load = self.numbers(line.load)
         i = self.found.system.motion.index[body]
         right = np.zeros(self._G.shape[0])
@@ -379,7 +379,7 @@ class _Proof:
         return float(sum(self.one(k) * x[j] for j, k in combination.items()))
 
     def _in_section(self, line: InfluenceLine, x: np.ndarray, load: tuple[str, np.ndarray, np.ndarray]) -> float:
-        """N, V or M of what acts before the section."""
+        """N, V or M of the loads before the section."""
         cut = line.cut
         assert cut is not None
         motion = self.found.system.motion
@@ -467,7 +467,7 @@ class _Diagram:
         return ""
 
     def _from_behind(self, piece: SectionPiece, x: float) -> tuple[float, float]:
-        """(what it is, what is large for it)."""
+        """(value, its size)."""
         leg, proof = piece.leg, self.proof
         t, n = proof.numbers(leg.along), proof.numbers(leg.left)
         R, T, size, moment = proof.along(self.forces).behind(x, proof.numbers(leg.start) + (x - proof.one(leg.x)) * t)
@@ -479,14 +479,14 @@ def _far(found: tuple[float, float], due: tuple[float, float], size: float) -> b
 
 
 def _misnamed(panel: DrawnPanel) -> str:
-    """A number beside a place that is on no curve, or another one than this; a corner without its number."""
+    """Message if a number stands where no curve is, or differs from the curve, or is missing at a corner; ""."""
     corners = np.concatenate([curve.places[[1, -2]] for curve in panel.curves])
     size = np.abs(np.concatenate([curve.places for curve in panel.curves])).max(axis=0)
     for text, place in panel.names:
         if abs(float(text) - place[1]) > FOUR_DIGITS * abs(place[1]):
             return f"{text} stands at {place[1]:.6g}"
         if not any(_is_on(curve.places[1:-1], place, size) for curve in panel.curves):
-            return f"{text} stands beside the curve"
+            return f"{text} stands next to the curve"
     for corner in corners:
         near = any(np.all(np.abs(place - corner) <= SAME_PLACE * size) for _, place in panel.names)
         if abs(corner[1]) > COMPUTED * size[1] and not near:

@@ -1,6 +1,6 @@
 """Equations of motion -> checks at states, in numbers: what the routes share, free bodies, reactions, the emitted code.
 
-Every check is made at the model's own start, then inside each piece of what it is made of, then at a random state.
+Every check is made at the model's own start, then in each piece of its piecewise functions, then at a random state.
 """
 
 from __future__ import annotations
@@ -67,8 +67,8 @@ class Given:
     Args:
         coordinate: its name.
         slopes: (f, g) with f' = g.
-        same: what is one function of t.
-        first: what is one at t = 0.
+        same: pairs that are equal at every t.
+        first: pairs that are equal at t = 0.
     """
 
     coordinate: str
@@ -136,11 +136,11 @@ class Trials:
         return self._solved[id(state)][1]
 
     def _pushed(self, state: State) -> State:
-        """A state of the motion with the multipliers that the equations of motion ask for."""
+        """A state of the motion with the multipliers of the equations of motion."""
         return state | least_multipliers(self.equations, state)
 
     def eliminated_rows(self) -> Check:
-        """W^T xi + s_t = 0 and dphi/dt = 0 whatever the independent speeds: what dependent rates were solved from.
+        """W^T xi + s_t = 0 and dphi/dt = 0 at any independent speeds: equations for the dependent rates.
 
         Rows that follow from others do so where the constraints hold, and are looked at there.
         """
@@ -223,10 +223,10 @@ class Trials:
                 pairs += [evaluate(pair, state, digits) for pair in given.same]
                 pairs += [evaluate(pair, begun, digits) for pair in given.first]
                 if any(abs(a - b) > DIFFERENCE_AT_50 * (1 + abs(a) + abs(b)) for a, b in pairs):
-                    return f"'{given.coordinate}' moves otherwise"
+                    return f"'{given.coordinate}' moves differently"
             return ""
 
-        return self._at_states("what is driven moves as given", "differences at 50 digits", check)
+        return self._at_states("driven coordinates move as given", "differences at 50 digits", check)
 
     def free_bodies(self) -> Check:
         """M a + c - Q - J^T lam and J a + gamma at any a and lam, by the free bodies, which use no B and no energy."""
@@ -291,7 +291,7 @@ class Trials:
     def friction(self) -> Check:
         """Friction brakes: factor * v < 0 for a contact that pushes, v its sliding velocity.
 
-        That of a bilateral contact is F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the bodies' balance.
+        That of a bilateral contact is F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the free bodies.
         """
         laws = _laws_of_round(self.equations.system) if push_sizes(self.equations.system) else []
 
@@ -311,7 +311,7 @@ class Trials:
                     return f"friction drives '{name}' on"
             return ""
 
-        return self._at_states("friction takes power from what slides", "50 digits", check, moving=True)
+        return self._at_states("friction takes power from sliding bodies", "50 digits", check, moving=True)
 
     def pushes(self) -> Iterable[Check]:
         """A contradiction where friction is taken with another sign of N than the start has; else nothing."""
@@ -326,7 +326,7 @@ class Trials:
 
     def begun_contacts(self) -> Iterable[Check]:
         """A contradiction where a contact is closed that opens as the motion starts; else nothing."""
-        name = "contacts that are closed stay so where the motion starts"
+        name = "closed contacts stay closed where the motion starts"
         found = attempted(name, "speeds of the start, 50 digits", lambda: leaving_at_start(self.equations))
         yield from (found,) if found.status == "fails" else ()
 
@@ -336,7 +336,7 @@ class Trials:
         return math.isclose(F, factor * math.hypot(*N), rel_tol=COMPUTED, abs_tol=COMPUTED)
 
     def tensors(self) -> Iterable[Check]:
-        """n . I n is what is declared, [xx, yy, zz, xy, yz, zx], times the products of n; none where nothing is."""
+        """n . I n is the declared [xx, yy, zz, xy, yz, zx] times the products of n; none where none is declared."""
         scope = self.equations.system.scope
         plain = {name: part for name, part in scope.model.bodies.items() if part.shape is None and part.parts is None}
         pairs = []
@@ -363,19 +363,19 @@ class Trials:
     def contacts(self) -> Iterable[Check]:
         """Check that declared contacts touch, and neither open nor slip; none without contacts."""
         if meetings_of(self.equations.system):
-            name = "contacts lie on both surfaces, and neither part nor slip"
+            name = "contacts lie on both surfaces, and neither open nor slip"
             yield self._at_states(name, "50 digits", lambda state: apart(self.equations.system, state))
 
     def threads(self) -> Iterable[Check]:
         """Strings and links run and pull as they are declared; none where there are none."""
         if threads_of(self.equations.system):
-            name = "strings and links touch what they are led over, keep their length and pull along it"
+            name = "strings and links touch their guides, keep their length and pull along it"
             yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
 
     def kept_constraints(self) -> Iterable[Check]:
         """Check that constraints which keep a start value are satisfied at the start; none without such constraints."""
         if rows_that_stay(self.equations.system):
-            name = "constraints that keep what is at the start are closed there"
+            name = "constraints that keep a start value are satisfied at the start"
             yield self._at_states(name, "50 digits", lambda state: open_at_start(self.equations.system, state))
 
     def slack_springs(self) -> Iterable[Check]:
@@ -383,7 +383,7 @@ class Trials:
         are."""
         system = self.equations.system
         if springs_of_the_start(system) and system.constraints.rows:
-            name = "springs that are slack at the start are so where the motion starts"
+            name = "springs declared slack at the start are so where the motion starts"
             yield attempted(name, "the start that the constraints complete", lambda: pulled_at_start(system))
 
     def elements(self) -> Iterable[Check]:
@@ -396,7 +396,7 @@ class Trials:
         """Check that applied loads act, and do virtual work, as they are declared; none where nothing is applied."""
         e = self.equations
         if e.system.loads.applied or e.system.loads.efforts or not all(map(is_zero, e.Q)):
-            name = "all that is applied pushes, and does the virtual work, that its fields declare"
+            name = "applied loads act, and do virtual work, as their fields declare"
             check = lambda state: acting_otherwise(e.system, state) or working_otherwise(e, state)  # noqa: E731
             yield self._at_states(name, "differences at 50 digits", check)
 
@@ -410,7 +410,7 @@ class Trials:
         """Formulas as they are printed, read back; none where nothing can be read."""
         text = ReadBack(self.equations, printed)
         if text.equalities:
-            name = "what is printed, read back, holds along the motion"
+            name = "printed formulas, read back, hold along the motion"
             yield self._at_states(name, "50 digits", lambda state: text.wrong(self._moving(state)), moving=True)
         if printed.texts:
             name = "texts for machines, read back, are the equations"
@@ -441,12 +441,12 @@ class Trials:
             return imbalance(reactions, moving, Random(7))
 
         if reactions.components:
-            yield self._at_states("every body is in balance with its reactions", "floating point", check)
+            yield self._at_states("every body is in equilibrium with its reactions", "floating point", check)
             if self.equations.system.scope.model.space == "space":
-                name = "reactions that are named by x, y and z are those along the ground's axes"
+                name = "reactions named by x, y and z are those along the ground's axes"
                 yield self._somewhere(name, lambda state: named_otherwise(reactions.balance, state))
             if drives_beside(reactions):
-                name = "what drives a motion is what the bodies ask for along it"
+                name = "drives are the forces that the bodies need along their motion"
                 yield self._somewhere(name, lambda state: driven_otherwise(reactions, self._pushed(state)))
 
     def _somewhere(self, name: str, wrong: Callable[[State], str]) -> Check:

@@ -1,8 +1,8 @@
-"""Equations that were judged -> whether the verdicts hold, decided once more by numbers alone.
+"""Equations that were judged -> checks of the verdicts, decided once more by numbers alone.
 
-Both sides are worked out in doubles, with a bound of their rounding, at consistent states: beside the start with the
+Both sides are evaluated in doubles, with a bound of their rounding, at consistent states: near the start with the
 model's own parameters, at random ones with others, or along a run from the start (Runge-Kutta, order 4, the step
-halved). Accelerations come from dense linear algebra, reactions from the bodies' balance in doubles, functions of the
+halved). Accelerations come from dense linear algebra, reactions from the free bodies in doubles, functions of the
 motion from their second definitions. A right equation has sides that agree at all of them; a wrong one does not.
 """
 
@@ -43,10 +43,10 @@ from eomgen.symbolic.expression.text import SLOPE, parse
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO_AT_50
 
-NEAR, FAR = 5, 2  # states beside the start, and at random with other parameters
+NEAR, FAR = 5, 2  # states near the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
 LENGTHS = (0.4, 0.1, 0.02)  # s
-STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less tells nothing apart
+STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less decides nothing
 EPSILON = float(np.finfo(float).eps)
 SURE = 30  # times the bound of rounding, from which on two numbers differ
 OF_THE_FILE = ("the values of the file", "what the file says", "rounding", "numbers")
@@ -63,9 +63,9 @@ class Judged:
     Args:
         text: as it was given.
         left, right: its sides, as they were read.
-        kind: what it is about.
+        kind: kind of its quantity.
         is_right: the verdict.
-        up_to: what it is right up to, in words.
+        up_to: condition under which it is right, in words.
         stands_for: names of the author and what they stand for, as texts.
         constants: names of the author that stand for nothing.
         equations: the equations of motion against which it was judged.
@@ -104,7 +104,7 @@ class Judged:
 
 
 def verdicts_again(judged: Iterable[Judged]) -> tuple[Check, ...]:
-    """One check of all verdicts; what cannot be decided so is said."""
+    """Checks of all verdicts; those that numbers cannot decide are unchecked."""
     tally = Tally(NAME, HOW)
     for each in judged:
         tally.add(each.text, _Again(each).wrong)
@@ -139,14 +139,14 @@ class _Again:
             first = apart[0]
             apart = [Rounded(x.value - first.value, x.error + first.error) for x in apart[1:]]
         off = next((x for x in apart if not x.may_vanish), None)
-        return "" if off is None else f"it is told right, and its sides differ by {off.value:.6g}"
+        return "" if off is None else f"it is judged right, and its sides differ by {off.value:.6g}"
 
     def _of_wrong(self) -> str:
         own = list(self._along() if self.judged.is_of_start else self._beside())
         apart = [found for state in own if (found := self._apart(state)) is not None]
         if len(apart) < 2:
             raise NoValue("no state has values for it")
-        return "it is told wrong, and its sides agree" if all(x.may_vanish for x in apart) else ""
+        return "it is judged wrong, and its sides agree" if all(x.may_vanish for x in apart) else ""
 
     def _apart(self, state: NumericState) -> Rounded | None:
         return _at(state, self.judged)
@@ -154,7 +154,7 @@ class _Again:
     # -- states ------------------------------------------------------------------------------------
 
     def _beside(self) -> Iterator[NumericState]:
-        """States that satisfy the constraints: beside the start, at random."""
+        """States that satisfy the constraints: near the start, then random ones."""
         equations, up_to = self.judged.equations, self.judged.up_to
         own = any(word in up_to for word in (*OF_THE_FILE, "holds where", "a constant of"))
         for name, supply in Trials(equations).states.supplies:
@@ -163,7 +163,7 @@ class _Again:
                 yield from (state_in_numbers(equations, place) for place in islice(supply, count))
 
     def _along(self) -> Iterator[NumericState]:
-        """States of the motion from the start, with the model's parameters; of what is wrong with others, too."""
+        """States of the motion from the start, with the model's parameters; for a wrong verdict with others too."""
         own = exact_parameters(self.judged.equations.system.scope.model)
         missing = [name for name in self.judged.equations.system.symbols.parameters if name not in own]
         if missing:
@@ -230,7 +230,7 @@ def _runge_kutta(
 
 @dataclass(frozen=True)
 class Rounded:
-    """A number and a bound of what it may be off by."""
+    """A number and a bound of its error."""
 
     value: float
     error: float

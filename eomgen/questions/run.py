@@ -24,7 +24,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Output
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check, unchecked
-from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_told
+from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_assumed
 from eomgen.proof.run_reported import output_columns_hold, reaction_columns_hold, rows_left_out
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.simulation.columns import formulas_of
@@ -97,7 +97,7 @@ class RunProof:
     def _contacts(self, found: Trajectory) -> Iterator[Check]:
         """Checks of contacts in the phases of a run, and between them."""
         seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
-        yield from contacts_do_as_told(seen)
+        yield from contacts_do_as_assumed(seen)
         if len(seen) > 1:
             yield from bodies_stand_as_reported(seen, self.models.without_contacts.system)
             yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)

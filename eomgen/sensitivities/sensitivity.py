@@ -138,8 +138,10 @@ class Sensitivity(Result):
             for pair, found in self.slopes.items()
             if found.value is not None and pair in self.in_si and not self._as_reported(pair, found)
         )
-        reported = [checked("derivatives as they are told are those in SI", next(off, ""), "floating point")]
-        reported.append(checked("derivatives are of what was asked", self._of_others(), "names that the file declares"))
+        reported = [checked("reported derivatives are those in SI", next(off, ""), "floating point")]
+        reported.append(
+            checked("derivatives are of the requested quantities", self._of_others(), "names that the file declares")
+        )
         texts = Tally("closed forms of derivatives, read back, give the numbers", "our grammar, floating point")
         for pair, slope in self.slopes.items():
             if slope.exact is not None and pair in self.in_si:

@@ -259,7 +259,7 @@ def test_where_reactions_do_not_follow_the_balance_is_left_out():
     """A body that nothing holds has no reactions; the other checks stand."""
     equations = eomgen.derive(replace(eomgen.load(MODELS / "atwood.toml"), constraints={}, outputs={}))
     names = [check.name for check in certify(equations.graph).checks]
-    assert "every body is in balance with its reactions" not in names and len(names) >= 7
+    assert "every body is in equilibrium with its reactions" not in names and len(names) >= 7
 
 
 ROUGH = """
@@ -324,14 +324,14 @@ def test_the_certificate_holds_where_a_closing_tie_has_friction(name):
     certificate = eomgen.derive(eomgen.loads(ROUGH + WITH_FRICTION[name])).certify()
     assert certificate.ok, str(certificate)
     reported = {check.name for check in certificate.checks}
-    assert {"friction takes power from what slides", "every body is in balance with its reactions"} <= reported
+    assert {"friction takes power from sliding bodies", "every body is in equilibrium with its reactions"} <= reported
 
 
 @pytest.mark.parametrize("law", ['motion = "w*t^2"', 'rate = "w*t^2"', 'acceleration = "w*t^2", speed = "w"'])
 def test_what_is_driven_moves_as_given(law):
     """nu = f', f or f' = w + the integral of f: any other nu turns it red, at some t other than 0."""
     equations = eomgen.derive(eomgen.loads(DRIVEN.format(law=law))).graph
-    name = "what is driven moves as given"
+    name = "driven coordinates move as given"
     assert {check.name: check.ok for check in certify(equations).checks}[name]
     for wrong in (0, equations.nu[0] + equations.symbols.t, -equations.nu[0]):
         turned = replace(equations, nu=(wrong, *equations.nu[1:]))

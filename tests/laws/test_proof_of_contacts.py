@@ -21,7 +21,7 @@ from eomgen.proof.check import Certificate
 from eomgen.symbolic.expression.spatial import times
 
 MODELS = Path(__file__).parents[2] / "models"
-TOUCH = "contacts lie on both surfaces, and neither part nor slip"
+TOUCH = "contacts lie on both surfaces, and neither open nor slip"
 DECLARED = "springs, dampers and drives act as they are declared, equal and opposite"
 
 DISC = """

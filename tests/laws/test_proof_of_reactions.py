@@ -13,7 +13,7 @@ import eomgen
 from eomgen.cli import main
 
 MODELS = Path(__file__).parent.parent.parent / "models"
-BALANCE = "formulas, read back, are the reactions of the bodies' balance"
+BALANCE = "formulas, read back, are the reactions of the free bodies"
 START = "formulas, read back, give the numbers at the start"
 STATE = "numbers are those of the formulas at the state"
 

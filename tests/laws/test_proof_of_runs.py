@@ -52,7 +52,7 @@ def test_a_run_keeps_its_promises(name):
 
 
 ENERGY = "E - E0 is the integral of the power"
-STEPS = "steps taken again from states of the run end where it came"
+STEPS = "steps repeated from states of the run end at its next states"
 
 
 def test_a_run_that_loses_energy_is_seen():
@@ -83,7 +83,7 @@ def test_a_row_that_is_left_out_is_seen(left_out):
     run = run_of("simple_pendulum")
     assert len(run.t) == 1001
     cut = replace(run, t=np.delete(run.t, left_out), x=np.delete(run.x, left_out, axis=0), reactions={}, outputs={})
-    assert "a run has a row at every instant that was asked" in failing(cut)
+    assert "a run has a row at every requested instant" in failing(cut)
 
 
 def test_a_damper_that_is_forgotten_in_the_power_is_seen(monkeypatch):
@@ -131,7 +131,7 @@ def test_a_loop_that_opens_is_seen():
         x[-1, 1] += 1e-5
         return x
 
-    assert "the constraints stay closed" in failing(bent(run_of("four_bar"), 0, aside))
+    assert "the constraints are satisfied" in failing(bent(run_of("four_bar"), 0, aside))
 
 
 def test_a_quaternion_that_loses_its_norm_is_seen():
@@ -191,7 +191,7 @@ def test_a_column_of_reactions_that_is_wrong_is_seen(name):
     """A thousandth too large, in one phase or another."""
     run = run_of(name)
     columns = {key: column * 1.001 for key, column in run.reactions.items()}
-    assert failing(replace(run, reactions=columns)) == {"columns of reactions are those of the balance"}
+    assert failing(replace(run, reactions=columns)) == {"columns of reactions are those of the free bodies"}
 
 
 def test_rows_that_pull_are_proven_with_their_power():

@@ -129,7 +129,7 @@ def test_a_nut_that_advances_too_far_is_told(monkeypatch):
 def test_an_eyelet_that_holds_the_string_is_told(monkeypatch):
     """One tension through what slips: a string over an eyelet and a smooth peg has one row."""
     monkeypatch.setattr(String, "strand_rows", lambda self: tuple(range(1, len(self.path))))
-    assert "strings and links touch what they are led over, keep their length and pull along it" in failing(STRING)
+    assert "strings and links touch their guides, keep their length and pull along it" in failing(STRING)
 
 
 def test_a_string_on_the_wrong_side_of_its_peg_is_told(monkeypatch):
@@ -140,13 +140,13 @@ def test_a_string_on_the_wrong_side_of_its_peg_is_told(monkeypatch):
         real(self, scene, place, -offset if type(offset) is not int else offset, axis)
 
     monkeypatch.setattr(Stop, "__init__", mirrored)
-    assert "strings and links touch what they are led over, keep their length and pull along it" in failing(STRING)
+    assert "strings and links touch their guides, keep their length and pull along it" in failing(STRING)
 
 
 def test_a_link_of_another_length_is_told(monkeypatch):
     """|r_2 - r_1| = L where the start is sought, and so closes for any length."""
     monkeypatch.setattr(Link, "_length", lambda self, scene, r: scene.value(self.length) * Fraction(9, 10))
-    assert "strings and links touch what they are led over, keep their length and pull along it" in failing(CRANK)
+    assert "strings and links touch their guides, keep their length and pull along it" in failing(CRANK)
 
 
 def test_a_path_that_bends_the_other_way_is_told_at_an_instant_behind_two_phases(monkeypatch):
@@ -222,4 +222,4 @@ def test_gears_that_do_not_mesh_where_they_start_are_told(monkeypatch):
         return replace(row, gap=row.gap - Fraction(1, 10))
 
     monkeypatch.setattr(gear, "same_turn", off)
-    assert "constraints that keep what is at the start are closed there" in failing(GEARS)
+    assert "constraints that keep a start value are satisfied at the start" in failing(GEARS)

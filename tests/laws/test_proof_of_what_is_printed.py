@@ -19,7 +19,7 @@ from eomgen.verbs.derive import derive_document
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
-PRINTED = "what is printed, read back, holds along the motion"
+PRINTED = "printed formulas, read back, hold along the motion"
 CONSTANT = "first integrals as they are printed stay constant along the motion"
 
 

@@ -186,7 +186,7 @@ def test_a_wrong_derivative_is_seen(by):
     found = eomgen.sensitivity(MODELS / "double_pendulum.toml", ("theta1''", "frequency(1)"), "m1")
     wrong = replace(found, in_si={pair: by * slope for pair, slope in found.in_si.items()})
     assert found.certify().ok
-    others = "derivatives are of what was asked"
+    others = "derivatives are of the requested quantities"
     assert all(check.status == "fails" for check in wrong.certify().checks if check.name != others)
 
 
@@ -321,7 +321,7 @@ def test_a_derivative_that_is_told_in_another_unit_is_contradicted():
     pair = ("x at equilibrium", "m")
     wrong = replace(found, slopes={pair: replace(found[pair], value=found[pair].value * 100)})
     assert found.certify().ok and [x.name for x in wrong.certify().checks if x.status == "fails"] == [
-        "derivatives as they are told are those in SI"
+        "reported derivatives are those in SI"
     ]
 
 
