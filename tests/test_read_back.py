@@ -13,7 +13,7 @@ from eomgen.documents.document import Document
 from eomgen.documents.latex_math import Notation
 from eomgen.documents.read_back import misspelt, page_read_back
 from eomgen.documents.texts_read import json_read_back, text_read_back
-from eomgen.proof.pages_read import SetLetters, tokens_of, typeset, worth
+from eomgen.proof.pages_read import SetLetters, tokens_of, tree_value, typeset
 from eomgen.symbolic.numeric.evaluation import FLOAT
 
 SWING = """
@@ -98,7 +98,7 @@ def test_typeset_formulas_are_read_as_a_person_reads_them():
     values = {"a": 2.0, "b": 3.0, "x": 0.7, "c": 5.0, "y": 0.1, "y''": 4.0}
 
     def read(tex: str) -> float:
-        return worth(typeset(tokens_of(tex), letters), values, FLOAT)
+        return tree_value(typeset(tokens_of(tex), letters), values, FLOAT)
 
     from math import cos, exp, sin
 

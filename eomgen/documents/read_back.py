@@ -56,9 +56,9 @@ from eomgen.proof.pages_read import (
     said_by,
     spoken,
     tokens_of,
+    tree_value,
     typeset,
     unlike_words,
-    worth,
 )
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar
@@ -268,7 +268,7 @@ class PageComparison:
             self._pieces((cell,), line, where)
 
     def _number(self, tex: str, right: float, where: str) -> None:
-        found = float(worth(self._tree(tokens_of(tex), where), {}, fifty_digits()))
+        found = float(tree_value(self._tree(tokens_of(tex), where), {}, fifty_digits()))
         if wrong := differing(found, right):
             raise Unlike(f"{where}: {wrong}")
 
@@ -314,7 +314,7 @@ class PageComparison:
                 raise Unlike(f"{where}: no number stands there")
             tokens = sides.pop(0)
             cut = tokens.index(r"\text") if r"\text" in tokens else len(tokens)
-            number = float(worth(self._tree(tokens[:cut], where), {}, fifty_digits()))
+            number = float(tree_value(self._tree(tokens[:cut], where), {}, fifty_digits()))
             unit = spoken("".join(x for x in tokens[cut + 2 : -1] if x not in "${}").replace(r"\cdot", "·"))
             if wrong := differing(number, float(found.value)):
                 raise Unlike(f"{where}: {wrong}")
@@ -473,7 +473,7 @@ def _valueless(todo: Sequence[InNumbers], state: Mapping[str, Any]) -> Iterator[
     for each, right in zip(todo, _rights([meant for *_, meant in todo], state), strict=True):
         where, tree, _ = each
         try:
-            found = worth(tree, state, fifty_digits())
+            found = tree_value(tree, state, fifty_digits())
         except NoValue:
             yield each
             continue

@@ -1,1 +1,1 @@
-"""What measured motions tell of masses, inertias, rotors, dampers and friction."""
+"""Identification of masses, inertias, rotors, dampers and friction from measured motions."""

@@ -1,4 +1,4 @@
-"""Y -> base parameters, and their factors as formulas of the lengths.
+"""Y -> base parameters: groups of parameters that the forces can tell apart, with factors as formulas of lengths.
 
 Y -> base parameters: the groups of parameters that the forces of motions tell apart.
 
@@ -100,7 +100,7 @@ class Group:
 
 @dataclass(frozen=True)
 class BaseParameters:
-    """What motions tell of the parameters.
+    """Base parameters: all that motions can determine of the parameters.
 
     Args:
         groups: the base parameters, as many as the rank.
@@ -165,7 +165,7 @@ def _kept_in_field(system: System, entries: ScalarRow, moving: list[int], seed: 
 def _polynomials(
     system: System, entries: ScalarRow, found: Dependence, size: tuple[int, int], seed: int
 ) -> dict[tuple[int, int], str]:
-    """The factors as polynomials in the lengths; {} where they are none, or are not worth their numbers."""
+    """Factors as polynomials in the lengths; {} where they are not, or have other values than their numbers."""
     lengths = [node for node in system.symbols.parameters.values() if node in set(symbols_of(entries))]
     few = len(lengths) <= MOST_LENGTHS
     formulas = _formulas(system, entries, lengths, found.kept, size, seed) if few else {}
@@ -175,7 +175,7 @@ def _polynomials(
 
 
 def _agree(number: Any, terms: LengthTerms, values: Mapping[str, Any]) -> bool:
-    """Whether a polynomial is worth a number."""
+    """True if a polynomial has a value."""
     worth = sum((in_50_digits(factor) * prod(values[name] for name in names) for factor, names in terms), start=0)
     return bool(abs(worth - number) <= FOLLOWS_AT_50 * (1 + abs(number)))
 
@@ -281,7 +281,7 @@ def _polynomial(terms: LengthTerms) -> str:
 def _numbers(
     system: System, rows: Sequence[ScalarRow], moving: list[int], seed: int, kept: Sequence[int] = ()
 ) -> Dependence:
-    """By states that keep the constraints, with 50 digits; the columns of `kept` are looked at first."""
+    """Dependence of columns, by states that satisfy the constraints, with 50 digits; those of `kept` are taken first."""
     order = [*kept, *(j for j in range(len(moving)) if j not in set(kept))]
     W, state = sampled_rows(system, rows, [moving[j] for j in order], seed)
     sizes = [max(map(abs, column)) for column in zip(*W, strict=True)]
@@ -327,7 +327,7 @@ LARGEST_PLAIN = 1000  # denominator of a factor that holds no length
 
 @dataclass(frozen=True)
 class Dependence:
-    """How columns of W follow from others: W_j = sum K_ij W_i.
+    """Dependence of columns of W on others: W_j = sum K_ij W_i.
 
     Args:
         kept, follow: the columns i and j; of neither is one that is 0.
@@ -393,7 +393,7 @@ def _of_columns(transfers: Iterable[Transfer], place: Mapping[str, int]) -> Iter
 
 
 def _vanishes(W: np.ndarray, by: Sequence[Any]) -> bool:
-    """Whether a combination of columns is 0."""
+    """True if a combination of columns is 0."""
     terms = W * np.array(by, dtype=object)
     return not terms.size or max(map(abs, terms.sum(axis=1))) <= FOLLOWS_AT_50 * max(map(abs, terms.flat))
 
@@ -442,7 +442,7 @@ def named_entries(inertia: SpatialInertia) -> dict[str, Scalar]:
 
 
 def particle(r: Vector) -> SpatialInertia:
-    """Of mass 1 at r."""
+    """Inertia of a particle of mass 1 at r."""
     return SpatialInertia(1, r, _crossed(r, r))
 
 
@@ -464,14 +464,14 @@ def _crossed(a: Vector, b: Vector) -> Matrix:
 
 @dataclass(frozen=True)
 class SharedPoint:
-    """What two bodies share: a point, r in the axes of each, and axes through it; None: the ground."""
+    """Point that two bodies share, r in the axes of each, and axes through it; None: the ground."""
 
     bodies: tuple[str | None, str | None]
     at: tuple[Vector, Vector]
     axes: tuple[tuple[Vector, Vector], ...] = ()
 
     def transfers(self) -> Iterator[Transfer]:
-        """From the second body to the first, or from the ground."""
+        """Transfers from the second body to the first, or from the ground."""
         for first, second in [
             tuple(map(particle, self.at)),
             *((dipole(self.at[0], m), dipole(self.at[1], n)) for m, n in self.axes),
@@ -487,7 +487,7 @@ def _exchanged(bodies: tuple[str | None, str | None], first: SpatialInertia, sec
 
 
 def transfers_of(system: System, states: Sequence[State]) -> Iterator[Transfer]:
-    """What may be a move: the points that meet at all states, the axes of joints, bodies that turn alike."""
+    """Candidates for transfers: points that meet at all states, axes of joints, bodies that turn alike."""
     motion = system.motion
     yield from (x for shared in _shared(system, states) for x in shared.transfers())
     for link in motion.links:
@@ -525,12 +525,12 @@ def _shared(system: System, states: Sequence[State]) -> Iterator[SharedPoint]:
 
 
 def _seen(scalars: Sequence[Scalar], states: Sequence[State]) -> tuple[tuple[int, ...], ...]:
-    """What scalars are worth at each state, as whole numbers of what is surely known."""
+    """Values of scalars at each state, as whole multiples of their sure accuracy."""
     return tuple(tuple(int(x / FOLLOWS_AT_50 + 0.5) for x in evaluate(scalars, s, fifty_digits())) for s in states)
 
 
 def _alike(system: System, states: Sequence[State]) -> Iterator[Transfer]:
-    """In the plane: bodies with one angular velocity at all states."""
+    """Transfers between bodies with the same angular velocity at all states, in the plane."""
     if system.scope.model.space != "plane":
         return
     groups: dict[Any, list[str]] = defaultdict(list)

@@ -113,7 +113,7 @@ class Reduced:
     rows: dict[int, dict[int, Any]]
 
     def takes(self, row: Mapping[int, Any]) -> bool:
-        """Whether a row does not follow from these, which it then joins."""
+        """True if a row does not follow from these rows; it is then added."""
         left = dict(row)
         for pivot, other in self.rows.items():
             if factor := left.pop(pivot, 0):
@@ -128,7 +128,7 @@ class Reduced:
 
 
 def echelon_in_digits(W: np.ndarray, right: np.ndarray | None = None) -> tuple[list[int], dict[tuple[int, int], Any]]:
-    """As `_echelon_form`, of numbers with 50 digits; of a right side the solution, as one more column."""
+    """Echelon form as of `_echelon_form`, of numbers with 50 digits; a right side becomes one more column."""
     width = W.shape[1]
     if not len(W):
         return [], {}

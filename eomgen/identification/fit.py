@@ -1,4 +1,4 @@
-"""Measured motions -> parameters of bodies that can be.
+"""Measured motions -> parameters: least squares of the base parameters, then physically possible bodies.
 
 Measured motions -> parameters: least squares of the base parameters, then bodies that there can be.
 
@@ -44,7 +44,7 @@ Data = Mapping[str, Any]
 
 @dataclass(frozen=True)
 class Identified:
-    """What measured motions tell.
+    """Parameters identified from measured motions.
 
     Args:
         regressor: the model's.
@@ -156,7 +156,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
 
 
 def _samples(found: Regressor, data: Data, stacked: Stacked) -> StackedSamples:
-    """The samples as they were stacked, with what the model says."""
+    """Stacked samples, and the model's values."""
     t, states, _ = _measured(found.system.symbols, data)
     given = {name: np.asarray(data[name], dtype=float) for name in found.system.symbols.inputs if name in data}
     ends = np.cumsum(stacked.sizes)[:-1]
@@ -173,7 +173,7 @@ def _splined(symbols: Symbols, data: Data) -> list[str]:
 
 
 def _shifts(stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarray, names: Sequence[str]) -> list[float]:
-    """How far the noise of those columns has moved the base parameters, about; [] where there are none.
+    """Estimated bias of the base parameters by the noise of those columns; [] without such columns.
 
     beta - (W^T W - E D^T D)^-1 (W^T b - E D^T d), D and d what as much noise again makes of W and b; where the noise
     leaves nothing of W^T W, all of beta.
@@ -273,7 +273,7 @@ def _column(data: Data, name: str) -> Any:
 
 
 def _rate(data: Data, t: np.ndarray, name: str, columns: Mapping[str, np.ndarray]) -> np.ndarray:
-    """A measured rate, else that of a cubic spline through what it is the rate of."""
+    """Measured rate, else the derivative of a cubic spline through the samples."""
     if name in data:
         return np.asarray(data[name], dtype=float)
     of = name[:-1]

@@ -1,4 +1,4 @@
-"""Regressor, fit -> whether they are what they claim, by the equations of motion and by numbers that share nothing.
+"""Regressor, fit -> checks of them by the equations of motion, and by numbers that share nothing with them.
 
 Y pi + y0 = M a + c - Q without inputs              exactly
 Y pi = Y_base K pi                                  of any pi, at states that keep the constraints, along their motions
@@ -59,7 +59,7 @@ class LinearForces(Protocol):
 
 
 def certify_regressor(found: LinearForces) -> Certificate:
-    """Of the regressor and its groups, on the proof of the equations of motion."""
+    """Proof of the regressor and its groups, based on the proof of the equations of motion."""
     equations = equations_of_motion(found.system)
     name = "Y pi + y0 are the forces that motions take"
     checks = [attempted(name, "prime field, or 50 digits", partial(_other_forces, found, equations))]
@@ -106,7 +106,7 @@ def _another_force(found: LinearForces, state: Any, along: np.ndarray, rng: Rand
 
 
 def _followers(found: LinearForces) -> str:
-    """How many columns of Y_base follow from the others at many states; "".
+    """Message with the number of columns of Y_base that depend on the others at many states; "".
 
     A part of one freedom gives one row a state, however many rows the others give: as long as columns follow, there
     are to be as many states as rows.
@@ -126,7 +126,7 @@ def _followers(found: LinearForces) -> str:
 
 
 def _rank(W: np.ndarray) -> int:
-    """The columns that do not follow from others: by doubles where these tell it, else made orthogonal in 50 digits."""
+    """Number of independent columns: by doubles where these decide it, else by orthogonalization with 50 digits."""
     columns = [column / max(map(abs, column)) for column in W.T if any(column)]
     values = np.linalg.svd(np.array(columns, dtype=float), compute_uv=False) if columns else np.zeros(0)
     if len(columns) == W.shape[1] and all(values > RANK * values[0]):
@@ -154,7 +154,7 @@ def _misread(found: LinearForces, group: Group) -> str:
 
 
 def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
-    """Of least squares: what is left is at right angles to every column."""
+    """Check of least squares: the residual is orthogonal to every column."""
     left, size = b - W @ beta, np.linalg.norm(W, axis=0) * (np.linalg.norm(b) + np.linalg.norm(W @ beta))
     worst = float(np.max(np.abs(W.T @ left) / np.where(size > 0, size, 1), initial=0.0))
     wrong = "" if worst <= COMPUTED else f"what is left of the forces lies along a column by {worst:.1e}"
@@ -203,7 +203,7 @@ def _left_otherwise(motion: PhaseMotion, samples: StackedSamples, k: int) -> str
 
 
 def spread_checked(W: np.ndarray, b: np.ndarray, deviations: np.ndarray, condition: float, residual: float) -> Check:
-    """By W = Q R: beta = R^-1 Q^T b, deviations |rows of R^-1| s, s^2 = |b - Q Q^T b|^2/(n - k); condition by squares.
+    """Check by W = Q R: beta = R^-1 Q^T b, deviations |rows of R^-1| s, s^2 = |b - Q Q^T b|^2/(n - k).
 
     The condition is the root of the largest over the least eigenvalue of the Gram matrix of columns of length 1.
     """

@@ -84,7 +84,7 @@ class Regressor:
 
     @cached_property
     def base(self) -> BaseParameters:
-        """The groups of parameters that the forces tell apart."""
+        """Groups of parameters that the forces can tell apart."""
         return base_of(self.system, self.parameters, self.rows)
 
     def certify(self) -> Certificate:

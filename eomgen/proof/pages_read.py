@@ -565,7 +565,7 @@ def names_of_tree(tree: Tree) -> Iterable[str]:
             yield from names_of_tree(part)
 
 
-def value_of(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
+def tree_value(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
     """A tree in numbers.
 
     Raises:
@@ -578,8 +578,8 @@ def value_of(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> A
         return values[parts[0]]
     if op == "select":
         condition, if_true, if_false = parts
-        return value_of(if_true if value_of(condition, values, arithmetic) else if_false, values, arithmetic)
-    known = [value_of(part, values, arithmetic) for part in parts]
+        return tree_value(if_true if tree_value(condition, values, arithmetic) else if_false, values, arithmetic)
+    known = [tree_value(part, values, arithmetic) for part in parts]
     if op == "sum":
         return sum(known[1:], start=known[0])
     if op == "product":

@@ -78,7 +78,7 @@ def first_element(data: bytes) -> str:
 
 
 def _tables(path: Path, data: bytes, floating: bool, model: str | None) -> Imported:
-    """By what the root of the file says."""
+    """Import by the reader for the root element of the file."""
     root = first_element(data)
     if model is not None and root != "sdf":
         raise UsageError("only SDF files have several models to choose from", fix="leave --model out")

@@ -70,7 +70,7 @@ def mjcf(path: Path, data: bytes) -> Imported:
 
 
 def _switched(m: Any) -> Any:
-    """A compiled model without what its flags switch off."""
+    """Compiled model without the parts that its flags switch off."""
     mujoco: Any = importlib.import_module("mujoco")
     kinds = ("jnt_stiffness", "tendon_stiffness"), ("dof_damping", "tendon_damping", "actuator_damping")
     springs, dampers = (
@@ -217,7 +217,7 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
 
 
 def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
-    """What a free or a ball joint has beside its freedom: dampers, rotors; springs, friction, limits are left out."""
+    """Reads dampers and rotors of a free or a ball joint; springs, friction and limits are left out."""
     m, q, d = r.m, r.joint[j], int(r.m.jnt_dofadr[j])
     places = keys.get("position", [])
     dofs = slice(d, d + len(places) + 3)
@@ -309,7 +309,7 @@ def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
 
 
 def _bent(r: CompiledRobot, j: int, x: str) -> None:
-    """What springs and dampers of a hinge or slide have beside their linear part.
+    """Reads the nonlinear part of springs and dampers of a hinge or slide.
 
     V = k1 x^3/3 + k2 x^4/4;  Q = -(c1 |q'| + c2 q'^2) q'
     """
@@ -344,7 +344,7 @@ def _sites(r: CompiledRobot) -> dict[int, str]:
 
 
 def _rest(r: CompiledRobot) -> None:
-    """What else there is in the file."""
+    """Reports everything else in the file as left out."""
     m = r.m
     touching = [m.geom(g).name or f"geom{g}" for g in range(m.ngeom) if m.geom_contype[g] or m.geom_conaffinity[g]]
     drawn = [m.geom(g).name or f"geom{g}" for g in range(m.ngeom)]
@@ -415,7 +415,7 @@ def spec_of(path: Path, data: bytes) -> Any:
 
 
 def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int) -> int:
-    """How many elements replicas make of a file, and of those that it includes.
+    """Number of elements that replicas make of a file, and of those that it includes.
 
     Args:
         first: beside which included files lie.
@@ -459,20 +459,23 @@ def _included(path: Path) -> bytes:
 
 
 def _product(text: str) -> int:
-    """The product of whole numbers; 1 of what is none: MuJoCo says so."""
+    """Product of whole numbers; other values count as 1, as MuJoCo reports them."""
     words = text.split()
     return math.prod(int(word) for word in words) if all(word.isdigit() and len(word) < 20 for word in words) else 1
 
 
 def compiled(spec: Any) -> Any:
-    """What MuJoCo makes of it, without a word of what it will not read some day."""
+    """Compiled model of MuJoCo, without its warnings of deprecated features."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return spec.compile()
 
 
 def _read(mujoco: Any, path: Path, data: bytes, *, meshes: bool = True) -> Any:
-    """Without textures; without `meshes` what has a mesh on a body whose mass is given, or that stands, is a ball."""
+    """Model of MuJoCo without textures.
+
+    Without `meshes`, a mesh on a body whose mass is given, or that stands still, is replaced by a ball.
+    """
     pipe = not path.is_file()
     spec = mujoco.MjSpec.from_string(data.decode()) if pipe else mujoco.MjSpec.from_file(str(path))
     spec.compiler.fusestatic = False
@@ -500,7 +503,7 @@ def _without_meshes(spec: Any, ball: Any, by_geoms: bool) -> None:
 
 
 def _delete(spec: Any, what: Any) -> None:
-    """As each MuJoCo has it."""
+    """Deletes an element, by the function that this version of MuJoCo has."""
     if hasattr(spec, "delete"):
         spec.delete(what)
     else:

@@ -97,7 +97,7 @@ def _tendon_rotor(r: CompiledRobot, name: str, length: list[tuple[Decimal, str]]
 
 
 def _carries(m: Any, one: int, other: int) -> bool:
-    """True if a joint moves what another is of."""
+    """True if a joint moves the body of another."""
     dof, wanted = int(m.jnt_dofadr[other]), int(m.jnt_dofadr[one])
     while dof >= 0:
         if dof == wanted:
@@ -262,7 +262,7 @@ Length = list[tuple[Decimal, str]]
 
 
 def rotors(r: CompiledRobot) -> None:
-    """What motors add to inertia and damping of their joints and tendons, pushing or not: gear^2 times theirs.
+    """Reads what motors add to inertia and damping of joints and tendons, even without a force: gear^2 times theirs.
 
     The rotor of a tendon that is a multiple f of one joint is that joint's, f^2 times.
     """
@@ -290,7 +290,7 @@ def rotors(r: CompiledRobot) -> None:
 
 
 def motors(r: CompiledRobot) -> None:
-    """Motors: an input each, and force = gain w + bias along what it acts on."""
+    """Reads motors: an input each, and force = gain w + bias along their target."""
     m = r.m
     for k in range(len(m.actuator_trntype)):
         raw = m.actuator(k).name or f"motor{k}"
@@ -352,7 +352,7 @@ def _times(x: Decimal, law: str) -> str:
 
 
 def _switched_off(m: Any, k: int) -> bool:
-    """By a flag, or by the group to which it belongs."""
+    """True if a motor is switched off, by a flag or by its group."""
     mujoco: Any = importlib.import_module("mujoco")
     flag = m.opt.disableflags & int(mujoco.mjtDisableBit.mjDSBL_ACTUATION)
     group = int(m.actuator_group[k])
@@ -376,7 +376,7 @@ def _linear(r: CompiledRobot, k: int, *, at_site: bool, in_space: bool) -> bool:
 
 
 def _motor(r: CompiledRobot, k: int, raw: str, length: Length | None, ends: list[str]) -> None:
-    """One motor, its input and what of it has no counterpart."""
+    """Reads one motor and its input, and reports its parts without a counterpart."""
     m, target = r.m, int(r.m.actuator_trnid[k][0])
     at_site = m.actuator_trntype[k] == ON_SITE
     if at_site and m.site_bodyid[target] == 0:
@@ -423,14 +423,14 @@ def _push(r: CompiledRobot, k: int, raw: str, w: str, length: Length) -> bool:
 
 
 def _in_space(r: CompiledRobot, k: int, w: str) -> bool:
-    """A motor on a free or ball joint, kept for when its rates have names; whether it moves anything by w."""
+    """Reads a motor on a free or ball joint, to be added when its rates have names; True if its input has an effect."""
     m, j = r.m, int(r.m.actuator_trnid[k][0])
     r.in_space[k] = w
     return bool(m.actuator_gainprm[k][0]) and any(m.actuator_gear[k][: 3 if m.jnt_type[j] == BALL else 6])
 
 
 def _pull(r: CompiledRobot, k: int, w: str, ends: list[str]) -> bool:
-    """A motor on a tendon straight between two places: it draws them together by what it shortens."""
+    """Reads a motor on a tendon that is straight between two places: it pulls them together."""
     gear = decimal_of_double(r.m.actuator_gear[k][0])
     law, driven = _law(r, k, w, [(gear, "r")], -gear)
     if law != "0":
@@ -488,7 +488,7 @@ JOINT_WRAP, SITE_WRAP = 1, 3  # of what a tendon is of
 
 @dataclass
 class CompiledRobot:
-    """A compiled model of MuJoCo, and what is made of it.
+    """Compiled model of MuJoCo, and the tables that are made of it.
 
     Args:
         rotors, dampers: what motors add to joints and tendons, by ("joint" or "tendon", number).
@@ -531,7 +531,7 @@ class CompiledRobot:
         return any(x >= 0 for x in self.numbers(["actuator_plugin"], k))
 
     def added(self, of: str, k: int, own: Any, motors: dict[tuple[str, int], Decimal]) -> Decimal:
-        """What a joint or tendon has itself, and what its motors add."""
+        """Own value of a joint or tendon, plus that of its motors."""
         return decimal_of_double(own) + motors.get((of, k), ZERO)
 
     def push(self, name: str, q: str, value: str) -> None:
@@ -554,7 +554,7 @@ class CompiledRobot:
         return [self.sites[int(self.m.wrap_objid[k])] for k in at] if straight else []
 
     def units(self, coordinates: Iterable[str]) -> set[str]:
-        """What they count, once each."""
+        """Units of coordinates, once each."""
         return {self.found["coordinates"][q]["unit"] for q in coordinates}
 
     def sum_of(self, length: list[tuple[Decimal, str]], constant: Decimal = ZERO, *, rate: bool = False) -> str:
@@ -563,7 +563,7 @@ class CompiledRobot:
         return signed_sum(terms, constant, weighed=len(self.units(q for _, q in length)) > 1)
 
     def numbers(self, fields: Iterable[str], k: int | slice) -> list[float]:
-        """What fields of the compiled model say of its k-th thing; nothing of those that an older MuJoCo lacks."""
+        """Values of fields of the compiled model for its k-th element; without fields that an older MuJoCo lacks."""
         given = (getattr(self.m, field, None) for field in fields)
         return [float(x) for values in given if values is not None for x in np.ravel(values[k])]
 

@@ -108,7 +108,7 @@ def _tables(choice: SdfChoice) -> tuple[SdfChoice, Entries]:
 
 @dataclass
 class _Reading:
-    """A model's elements, by name, and what is made of them.
+    """Elements of a model by name, and the tables that are made of them.
 
     Args:
         above: of each link the joint by which it hangs.
@@ -190,7 +190,7 @@ class _Reading:
         return found.text
 
     def _link_of(self, name: str, below: tuple[str, ...] = ()) -> str:
-        """The link with which a frame moves: a link's own, a joint's child, what a frame is attached to."""
+        """Link with which a frame moves: a link itself, a joint's child, the link to which a frame is attached."""
         if name in below:
             raise ModelError(f"frame '{name}' is attached to itself", self.model.where, "fix attached_to")
         if name == "__model__" and self.links:
@@ -224,7 +224,7 @@ class _Reading:
     # poses
 
     def _pose(self, name: str, below: tuple[str, ...] = (), stop: str = "__model__") -> Pose:
-        """Of a link, joint or frame in the model's axes, or in those of a frame to which it counts."""
+        """Pose of a link, joint or frame in the model's axes, or in those of a frame to which it counts."""
         if name in ("__model__", "", stop):
             return Pose(IDENTITY, ORIGIN)
         if name == "world":
@@ -247,7 +247,7 @@ class _Reading:
         return found
 
     def _in_link(self, collision: XmlElement, link: str) -> Pose:
-        """Where a collision of a link is in it."""
+        """Pose of a collision in its link."""
         pose = next((child for child in collision.children if child.tag == "pose"), None)
         other = None if pose is None else pose.attributes.get("relative_to")
         if not other or other == link:
@@ -255,7 +255,7 @@ class _Reading:
         return self._pose(link).inverse().then(self._pose(other)).then(own_pose(pose))
 
     def _placed(self) -> Pose:
-        """Of the model in the world: of its own frame, or of the one by which it is placed."""
+        """Pose of the model in the world: of its own frame, or of the one by which it is placed."""
         pose = next((child for child in self.model.children if child.tag == "pose"), None)
         if pose is not None and pose.attributes.get("relative_to", "world") != "world":
             pose.seen = False  # to what is not imported: it is told among what is left out
@@ -331,7 +331,7 @@ class _Reading:
         return Moved(keys, at.p, q)
 
     def _rotor(self, joint: XmlElement, axis: XmlElement) -> Decimal:
-        """ratio^2 J of the rotor behind a gear; of a joint without a motor it is told among what is left out."""
+        """Inertia ratio^2 J of the rotor behind a gear; for a joint without a motor it is reported as left out."""
         limit = axis.one("limit")
         effort = None if limit is None else limit.one("effort")
         if effort is not None and _finite(effort) == 0:

@@ -49,7 +49,7 @@ REFERRING = ("relative_to", "attached_to", "expressed_in", "joint")  # attribute
 
 @dataclass(frozen=True)
 class ModelScope:
-    """Where elements of a model stand.
+    """Place of the elements of a model in the whole file.
 
     Args:
         frame: that of their model, from which poses count.
@@ -64,7 +64,7 @@ class ModelScope:
     prefix: str = ""
 
     def named(self, name: str) -> str:
-        """What a name in the model means in the whole."""
+        """Name in the whole of a name in the model."""
         if name in ("", "world"):
             return name
         return self.frame if name == "__model__" else f"{self.prefix}{name}"
@@ -92,7 +92,7 @@ class FlatModel:
 
 @dataclass(frozen=True)
 class SdfChoice:
-    """A model of a file that may be imported: itself or what includes it, and the gravity of its world."""
+    """Model of a file that may be imported: itself or the element that includes it, and the gravity of its world."""
 
     element: XmlElement
     gravity: XmlElement | None
@@ -106,7 +106,7 @@ class SdfChoice:
         return given.get("name") or given.get("uri", "").rpartition("/")[2]
 
     def is_called(self, name: str) -> bool:
-        """By its own name, or by that of the file's model which it includes."""
+        """True if a model has this name: its own, or that of the file's model which it includes."""
         if self.name == name:
             return True
         try:
@@ -179,7 +179,7 @@ def included(include: XmlElement, scope: ModelScope) -> tuple[XmlElement, ModelS
 
 
 def file_of(uri: str, files: tuple[str, ...]) -> Path | None:
-    """The file, or the folder's model, that an address means: beside the last of `files`, or above it."""
+    """File, or model of a folder, at an address: next to the last of `files`, or above it."""
     where = plain_path(uri)
     places = [folder / where for folder in Path(files[-1]).parents]
     return next((x for place in places for x in (place, place / "model.sdf") if where and x.is_file()), None)
@@ -196,7 +196,7 @@ def _is_old(root: XmlElement) -> bool:
 
 
 def _flatten(found: FlatModel, model: XmlElement, scope: ModelScope) -> None:
-    """Moves what models within a model hold into the whole, under its name there."""
+    """Moves the elements of nested models into the whole, under their names there."""
     if scope.prefix.count("::") > DEEPEST:
         raise ModelError(f"more than {DEEPEST} models stand one in the other", model.where, "make it flatter")
     for within, own, merged in list(_within(model, scope)):
@@ -244,7 +244,7 @@ def _within(model: XmlElement, scope: ModelScope) -> Iterator[tuple[XmlElement, 
 
 
 def _rename(element: XmlElement, scope: ModelScope) -> None:
-    """Whatever an element and those in it name of their model, by its name in the whole."""
+    """Replaces, in an element and those in it, names of the model by those in the whole."""
     reported: Mapping[str, str] = element.attributes
     element.attributes = {key: scope.named(x) if key in REFERRING else x for key, x in reported.items()}
     if element.tag in ("parent", "child"):
@@ -279,7 +279,7 @@ class MassPart:
 
 
 def own_pose(pose: XmlElement | None) -> Pose:
-    """What a <pose> says: x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
+    """Pose by an element <pose>: x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
     if pose is None or not pose.text:
         return Pose(IDENTITY, ORIGIN)
     if pose.get("rotation_format") == "quat_xyzw":
@@ -444,7 +444,7 @@ _SHAPES = {
 
 
 def _mesh(mesh: XmlElement, density: Decimal, files: tuple[str, ...]) -> MassPart:
-    """What the surface of a file encloses."""
+    """Mass part that the surface of a file encloses."""
     uri, scale = mesh.one("uri"), mesh.one("scale")
     where = "" if uri is None else uri.text
     path = file_of(where, files)
@@ -481,7 +481,7 @@ class Enclosed:
 
 
 def enclosed(path: Path, scale: Any = (1.0, 1.0, 1.0)) -> Enclosed:
-    """What a surface encloses, by the divergence theorem: sums over tetrahedra from the origin.
+    """Volume, centre and second moments inside a surface, by the divergence theorem over tetrahedra from the origin.
 
     Raises:
         ModelError: a file of another format, or a surface that is not closed.

@@ -52,7 +52,7 @@ from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
 
 class _NoBodies(Exception):
-    """Its energies say what bodies on joints do not."""
+    """Signal that the system has parts that only energies describe."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def lagrangian_method(system: Any) -> Any:
 
 
 def tables_of_joints(system: Any) -> Entries | None:
-    """The tables; None where bodies hang otherwise, or something acts that only energies say."""
+    """Tables of a model file; None where bodies do not hang on joints, or an actuator has no counterpart."""
     try:
         return _Joints(system).tables()
     except _NoBodies:
@@ -87,7 +87,7 @@ def tables_of_joints(system: Any) -> Entries | None:
 
 @dataclass
 class _Joints:
-    """A system, and what is made of it."""
+    """System of sympy, and the tables that are made of it."""
 
     system: Any
     bodies: LegalNames = field(default_factory=LegalNames)
@@ -289,7 +289,7 @@ class _Joints:
             found[self.forces.new("weight")] = weight
 
     def _spring(self, actuator: Any, found: Entries) -> bool:
-        """Whether it is a spring or damper between two points."""
+        """Reads a spring or damper between two points; False for another actuator."""
         pathway = getattr(actuator, "pathway", None)
         if type(actuator) not in (LinearSpring, LinearDamper) or not isinstance(pathway, LinearPathway):
             return False
@@ -307,7 +307,7 @@ class _Joints:
         return True
 
     def _motor(self, actuator: Any) -> bool:
-        """Whether it turns the child of a hinge against the parent, about the axis of it: then the joint has it."""
+        """True if the actuator turns the child of a hinge against the parent, about its axis: the joint then has it."""
         frames = [self.frames.get(getattr(actuator, key, None)) for key in ("target_frame", "reaction_frame")]
         for joint in (each for each in self.system.joints if isinstance(each, PinJoint)):
             ends = [self.placed[joint.child], self.placed[joint.parent]]
@@ -379,7 +379,7 @@ class _Joints:
 
 
 def _stands(body: Any, system: Any) -> bool:
-    """Whether a body is the ground: its frame and its mass centre do not move."""
+    """True if a body is the ground: its frame and its mass centre do not move."""
     frame = getattr(body, "frame", system.frame)
     try:
         still = frame.dcm(system.frame) == sympy.eye(3) and body.masscenter.pos_from(system.fixed_point) == 0
@@ -500,7 +500,7 @@ def file_texts(scalars: Sequence[Scalar], taken: Container[str] = ()) -> list[An
 
 
 def _refuse_misread(scalars: Sequence[Scalar], found: Sequence[Any]) -> None:
-    """Refuses texts that, read back by the grammar, are worth another number than what they stand for.
+    """Refuses texts that, read back by the grammar, have other values than their scalars.
 
     Raises:
         DerivationError: one is.
@@ -540,7 +540,7 @@ def _decimal(x: Scalar) -> Decimal | None:
 
 
 def speeds_as_rates(q: Sequence[Any], u: Sequence[Any], kinematic: Sequence[Any]) -> dict[Any, Any]:
-    """{speed: coordinate} of the speeds that are rates, by what vanishes of q' and u."""
+    """{speed: coordinate} of the speeds that are rates, by the kinematic equations in q' and u."""
     t = dynamicsymbols._t
     found = {x.diff(t): x for x in q if x.diff(t) in list(u)}  # a rate that was given for the speed
     for x in kinematic:

@@ -73,7 +73,7 @@ class MovingMass:
 
 @dataclass(frozen=True)
 class Formed:
-    """What equations of motion are made of, whichever class of sympy holds it.
+    """Parts of the equations of motion, for each class of sympy.
 
     Args:
         ground: the frame in which velocities are.
@@ -220,7 +220,7 @@ class _Energies:
         )
 
     def _speeds(self, u: Sequence[Any], kinematic: Sequence[Any]) -> tuple[Scalar, ...]:
-        """u = Y w + y, of what vanishes of both.
+        """Y and y of u = Y w + y, by the kinematic equations.
 
         Raises:
             DerivationError: it does not give them.
@@ -254,7 +254,7 @@ class _Energies:
         return found
 
     def _scalar(self, expression: Any) -> Scalar:
-        """In the graph, auxiliary speeds 0."""
+        """Scalar of an expression in the graph, with auxiliary speeds 0."""
         if self.formed.still:
             t = dynamicsymbols._t
             expression = sympy.sympify(expression).xreplace(
@@ -353,7 +353,7 @@ class _Energies:
         return tangent(tuple(outputs), {self.words.nodes["t"]: 1, **dict(zip(q, w, strict=True))})
 
     def _in_rates(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
-        """In q and w alone, accelerations 0."""
+        """Scalars as functions of q and w alone, with accelerations 0."""
         return substituted(substituted(tuple(scalars), self.known), self.known)
 
     def _work(self, pushes: Sequence[tuple[Triple, Triple]], w: list[Node]) -> list[Scalar]:

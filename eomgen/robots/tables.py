@@ -1,4 +1,4 @@
-"""What the readers of robot files share: names, numbers, tables, text."""
+"""Shared parts of the readers of robot files: names, numbers, tables, text."""
 
 from __future__ import annotations
 
@@ -52,14 +52,14 @@ def decimal_of_double(x: float) -> Decimal:
 
 
 def computed(x: Decimal) -> Decimal:
-    """A computed number, rounded to what is written; what is nothing but rounding is 0."""
+    """Computed number, rounded to the digits that are written; a rounding error is 0."""
     if abs(x) < ROUNDED_AWAY:
         return ZERO
     return Context(prec=WRITTEN).plus(x).normalize()
 
 
 def part_of_pi(angle: Decimal) -> Fraction | None:
-    """Which part of pi an angle is, where it is one to all of its digits, and has enough of them."""
+    """Rational part of pi that an angle is, if all its digits agree and are enough; None."""
     if angle == 0:
         return Fraction(0)
     with mpmath.workdps(DIGITS):
@@ -276,7 +276,7 @@ class LeftOut:
 
 
 def reported_left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
-    """A thing of a robot's file that is left out, with what comes nearest to it."""
+    """Thing of a robot's file that is left out, with its nearest counterpart in a model."""
     return LeftOut(what, tuple(where), why, NEAREST.get(what))
 
 
@@ -314,7 +314,7 @@ class LegalNames:
 
 @dataclass(frozen=True)
 class Seat:
-    """Where something hangs: on a body, at a place and in axes of it.
+    """Seat of a joint: a body, a place on it and axes.
 
     Args:
         turns: the rotation R as turns of a model file.
@@ -338,7 +338,7 @@ class Seat:
 
 @dataclass(frozen=True)
 class Moved:
-    """One joint: its keys beside those of its seat, and the point of the body at which it sits, body axes."""
+    """One joint: its keys in addition to those of its seat, and the point of the body at which it sits, body axes."""
 
     keys: Entries
     pivot: Triple = ORIGIN
@@ -370,7 +370,7 @@ def hung(name: str, body: Entries, seat: Seat, joints: Sequence[Moved], names: L
 
 
 def remarked(about: str | None) -> dict[str, str]:
-    """What an import has told in a remark: another program's name, limits."""
+    """Data of a remark written by an import: another program's name, limits."""
     found = {key: re.search(pattern, about or "") for key, pattern in REMARKS.items()}
     return {key: match[1] for key, match in found.items() if match}
 
@@ -462,12 +462,12 @@ def _value(value: Any) -> str:
 
 
 def _text(text: str) -> str:
-    """In quotes; what steers a terminal, and what TOML has only so, by its number."""
+    """Text in quotes; control characters, of terminals and of TOML, as escapes."""
     return HIDDEN.sub(lambda found: f"\\U{ord(found[0]):08X}", json.dumps(text, ensure_ascii=False))
 
 
 def decimal_text(value: Decimal) -> str:
-    """As written by people: no zeros at its end, a power of ten only where it is short."""
+    """Number as written by people: no trailing zeros, a power of ten only where it is short."""
     value = value.normalize() if value else Decimal(0)
     exponent = value.adjusted()
     if -6 < exponent < 12:

@@ -221,7 +221,7 @@ class _Reading:
         return (named & own) or own
 
     def _rotor(self, transmission: XmlElement, actuator: XmlElement) -> None:
-        """The rotor behind a gear, where one joint of one axis is driven: ratio^2 J; else it is told as left out."""
+        """Adds the rotor behind a gear, ratio^2 J, where one joint of one axis is driven; else it is reported as left out."""
         raw = [joint.get("name") or "" for joint in transmission.all("joint")]
         if len(raw) == 1 and raw[0] in self.coordinate and _need_kind(self.joints[raw[0]]) in ONE_AXIS:
             inertia, ratio = (actuator.one(f"drake:{tag}") for tag in ("rotor_inertia", "gear_ratio"))
@@ -230,7 +230,7 @@ class _Reading:
             self.rotors[raw[0]] = self.rotors.get(raw[0], ZERO) + turns * turns * own
 
     def _add(self, found: Entries, link: str, free: bool, driven: set[str]) -> None:
-        """A link, its joint, and what that brings."""
+        """Reads a link and its joint, with damper, spring and remarks."""
         element = self.links[link]
         element.get("type")
         name = self.body[link]
@@ -342,7 +342,7 @@ def turned_freely(found: Entries, stem: str, names: LegalNames, turn: Any = (1, 
 
 
 def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
-    """What nobody has read, in groups of one kind."""
+    """Elements that were not read, in groups of one kind."""
     groups: dict[str, list[str]] = {}
 
     def named(element: XmlElement) -> str:

@@ -1,4 +1,4 @@
-"""XML -> elements that remember where they stand and what of them was read: nothing is dropped silently."""
+"""XML -> elements that know their place in the file and which of their parts were read: nothing is dropped silently."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class XmlElement:
     seen: bool = False
 
     def get(self, key: str, default: str | None = None) -> str | None:
-        """An attribute, or what stands for it where it is not given."""
+        """Attribute, or its default where it is not given."""
         self.read.add(key)
         return self.attributes.get(key, default)
 
@@ -79,7 +79,7 @@ class XmlElement:
         return found
 
     def left(self) -> Iterator[tuple[XmlElement, str]]:
-        """Whatever of it and below nobody has read: an element whole ("" beside it), or an attribute by its name."""
+        """Parts of it and below that were not read: an element whole ("" for its name), or an attribute by its name."""
         if not self.seen:
             yield self, ""
             return

@@ -204,7 +204,7 @@ class ChangingState:
 
     @property
     def _rows(self) -> tuple[Scalar, ...]:
-        """What the accelerations and multipliers make 0."""
+        """Residual that the accelerations and multipliers make 0."""
         return *self._first.residual, *self._first.rows[1]
 
     @cached_property
@@ -270,7 +270,7 @@ HOW = "differences of the whole computation"
 
 @dataclass(frozen=True)
 class Derivatives:
-    """What is found [SI].
+    """Derivatives that are found [SI].
 
     Args:
         values: of each formula what it is, those that have one.
@@ -292,7 +292,7 @@ class Derivatives:
 
 
 def checks_of(model: Model, found: Derivatives) -> Certificate:
-    """The proof of derivatives, and of what they are of."""
+    """Proof of derivatives, and of the quantities that are differentiated."""
     by_name: dict[str, list[str]] = {}
     for of, to in found.slopes:
         by_name.setdefault(to, []).append(of)
@@ -300,7 +300,7 @@ def checks_of(model: Model, found: Derivatives) -> Certificate:
 
 
 def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> list[Check]:
-    """Those by one name."""
+    """Checks of the derivatives by one name."""
     value = _value(model, to)
     h = PARAMETER_STEP * (abs(value) or 1.0)
     computed = _computed(model, of, to) if reported.run is None else _run(model, of, to, reported.run)
@@ -330,13 +330,13 @@ def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> 
 
 
 def _worst(own: np.ndarray, right: np.ndarray, trust: np.ndarray) -> str:
-    """What is furthest off, beyond what is to be trusted; ""."""
+    """Message for the largest difference beyond the trusted accuracy; ""."""
     worst = int(np.argmax(np.abs(own - right) - trust))
     return "" if abs(own[worst] - right[worst]) <= trust[worst] else f"{own[worst]:.9g}, not {right[worst]:.9g}"
 
 
 def _value(model: Model, name: str) -> float:
-    """What a name is worth [SI]."""
+    """Value of a parameter, or of a coordinate or speed at the start [SI]."""
     if name in model.parameters:
         return numeric_parameters(model)[name]
     places, speeds = start_values(model)

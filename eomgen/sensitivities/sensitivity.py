@@ -1,4 +1,4 @@
-"""Model -> Sensitivity: exact derivatives of what is asked of it, by its parameters and by where it starts.
+"""Model -> Sensitivity: exact derivatives of requested formulas by parameters and start values.
 
 At the start, where all forces balance, of small motions, or along a run; each in closed form where the question has
 one, as a number always, by differentiating the equations that define it: no step, no difference.
@@ -63,7 +63,7 @@ SLOPE = re.compile(r"d\((?P<of>.+)\)/d\((?P<to>[^()]+)\)")
 
 @dataclass(frozen=True)
 class Sensitivity(Result):
-    """What is asked, and how it changes.
+    """Requested formulas and their derivatives.
 
     Args:
         model: the model.
@@ -102,7 +102,7 @@ class Sensitivity(Result):
 
     @property
     def failed(self) -> str:
-        """Which have no answer, in words; "" as it must be."""
+        """Message that names the derivatives without a value; "" where there are none."""
         missing = [named(of, to) for (of, to), slope in self.slopes.items() if not slope.answered]
         return f"not answered: {', '.join(missing)}" if missing else ""
 
@@ -113,7 +113,7 @@ class Sensitivity(Result):
         return plain_document(self.model, self.entries, Listing(tuple(rows)))
 
     def entries(self) -> dict[str, Any]:
-        """For machines; of a run its end, and the columns."""
+        """Entries for machines; for a run the values at its end, and the columns."""
         found: dict[str, Any] = {"name": self.model.name, "to": list(self.to), "values": dict(self.values)}
         found["slopes"] = {of: {to: self.slopes[of, to] for to in self.to} for of in self.of}
         if self.run is not None:
@@ -160,7 +160,7 @@ class Sensitivity(Result):
         return differing(float(formula.evaluate(known)), due)
 
     def _of_others(self) -> str:
-        """Which formulas are not of what was asked; "" where all are."""
+        """Message if the formulas are not the requested ones; ""."""
         left = self.of
         for text in self.wanted:
             due = self._meant(text, left)
@@ -170,7 +170,7 @@ class Sensitivity(Result):
         return f"{', '.join(left)} beside {', '.join(self.wanted)}" if left and self.wanted else ""
 
     def _meant(self, text: str, left: tuple[str, ...]) -> tuple[str, ...]:
-        """The formulas for which a text stands, by names of the file; how many speeds and frequencies `left` tells."""
+        """Formulas for which a text stands, by names of the file; `left` gives the number of speeds and frequencies."""
         parts = self.model.coordinates
         if text in self.model.outputs or text not in (RHS, STATE, FREQUENCIES, REST):
             return (text,)
@@ -233,7 +233,7 @@ def sensitivity(
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Sensitivity:
-    """Exact derivatives of what a model is asked.
+    """Exact derivatives of formulas of a model.
 
     Args:
         of: outputs by name and formulas as outputs have them: "theta''", "reaction_y(A)", "frequency(1)",
@@ -294,7 +294,7 @@ Derived = tuple[float, float, Scalar | None]
 
 @dataclass(frozen=True)
 class _Asking:
-    """A model, and what its derivatives need."""
+    """Model and the systems that its derivatives need."""
 
     model: Model
 
@@ -307,7 +307,7 @@ class _Asking:
         return linearize(self.model)
 
     def refuse_unknown(self, names: Sequence[str]) -> None:
-        """Refuses what is no parameter and no start."""
+        """Refuses names that are neither parameters nor start values."""
         symbols = self.phase.system.symbols
         known = (*self.model.parameters, *(x.name for x in (*symbols.q, *symbols.u)))
         for name in names:
@@ -315,7 +315,7 @@ class _Asking:
                 raise UsageError(f"no parameter, coordinate or speed '{name}'", fix=f"one of {', '.join(known)}")
 
     def formulas(self, wanted: Sequence[str]) -> Iterator[str]:
-        """What is asked, one by one."""
+        """Requested formulas, one by one."""
         symbols = self.phase.system.symbols
         for text in wanted:
             if text == RHS and text not in self.model.outputs:
@@ -333,7 +333,7 @@ class _Asking:
     # -- at one state ----------------------------------------------------------------------------------------
 
     def now(self, of: tuple[str, ...], to: tuple[str, ...]) -> Sensitivity:
-        """At the start, at rest, of small motions."""
+        """Derivatives at the start, at rest, and of small motions."""
         values: dict[str, Quantity] = {}
         slopes: dict[tuple[str, str], Quantity] = {}
         in_si: dict[tuple[str, str], float] = {}
@@ -353,7 +353,7 @@ class _Asking:
         return Sensitivity(self.model, of, to, values, slopes, None, in_si)
 
     def _in_unit(self, text: str, value: float) -> Quantity:
-        """What a formula is worth, in its unit."""
+        """Value of a formula in its unit."""
         own = _unit_of(self.model, text)
         return Quantity(None, value, "") if own is None else Quantity(None, value / own.size, own.text)
 
@@ -376,7 +376,7 @@ class _Asking:
         return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
 
     def _changed(self, name: str, phase: PhaseEquations | None = None) -> Seeds:
-        """How the parameters change: with one of them, or not at all."""
+        """Derivatives of the parameters by a name; {} where the name is no parameter."""
         scope = (phase or self.phase).system.scope
         return parameter_seeds(scope, name) if name in self.model.parameters else {}
 
@@ -414,7 +414,7 @@ class _Asking:
         return found | dict(zip(inputs, evaluate(tuple(inputs.values()), found, fifty_digits()), strict=True))
 
     def _at_rest(self, formula: Expression, name: str) -> Derived:
-        """At the equilibrium, which moves."""
+        """Value and derivative at the equilibrium, which moves with the parameter."""
         reference = self.small.small.reference
         phase = PhaseEquations(reference.system)
         changed = self._changed(name, phase)
@@ -433,7 +433,7 @@ class _Asking:
 
     @cached_property
     def _rests_alone(self) -> bool:
-        """Whether the constraints and the forces let it rest nowhere beside the place where it does."""
+        """True if the equilibrium is isolated: no other one near it."""
         K, reference = self.small.K, self.small.small.reference
         constraints = [row.velocity for row in reference.system.constraints.closing]
         u = reference.system.symbols.u
@@ -493,7 +493,7 @@ class _Asking:
     def along(
         self, of: tuple[str, ...], to: tuple[str, ...], time: float, samples: int | Sequence[Typed]
     ) -> Sensitivity:
-        """Along a motion, and at its end."""
+        """Derivatives along a motion, and at its end."""
         if not time > 0:
             raise UsageError(f"the time {time:g} s makes no sense", fix="give one above 0")
         texts = tuple(self.formulas(of))

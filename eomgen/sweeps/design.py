@@ -1,4 +1,4 @@
-"""Ranges, distributions -> values of runs; critical values of what is asked.
+"""Ranges, distributions, seed -> values of run k, by its number alone, in any order and on any machine.
 
 Ranges, distributions, a seed -> the values of run k: by its number alone, whatever was run before and where.
 
@@ -83,14 +83,14 @@ LAWS: dict[str, Distribution] = {
 
 @dataclass(frozen=True)
 class DrawnValues:
-    """How one name is distributed: its law and its arguments in SI."""
+    """Distribution of one name: its law and its arguments in SI."""
 
     name: str
     law: str
     arguments: tuple[float, ...]
 
     def at(self, u: np.ndarray) -> np.ndarray:
-        """The values that belong to shares u."""
+        """Values at the cumulative probabilities u (quantiles)."""
         return LAWS[self.law].quantile(u, *self.arguments)
 
 
@@ -165,7 +165,7 @@ class Design:
 
     @property
     def names(self) -> tuple[str, ...]:
-        """What is set, in order."""
+        """Names of the values that are set, in order."""
         return (*self.grid, *(spread.name for spread in self.spreads))
 
     @property
@@ -174,7 +174,7 @@ class Design:
 
     @property
     def count(self) -> int:
-        """How many runs."""
+        """Number of runs."""
         return self.points * self.draws
 
     def runs(self, first: int, last: int) -> tuple[list[int], np.ndarray]:
@@ -219,7 +219,7 @@ class Design:
 
     @cached_property
     def _orders(self) -> list[np.ndarray]:
-        """Of each name the order in which its strata are drawn."""
+        """Order in which the strata of each name are drawn."""
         return [self._order_generator(d).permutation(self.draws) for d in range(len(self.spreads))]
 
     def _order_generator(self, d: int) -> np.random.Generator:
@@ -231,7 +231,7 @@ _GOLDEN = 0x9E3779B97F4A7C15
 
 
 def _seed_of(seed: int, run: int) -> int:
-    """Of a run, by its number: numpy's SeedSequence with the number as its spawn key."""
+    """Seed of a run by its number: numpy's SeedSequence with the number as its spawn key."""
     return int(np.random.SeedSequence(seed, spawn_key=(0, run)).generate_state(1, np.uint64)[0] >> np.uint64(1))
 
 
@@ -271,7 +271,7 @@ SCHEMA = 1
 
 @dataclass(frozen=True)
 class Stepped:
-    """How each run is integrated."""
+    """Settings of the integration of each run."""
 
     time: float = 10.0
     rtol: float = RUN
@@ -316,7 +316,7 @@ class SweepPlan:
 
     @cached_property
     def slopes(self) -> dict[str, tuple[str, str]]:
-        """What is asked as a derivative, "d(frequency(1))/d(k)": of what, by what."""
+        """Requested derivatives, "d(frequency(1))/d(k)": (formula, name) by the text of the request."""
         pairs = ((text, slope_requested(text)) for text in self.requested)
         return {text: pair for text, pair in pairs if pair is not None}
 
@@ -328,23 +328,23 @@ class SweepPlan:
 
     @property
     def requested(self) -> tuple[str, ...]:
-        """What is asked of each run, the critical expression too."""
+        """Requests of each run, the critical expression included."""
         return tuple(dict.fromkeys((*self.ask, *filter(None, [self.critical]))))
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Of the table. What is asked under the name of what is set has `(asked)` behind it."""
+        """Columns of the table; a request with the name of a value that is set gets ` (asked)` behind it."""
         names = self.runs.names
         return (*FIXED, *names, *(f"{ask} (asked)" if ask in names else ask for ask in self.requested))
 
     @cached_property
     def hash(self) -> str:
-        """Of everything on which the numbers depend; a plan of another hash is another sweep."""
+        """Hash of everything on which the numbers depend; a plan of another hash is another sweep."""
         reported = {name: x for name, x in self.as_dict().items() if name not in ("hash", "versions")}
         return hashlib.sha256(json.dumps(reported, sort_keys=True).encode()).hexdigest()[:16]
 
     def as_dict(self) -> dict[str, Any]:
-        """For plan.json, and for those who run a part of it."""
+        """Content of plan.json, and of a part of the sweep for another process."""
         reported = {name: x for name, x in asdict_of(self).items() if name != "made"}
         reported["model_hash"] = "" if self.made is None else hashlib.sha256(pickle.dumps(self.made)).hexdigest()
         return {"schema": SCHEMA, **reported}

@@ -1,4 +1,4 @@
-"""Sweep -> pictures of it: what is asked over a range, as a heat map over two, all against all of what was drawn."""
+"""Sweep -> pictures: results over a range, a heat map over two ranges, scatter plots of all drawn values."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SIDE = 3.4  # of one panel [inches]
 
 
 class Drawable(Protocol):
-    """What a picture needs of a sweep."""
+    """Sweep as far as its pictures need it."""
 
     @property
     def plan(self) -> SweepPlan: ...
@@ -57,7 +57,7 @@ _Columns = Mapping[str, np.ndarray]
 
 
 def _lines(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture:
-    """What is asked over the first range; a line for each choice of the rest, draws as their mean and spread."""
+    """Results over the first range; a line for each choice of the other ranges, draws as their mean and spread."""
     if not sweep.plan.over:
         raise RunFailed("no range is swept over: there is nothing to draw lines over", fix='--over "NAME=1:2:20"')
     names, requested, draws = list(sweep.plan.over), _requested(sweep), sweep.plan.draws
@@ -96,7 +96,7 @@ def _line(panel: Any, x: np.ndarray, y: np.ndarray, draws: int, label: str, colo
 
 
 def _is_logarithmic(values: tuple[float, ...]) -> bool:
-    """Whether steps are of one ratio."""
+    """True if the steps have one ratio."""
     if len(values) < 3 or min(values) <= 0:
         return False
     ratios = np.diff(np.log(values))
@@ -104,7 +104,7 @@ def _is_logarithmic(values: tuple[float, ...]) -> bool:
 
 
 def _heat(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture:
-    """Each of what is asked over the first two ranges; the mean over everything else."""
+    """Each result over the first two ranges; the mean over everything else."""
     names = [name for name, values in sweep.plan.over.items() if len(values) > 1]
     if len(names) < 2:
         raise RunFailed("a heat map needs two ranges: --over twice", fix='--over "A=1:2:20" --over "B=1:2:20"')
@@ -129,7 +129,7 @@ def _heat(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture
 
 
 def _scatter(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture:
-    """All of what was set and asked against one another, their distributions on the diagonal."""
+    """Scatter plots of all set and requested values, their distributions on the diagonal."""
     names = [*sweep.plan.runs.names, *_requested(sweep)][:MOST_NAMES]
 
     def fill(figure: Any) -> None:

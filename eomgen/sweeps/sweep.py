@@ -53,7 +53,7 @@ ROWS_OF_PARQUET = 50_000
 
 @dataclass(frozen=True, repr=False)
 class Sweep:
-    """What was found of every run.
+    """Results of every run.
 
     Args:
         plan: what was to be run.
@@ -67,7 +67,7 @@ class Sweep:
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """run, seed, status, message, what was set, what was asked."""
+        """run, seed, status, message, values set, values requested."""
         return self.plan.columns
 
     @property
@@ -92,12 +92,12 @@ class Sweep:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        """What was asked in vain."""
+        """Remarks on requests without an effect."""
         return remarks_of(self.plan, self.ledger)
 
     @property
     def failed(self) -> int:
-        """How many runs did not end as they should."""
+        """Number of runs that failed."""
         good = ("finished", "event", "computed")
         return sum(count for status, count in self.ledger.statuses().items() if status not in good)
 
@@ -528,7 +528,7 @@ def _brackets(plan: SweepPlan, ledger: SweepLedger) -> Iterator[Bracket]:
 
 
 def remarks_of(plan: SweepPlan, ledger: SweepLedger) -> tuple[str, ...]:
-    """What is asked in vain: what is the same in all runs, and what changes its sign nowhere."""
+    """Remarks on requests without an effect: results that are the same in all runs, and no critical value."""
     remarks = []
     for column, name in enumerate(plan.columns[-len(plan.requested) :], len(plan.columns) - len(plan.requested)):
         count, low, _, high = ledger.summary(column)

@@ -55,12 +55,12 @@ Chunk = tuple[int, int]
 
 @dataclass
 class ChunkSizes:
-    """How many runs go into a chunk, by how long the last ones took."""
+    """Number of runs in a chunk, by the time that the last ones took."""
 
     runs: int = 1
 
     def took(self, runs: int, seconds: float) -> None:
-        """Another chunk is done: the next ones are at most twice as large."""
+        """Takes the time of a chunk into account: the next ones are at most twice as large."""
         wanted = int(A_CHUNK * runs / max(seconds, time.get_clock_info("perf_counter").resolution))
         self.runs = max(1, min(wanted, 2 * max(runs, self.runs), MOST_IN_ONE))
 
@@ -143,7 +143,7 @@ def end_with_parent(parent: int) -> None:
 
 @dataclass
 class _Out:
-    """What is given out.
+    """Chunks that are given out to workers.
 
     Args:
         waiting: chunks that are to be given out again.
@@ -156,7 +156,7 @@ class _Out:
     tries: dict[Chunk, int] = field(default_factory=dict)
 
     def next_future(self) -> Any:
-        """The next that is done."""
+        """Next future that is done."""
         while True:
             with contextlib.suppress(queue.Empty):
                 return self.done.get(timeout=LOOK)
@@ -193,7 +193,7 @@ def rows_by(
 
 
 def _give_out(pool: Pool, payload: Payload, out: _Out, fresh: Iterator[Chunk]) -> None:
-    """As many chunks as keep all workers busy; after a death those that were out, one at a time."""
+    """Gives out as many chunks as keep all workers busy; after a death those that were out, one at a time."""
     while len(out.futures) < (1 if out.waiting else AHEAD * pool.workers):
         chunk = out.waiting.popleft() if out.waiting else next(fresh, None)
         if chunk is None:
@@ -275,7 +275,7 @@ class SweepKernel:
     def _in_motion_reported(
         self, set_: Mapping[str, float], reported: dict[str, float | None], messages: list[str]
     ) -> str:
-        """What is asked of the motion; how that ended."""
+        """Status of the motion of a run; its requested values are added to `reported`."""
         if not self._in_motion:
             return ""
         run = self.motion(set_)
@@ -306,7 +306,7 @@ class SweepKernel:
         return parameters, {name: x for name, x in set_.items() if name not in names}
 
     def _without_motion(self, set_: Mapping[str, float], reported: dict[str, float | None], messages: list[str]) -> str:
-        """What is asked at rest, by the energy theorem, of small motions: as `solve` answers it."""
+        """Status of the requests that need no motion, answered as by `solve`; values are added to `reported`."""
         if not self._solved:
             return ""
         requested = list(self._solved)
@@ -320,7 +320,7 @@ class SweepKernel:
     def _slopes_reported(
         self, set_: Mapping[str, float], reported: dict[str, float | None], messages: list[str]
     ) -> str:
-        """The derivatives that are asked, by the equations themselves."""
+        """Status of the requested derivatives, by the equations themselves; values are added to `reported`."""
         if not self.plan.slopes:
             return ""
         model = self.valued(set_)
@@ -374,7 +374,7 @@ Payload = tuple[str, Any]
 
 
 def payload_of(plan: SweepPlan) -> Payload:
-    """What another process needs to run a part of a plan."""
+    """Data that another process needs to run a part of a plan."""
     return json.dumps(plan.as_dict(), sort_keys=True), plan.made
 
 
@@ -384,7 +384,7 @@ def rows_of_runs(payload: Payload, first: int, last: int) -> list[SampleRow]:
 
 
 def value_of_run(payload: Payload, set_: Mapping[str, float], text: str) -> float | None:
-    """What one asked expression is worth at some values [SI]."""
+    """Value of one requested expression at some values [SI]."""
     kernel = _kernel(*payload)
     _, _, requested = kernel.requested(set_)
     return finite(requested[kernel.plan.requested.index(text)])
@@ -401,7 +401,7 @@ def _kernel(reported: str, made: Any) -> SweepKernel:
 
 @contextmanager
 def progress_of(runs: int, done: int) -> Iterator[Callable[[int], object]]:
-    """What is told of each chunk: how many runs it adds."""
+    """Function that is called with the number of runs of each finished chunk, and shows the progress."""
     if sys.stderr is None or not sys.stderr.isatty():
         yield lambda more: None
         return
@@ -445,7 +445,7 @@ class SweepLedger:
         self.__dict__.update(state | {"connection": connection})
 
     def add(self, rows: Sequence[SampleRow]) -> int:
-        """How many of them are new; a run that is there stays as it is."""
+        """Adds rows and gives the number of new ones; a run that is there stays as it is."""
         marks = ", ".join("?" * len(self.plan.columns))
         before = self.connection.total_changes
         with self.connection:
@@ -471,11 +471,11 @@ class SweepLedger:
 
     @property
     def count(self) -> int:
-        """How many runs are done."""
+        """Number of runs that are done."""
         return int(self.connection.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
 
     def statuses(self) -> dict[str, int]:
-        """How many ended in which way."""
+        """Number of runs by status."""
         return dict(self.connection.execute("SELECT status, COUNT(*) FROM runs GROUP BY status ORDER BY status"))
 
     def messages(self, few: int) -> list[tuple[int, str, str]]:
@@ -564,7 +564,7 @@ def ledger_at(path: Path | None, plan: SweepPlan) -> SweepLedger:
 
 
 def _distinct(names: Sequence[str]) -> list[str]:
-    """For sqlite, which takes M for m: the second of two alike gets a number."""
+    """Column names for sqlite, which takes M for m: the second of two equal ones gets a number."""
     found: list[str] = []
     for name in names:
         shown, k = name, 2
