@@ -473,7 +473,7 @@ joint = { kind = "revolute", angle = "q" }
     model = eomgen.loads(pendulum)
     run = eomgen.simulate(model, time=1.0)
     data = {"t": run.t, "q": run["q"], "q'": run["q'"]}
-    with pytest.raises(UsageError, match="nothing known acts in this motion"):
+    with pytest.raises(UsageError, match="no known force acts in this motion"):
         eomgen.identify(model, data)
     driven = eomgen.loads(pendulum.replace('angle = "q"', 'angle = "q", torque = 0.3'))
     run = eomgen.simulate(driven, time=1.0)

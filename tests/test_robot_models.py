@@ -293,7 +293,7 @@ def test_a_surface_in_a_file_gives_the_mass_that_it_encloses(form, tmp_path):
     [
         (auto(""), "has no <collision> to tell its mass by"),
         (auto(collision("<plane/>")), "<plane> gives no mass by its density"),
-        (auto(collision("<mesh><uri>no.stl</uri></mesh>")), "no file is there for 'no.stl', by which the mass is told"),
+        (auto(collision("<mesh><uri>no.stl</uri></mesh>")), "no file is there for 'no.stl', which determines the mass"),
         (auto(collision("<mesh><uri>a.dae</uri></mesh>")), "a surface that is not read"),
         (auto(collision("<mesh><uri>open.stl</uri></mesh>")), "the surface is not closed"),
         (auto(collision("<sphere/>")), "<sphere> has no <radius>"),
@@ -389,11 +389,11 @@ def test_the_world_as_a_parent_is_the_ground_though_no_link_is_called_so(tmp_pat
 def test_a_number_beyond_all_bounds_is_refused_at_its_place(number, tmp_path):
     """URDF and SDF: exit 1 and the place, no internal error, no memory."""
     text = urdf().replace('<mass value="1"', f'<mass value="{number}"')
-    with pytest.raises(ModelError, match=r"robot\.urdf:2:\d+: a number beyond what is computed with in <mass>"):
+    with pytest.raises(ModelError, match=r"robot\.urdf:2:\d+: a number beyond the range of computation in <mass>"):
         robot(tmp_path, text, "urdf")
     path = tmp_path / "robot.urdf"
     assert CliRunner().invoke(main, ["import", str(path)]).exit_code == 1
-    with pytest.raises(ModelError, match="a number beyond what is computed with in <mass>"):
+    with pytest.raises(ModelError, match="a number beyond the range of computation in <mass>"):
         robot(tmp_path, sdf(PENDULUM.replace("<mass>2<", f"<mass>{number}<")))
 
 

@@ -216,9 +216,9 @@ def test_what_nothing_in_a_sweep_changes_is_said(spring):
     found = eomgen.sweep(spring, over={"k": [10, 20, 30]}, ask=("m", "k"), critical="m - 5", time=1)
     reported = (found["m"][0], found["m - 5"][0])
     assert found.remarks == (
-        f"'m' is {reported[0]:g} in all runs: nothing that is set changes it",
+        f"'m' is {reported[0]:g} in all runs: none of the values set changes it",
         f"'m - 5' changes its sign nowhere along k: 'm - 5' is {reported[1]:g} in all runs: "
-        "nothing that is set changes it",
+        "none of the values set changes it",
     )
     (one,) = eomgen.sweep(spring, over={"k": [10, 20]}, critical="k + 1", time=1).remarks
     assert one == "'k + 1' changes its sign nowhere along k: it goes from 11 to 21"
@@ -466,7 +466,7 @@ def test_of_nothing_all_outputs_are_asked_and_the_ledger_is_one_file(spring, tmp
     assert {x.name for x in (tmp_path / "out").iterdir()} >= {"ledger.sqlite", "table.csv", "plan.json"}
     assert not list((tmp_path / "out").glob("ledger.sqlite-*"))
     model = eomgen.loads(SPRING.partition("[outputs]")[0])
-    with pytest.raises(UsageError, match="nothing is asked of the runs"):
+    with pytest.raises(UsageError, match="nothing is requested of the runs"):
         eomgen.sweep(model, over={"k": [40, 50]}, time=2)
 
 
@@ -566,7 +566,7 @@ def test_what_is_set_and_told_is_of_its_laws(tmp_path):
             moved = [(*row[: 4 + k], row[4 + k] * 1.3, *row[5 + k :]) for row in rows]
             assert drawn_otherwise(over, laws, 4, kind, moved).status == "fails", (kind, k)
     columns, right = {"x": [1.0, 2.0, None], "z": [3.0, 3.0, 3.0]}, {"x": (2, 1.0, 1.5, 2.0), "z": (3, 3.0, 3.0, 3.0)}
-    same = ("'z' is 3 in all runs: nothing that is set changes it",)
+    same = ("'z' is 3 in all runs: none of the values set changes it",)
     assert reported_of_all(columns, right, same, "", 1e-9, ["x", "z"]).status == "holds"
     assert reported_of_all(columns, right | {"x": (2, 1.0, 1.4, 2.0)}, same, "", 1e-9, ["x", "z"]).status == "fails"
     assert reported_of_all(columns, right, (), "", 1e-9, ["x", "z"]).status == "fails"

@@ -1,17 +1,13 @@
 """Y -> base parameters: groups of parameters that the forces can tell apart, with factors as formulas of lengths.
 
-Y -> base parameters: the groups of parameters that the forces of motions tell apart.
-
 The columns of Y at many states, one above the other, are W. Taken in order, a column that follows from those before
 it is left out: W_j = sum K_ij W_i, and with it the parameter of each column i that stays becomes a group,
 
     pi_i + sum_j K_ij pi_j
 
 Without closing constraints the states are random points of a prime field: the rank is exact, and so is K, made of
-monomials
-of the lengths of the model and then proven at further points. With closing constraints the states keep the
-constraints, with 50
-digits, and W is what is left along the motions that they allow.
+monomials of the lengths of the model and then proven at further points. With closing constraints the states satisfy the
+constraints, with 50 digits, and W is projected onto the motions that they allow.
 Source: Gautier & Khalil, Direct calculation of minimum set of inertial parameters of serial robots, 1990; Gautier,
 Numerical calculation of the base inertial parameters of robots, 1991.
 """
@@ -75,7 +71,7 @@ LengthTerms = list[tuple[Fraction, list[str]]]
 
 @dataclass(frozen=True)
 class Group:
-    """A base parameter: one parameter of the model and what goes with it.
+    """A base parameter: one parameter of the model, and the parameters that are added to it with factors.
 
     Args:
         name: of the parameter that leads it.
@@ -104,8 +100,8 @@ class BaseParameters:
 
     Args:
         groups: the base parameters, as many as the rank.
-        without_effect: the parameters that no force depends on.
-        arithmetic: in which the rank was found: "prime field" (exact) or "50 digits".
+        without_effect: the parameters on which no force depends.
+        arithmetic: arithmetic in which the rank was found: "prime field" (exact) or "50 digits".
     """
 
     groups: tuple[Group, ...]
@@ -144,7 +140,7 @@ def base_of(system: System, names: Sequence[str], rows: Sequence[ScalarRow], see
 def _kept_in_field(system: System, entries: ScalarRow, moving: list[int], seed: int) -> tuple[list[int] | None, int]:
     """(the columns that stay, by random points of the prime field, the states that this takes).
 
-    None: it has no value of a root, a sign, a curve. The states are enough where the last brings no row that is new.
+    None: a root, a sign or a curve has no value there. The states are enough where the last adds no independent row.
     """
     own = {system.symbols.parameters[name]: x for name, x in exact_parameters(system.scope.model).items()}
     given = substituted(entries, {x: Fraction(own[x]) for x in own})
@@ -175,9 +171,9 @@ def _polynomials(
 
 
 def _agree(number: Any, terms: LengthTerms, values: Mapping[str, Any]) -> bool:
-    """True if a polynomial has a value."""
-    worth = sum((in_50_digits(factor) * prod(values[name] for name in names) for factor, names in terms), start=0)
-    return bool(abs(worth - number) <= FOLLOWS_AT_50 * (1 + abs(number)))
+    """True if the value of a polynomial is this number."""
+    value = sum((in_50_digits(factor) * prod(values[name] for name in names) for factor, names in terms), start=0)
+    return bool(abs(value - number) <= FOLLOWS_AT_50 * (1 + abs(number)))
 
 
 def _sampled(
@@ -281,7 +277,7 @@ def _polynomial(terms: LengthTerms) -> str:
 def _numbers(
     system: System, rows: Sequence[ScalarRow], moving: list[int], seed: int, kept: Sequence[int] = ()
 ) -> Dependence:
-    """Dependence of columns, by states that satisfy the constraints, with 50 digits; those of `kept` are taken first."""
+    """Dependence of columns, by states that satisfy the constraints, with 50 digits; columns of `kept` come first."""
     order = [*kept, *(j for j in range(len(moving)) if j not in set(kept))]
     W, state = sampled_rows(system, rows, [moving[j] for j in order], seed)
     sizes = [max(map(abs, column)) for column in zip(*W, strict=True)]
@@ -330,7 +326,7 @@ class Dependence:
     """Dependence of columns of W on others: W_j = sum K_ij W_i.
 
     Args:
-        kept, follow: the columns i and j; of neither is one that is 0.
+        kept, follow: the columns i and j; columns that are 0 are in neither.
         K: with 50 digits, where it is not 0.
         state: one of those at which it was found.
     """
@@ -364,11 +360,11 @@ def by_transfers(
                 break
             if not transfer or len(transfer) < len(said):
                 continue
-            worth = [
+            value = [
                 evaluate(tuple(transfer.values()), state, fifty_digits()) for state in (here, *(s for s, _ in tried))
             ]
-            if all(_vanishes(W[:, list(transfer)], by) for W, by in zip(Y, worth[1:], strict=True)):
-                found += [transfer] if reduced.takes(dict(zip(transfer, worth[0], strict=True))) else []
+            if all(_vanishes(W[:, list(transfer)], by) for W, by in zip(Y, value[1:], strict=True)):
+                found += [transfer] if reduced.takes(dict(zip(transfer, value[0], strict=True))) else []
     except (EomgenError, NoValue):  # with other lengths nothing closes
         return {}
     if len(found) < len(follow):
@@ -379,8 +375,8 @@ def by_transfers(
     for j in follow:
         for i, share in solved.shares.get(j, {}).items():
             form = simplest(-share, Work.VALUE)
-            (worth,) = evaluate((form,), here, fifty_digits())
-            if abs(worth - in_50_digits(K.get((i, j), 0))) > FOLLOWS_AT_50 * (1 + abs(worth)):
+            (value,) = evaluate((form,), here, fifty_digits())
+            if abs(value - in_50_digits(K.get((i, j), 0))) > FOLLOWS_AT_50 * (1 + abs(value)):
                 return {}
             texts[i, j] = to_text(form)
     return texts if texts.keys() == K.keys() else {}
@@ -423,8 +419,8 @@ def _plain(x: Any) -> Fraction | None:
 #     dipole:      m = 0,   m c = n,   I = 2 r.n E - r n^T - n r^T
 #     quadrupole:  m = 0,   m c = 0,   I = n.n E - n n^T
 #
-# What one body loses the other gains, which is a combination of the columns of Y that vanishes on every motion: found
-# by what meets at a few states, and tried on Y there, with 50 digits and with other lengths than the model's. As many
+# One body loses what the other gains: a combination of the columns of Y that vanishes on every motion. It is found by
+# points that meet at a few states, and tried on Y there, with 50 digits and other lengths than the model's. As many
 # of them as there are columns that follow from others give these by exact elimination.
 
 

@@ -19,8 +19,8 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50, ROUNDED_AWAY
 
 MORE = 6  # beyond its columns
-QUIET = 2  # states in a row that must bring no row that is new: then no state does
-FAR = (0.4,)  # from the start, of states at which columns are told apart: near to it they are nearly one
+QUIET = 2  # states in succession that must add no independent row: then no state does
+FAR = (0.4,)  # distance from the start of states that distinguish columns: near to it columns are nearly dependent
 STEPS = 3  # of Newton's method from a root with 30 digits: each doubles them
 
 
@@ -31,7 +31,7 @@ def sampled_rows(
     digits.
 
     Of a part that moves by itself a state gives only as many rows as that has motions, however many the system has:
-    states are added until they bring nothing new.
+    states are added until they add no independent row.
     """
     parts: list[np.ndarray] = []
     have = quiet = 0

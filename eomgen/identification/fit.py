@@ -1,16 +1,14 @@
 """Measured motions -> parameters: least squares of the base parameters, then physically possible bodies.
 
-Measured motions -> parameters: least squares of the base parameters, then bodies that there can be.
+applied = Y pi + y0        (along the motions that the constraints allow)
 
-    applied = Y pi + y0        (along the motions that the constraints allow)
+The base parameters are fitted first: they are all that the data determine. The parameters of the bodies then fit as
+well, are those of bodies of positive density, and are near the model's where the data do not determine them.
 
-The base parameters are fitted first: they are all that the data tell. Of the parameters of the bodies those are given
-that fit as well and that bodies of positive density can have, near the model's where the data do not tell.
-
-Rates and accelerations that were not measured are those of a spline, which makes a little noise of the places a great
-one. Least squares takes W as exact, so that noise in it makes the parameters wrong however many samples there are, and
-their standard deviations do not say so. How far is measured: as much noise again is put on, which tells its squares in
-W^T W; without them the normal equations give other parameters.
+Rates and accelerations that were not measured are those of a spline, which amplifies the noise of the positions. Least
+squares takes W as exact, so that noise in it makes the parameters wrong however many samples there are, and their
+standard deviations do not show it. This bias is estimated: noise of the same size is added again, which gives the
+squares of the noise in W^T W; without them the normal equations give other parameters.
 Source: Fuller, Measurement Error Models, 1987, section 2.2 (the moments of the errors are drawn here).
 """
 
@@ -48,16 +46,15 @@ class Identified:
 
     Args:
         regressor: the model's.
-        base: of each base parameter, by its formula, the value and its standard deviation.
-        values: the inertial and other parameters: bodies of positive density.
-        condition: of the base parameters' columns, each over its length: how well the motion tells them apart; large
-            is bad, beyond 100 a motion is poor.
-        samples: how many instants there are.
-        residual: root mean square of what is left of the forces [N or N m].
+        base: value and standard deviation of each base parameter, by its formula.
+        values: the inertial and other parameters, of bodies with positive density.
+        condition: condition number of the base parameters' columns, each divided by its length: a motion with more
+            than 100 excites them poorly.
+        samples: number of instants.
+        residual: root mean square of the residual of the forces [N or N m].
         consistent_residual: the same with `values`.
-        bias: of each base parameter how far noise has moved it, about, by the rates of what was measured; nothing where
-            all rates were.
-        fit: whether least squares found the best.
+        bias: estimated bias of each base parameter by the noise of rates that were not measured; {} where all were.
+        fit: checks that least squares found the optimum.
     """
 
     regressor: Regressor
@@ -94,7 +91,7 @@ class Stacked:
 
 Stacking = Callable[[Data], Stacked]
 NEIGHBOURS = (-3, -2, -1, 1, 2, 3)
-LEAST_SAMPLES = 20  # of which the noise can be told
+LEAST_SAMPLES = 20  # from which the noise can be estimated
 DRAWS = 4  # of noise: n samples each
 NORMAL_MEDIAN = 1.4826  # standard deviation over the median of |x|
 
@@ -116,14 +113,14 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
     kept = [found.parameters.index(group.name) for group in base.groups]
     W = stacked.W[:, kept]
     if len(W) < len(kept):
-        raise UsageError(f"{len(W)} equations do not tell {len(kept)} parameters", fix="give more samples")
+        raise UsageError(f"{len(W)} equations do not determine {len(kept)} parameters", fix="give more samples")
     lengths = np.linalg.norm(W, axis=0)
     if not lengths.all():
         names = ", ".join(base.groups[k].name for k in np.flatnonzero(lengths == 0))
         raise UsageError(f"this motion does not excite {names}", fix="move every coordinate, with accelerations")
     if not stacked.b.any():
         raise UsageError(
-            "nothing known acts in this motion: it tells the ratios of the parameters, and all fit it that are 0",
+            "no known force acts in this motion: it determines only ratios of the parameters, and zeros fit it too",
             fix="measure a motion with a force or couple of known size: an input, a spring, a load",
         )
     scaled = W / lengths
@@ -175,8 +172,8 @@ def _splined(symbols: Symbols, data: Data) -> list[str]:
 def _shifts(stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarray, names: Sequence[str]) -> list[float]:
     """Estimated bias of the base parameters by the noise of those columns; [] without such columns.
 
-    beta - (W^T W - E D^T D)^-1 (W^T b - E D^T d), D and d what as much noise again makes of W and b; where the noise
-    leaves nothing of W^T W, all of beta.
+    beta - (W^T W - E D^T D)^-1 (W^T b - E D^T d), D and d the changes of W and b by noise of the same size; where the
+    noise is as large as W^T W, all of beta.
     """
     t = np.asarray(data["t"], dtype=float)
     if not names or len(t) < LEAST_SAMPLES:
@@ -197,15 +194,15 @@ def _shifts(stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarra
 
 
 def noise_of(t: np.ndarray, y: np.ndarray) -> float:
-    """Standard deviation of the noise of samples, by what each is off a quintic through three on each side.
+    """Standard deviation of the noise of samples, by the distance of each from a quintic through three on each side.
 
     The median of |y_i - w.y| / sqrt(1 + w.w), over that of a normal distribution: jumps do not count.
     """
     i = np.arange(3, len(t) - 3)
-    beside = [t[i + k] for k in NEIGHBOURS]
+    nearby = [t[i + k] for k in NEIGHBOURS]
     off, size = y[i].copy(), np.ones(len(i))
-    for a, k in zip(beside, NEIGHBOURS, strict=True):
-        w = np.prod([(t[i] - b) / (a - b) for b in beside if b is not a], axis=0)
+    for a, k in zip(nearby, NEIGHBOURS, strict=True):
+        w = np.prod([(t[i] - b) / (a - b) for b in nearby if b is not a], axis=0)
         off -= w * y[i + k]
         size += w * w
     return float(NORMAL_MEDIAN * np.median(np.abs(off) / np.sqrt(size)))

@@ -3,7 +3,7 @@
 Y pi + y0 = M a + c - Q without inputs              exactly
 Y pi = Y_base K pi                                  of any pi, at states that keep the constraints, along their motions
 factor as printed, read back = its number
-W^T (b - W beta) = 0                                of the samples: nothing of what is left is along a column
+W^T (b - W beta) = 0                                of the samples: the residual is orthogonal to every column
 Z^T (M a - forcing) = W pi - b                      of some samples, pi the model's, Z the motions that the constraints
 allow
 """
@@ -40,7 +40,7 @@ POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ
 STACKED = "samples give the forces of the model as its equations do"
 SEED, STATES = 11, 3  # others than those at which the groups were found
-ENOUGH = 2  # rows of a base parameter by which they are told apart
+ENOUGH = 2  # rows of a base parameter, which distinguish them
 
 
 class LinearForces(Protocol):
@@ -147,9 +147,9 @@ def _misread(found: LinearForces, group: Group) -> str:
     scope = found.system.scope
     read = tuple(scope.value(parse(text)) for text in group.terms.values())
     values = evaluate(read, values_of_parameters(scope, None), fifty_digits())
-    for (parameter, text), worth in zip(group.terms.items(), values, strict=True):
-        if abs(worth - group.numbers[parameter]) > COMPUTED * (1 + abs(worth)):
-            return f"{text} of {parameter} is {float(worth):.10g}, not {group.numbers[parameter]:.10g}"
+    for (parameter, text), value in zip(group.terms.items(), values, strict=True):
+        if abs(value - group.numbers[parameter]) > COMPUTED * (1 + abs(value)):
+            return f"{text} of {parameter} is {float(value):.10g}, not {group.numbers[parameter]:.10g}"
     return ""
 
 
@@ -157,8 +157,12 @@ def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
     """Check of least squares: the residual is orthogonal to every column."""
     left, size = b - W @ beta, np.linalg.norm(W, axis=0) * (np.linalg.norm(b) + np.linalg.norm(W @ beta))
     worst = float(np.max(np.abs(W.T @ left) / np.where(size > 0, size, 1), initial=0.0))
-    wrong = "" if worst <= COMPUTED else f"what is left of the forces lies along a column by {worst:.1e}"
-    return checked("the fit leaves nothing that a base parameter could take", wrong, "floating point, all samples")
+    wrong = "" if worst <= COMPUTED else f"the residual of the forces is not orthogonal to a column, by {worst:.1e}"
+    return checked(
+        "the residual of the fit is orthogonal to the columns of the base parameters",
+        wrong,
+        "floating point, all samples",
+    )
 
 
 @dataclass(frozen=True)
@@ -166,7 +170,7 @@ class StackedSamples:
     """Samples as they were stacked.
 
     Args:
-        t, states, inputs: of each q, u and a, and what the data give of inputs, a name each.
+        t, states, inputs: instants; q, u and a of each; and the inputs that the data give, by name.
         rows: of each W and b, along the motions that the constraints allow there.
         pi: the model's own parameters, p those of its symbols.
     """
@@ -180,7 +184,7 @@ class StackedSamples:
 
 
 def samples_checked(found: LinearForces, samples: StackedSamples) -> Check:
-    """W pi - b of the first, middle and last sample, by the equations of motion with what is applied there."""
+    """W pi - b of the first, middle and last sample, by the equations of motion with the forces applied there."""
     motion, tally = PhaseMotion(equations_of_motion(found.system)), Tally(STACKED, "equations of motion, 50 digits")
     for k in dict.fromkeys((0, len(samples.t) // 2, len(samples.t) - 1)):
         tally.add(f"sample {k + 1}", partial(_left_otherwise, motion, samples, k))
@@ -195,7 +199,7 @@ def _left_otherwise(motion: PhaseMotion, samples: StackedSamples, k: int) -> str
     left, terms = here.M @ a - here.forcing, np.abs(here.M) @ np.abs(a) + np.abs(here.forcing)
     W, b = samples.rows[k]
     due, size = W @ samples.pi - b, 1 + float(np.max(terms, initial=0.0))
-    if len(here.J):  # the length of what is left along the constraints is that in any axes
+    if len(here.J):  # the length of the residual along the constraints does not depend on axes
         along = left - here.J.T @ np.linalg.lstsq(here.J.T, left, rcond=RANK_NEARBY)[0]
         due, left = np.array([np.linalg.norm(due)]), np.array([np.linalg.norm(along)])
     worst = int(np.argmax(np.abs(due - left)))

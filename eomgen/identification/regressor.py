@@ -2,11 +2,11 @@
 
     tau + J^T lam = Y(q, u, a) pi + y0(q, u, t)
 
-Of each body pi holds m, the first moments m c and the inertia about its origin, in its axes; of each joint what its
-rotor, damper and spring have; and what else of the model's parameters the forces are linear in, as friction. A column
+pi contains m, the first moments m c and the inertia about its origin, in its axes, of each body; the parameters of
+rotor, damper and spring of each joint; and other parameters in which the forces are linear, as friction. A column
 is the generalized force of a unit of its parameter, B^T (I A + xi x* (I xi)) with A = B a + alpha, weight as an upward
-acceleration of the ground. y0 is what is known: the forces that hold no parameter of pi,
-and the inertia of given energies.
+acceleration of the ground. y0 is the known part: the forces without a parameter of pi, and the inertia of given
+energies.
 Source: Khalil & Dombre, Modeling, Identification and Control of Robots (2002), §9.3 and §12.3.
 """
 
@@ -55,8 +55,8 @@ class Regressor:
         system: the system.
         parameters: pi by name: m(arm), mx(arm), Ixx(arm), armature(arm), damping(arm), stiffness(arm), mu.
         rows: Y as graph scalars, a row for each speed.
-        values: of each parameter what it is in the model.
-        known: y0, the forces of what is no parameter.
+        values: value of each parameter in the model.
+        known: y0, the forces that contain no parameter.
     """
 
     system: System
@@ -124,7 +124,7 @@ def regressor_of(system: System) -> Regressor:
     """The same of a system."""
     if not system.symbols.u:
         raise DerivationError(
-            "nothing moves: no force tells a mass",
+            "nothing moves: no force depends on a mass",
             "coordinates",
             "give a joint a coordinate that is free, neither driven nor dependent",
         )

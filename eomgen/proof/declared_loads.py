@@ -145,10 +145,10 @@ class _Declared(InNumbers):
             sum((x * y for x, y in zip(flat[n * i : n * i + n], d, strict=True)), start=0) for i in range(len(scope.N))
         ]
 
-        def beside(h: Any) -> State:
+        def nearby(h: Any) -> State:
             return {**self.state, **{q: self.state[q] + h * x for q, x in zip(symbols.q, moved, strict=True)}}
 
-        return Way((beside(-STEP), self.state, beside(STEP)), STEP)
+        return Way((nearby(-STEP), self.state, nearby(STEP)), STEP)
 
     # -- work ------------------------------------------------------------------------------------------------
 

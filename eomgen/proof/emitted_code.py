@@ -228,14 +228,14 @@ def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], na
 
 def _sure(code: Code, instant: TriedState) -> bool:
     """True if the code's numbers hardly change when the state does by a part in 1e12, or are not finite there."""
-    here, *beside = (code(each) for each in (instant, *_beside(instant)))
+    here, *nearby = (code(each) for each in (instant, *_nearby(instant)))
     if not np.all(np.isfinite(here)):
-        return not any(np.all(np.isfinite(each)) for each in beside)
-    change = max(float(np.max(np.abs(each - here), initial=0.0)) for each in beside)
+        return not any(np.all(np.isfinite(each)) for each in nearby)
+    change = max(float(np.max(np.abs(each - here), initial=0.0)) for each in nearby)
     return bool(change <= COMPUTED * (1 + np.max(np.abs(here), initial=0.0)))
 
 
-def _beside(instant: TriedState) -> tuple[TriedState, ...]:
+def _nearby(instant: TriedState) -> tuple[TriedState, ...]:
     """The state, each of its numbers a part in 1e12 larger or smaller by turns."""
     turns = np.where(np.arange(len(instant.x)) % 2, -SOLVED, SOLVED)
     return tuple(replace(instant, x=instant.x * (1 + sign * turns)) for sign in (1, -1))

@@ -27,7 +27,7 @@ DigitColumn = Sequence[Any]
 
 
 @dataclass(frozen=True)
-class Beside:
+class MotionDifference:
     """Difference of one motion from the reference motion, divided by h.
 
     Args:
@@ -117,14 +117,14 @@ class Differences:
         """True if only a part of the coordinates was requested."""
         return len(self.small.numbers.coordinates) < len(self.moved)
 
-    def along(self, step: Mapping[Node, Any], h: Any = STEP) -> Beside:
+    def along(self, step: Mapping[Node, Any], h: Any = STEP) -> MotionDifference:
         """The central difference in the direction of a step of coordinates, small turns, speeds and inputs."""
         late, early = (self.nearby.going(self.nearby.state(self._moved(step, sign * h))) for sign in (1, -1))
         e = self.small.numbers
         q, q1, q2 = ([(x - y) / (2 * h) for x, y in zip(*each, strict=True)] for each in self._read(late, early))
         both = [[self._speed(going, node) for node in e.speeds] for going in (late, early)]
         u, a = ([(x[k] - y[k]) / (2 * h) for x, y in zip(*both, strict=True)] for k in (0, 1))
-        return Beside(q, q1, q2, u, a, [step.get(w, 0) for w in e.inputs])
+        return MotionDifference(q, q1, q2, u, a, [step.get(w, 0) for w in e.inputs])
 
     def _moved(self, step: Mapping[Node, Any], h: Any) -> dict[Node, Any]:
         """Independent coordinates, speeds and inputs h further along the step."""

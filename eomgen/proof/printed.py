@@ -311,8 +311,8 @@ def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
 
 def _has_value(x: Scalar, state: State) -> bool:
     """True if it is nearly the same with the last digits of all numbers changed: what is left of 0/0 is not."""
-    beside = {node: value * (1 + (k + 1) * LAST) for k, (node, value) in enumerate(state.items())}
-    (a,), (b,) = (evaluate((x,), each, fifty_digits()) for each in (state, beside))
+    nearby = {node: value * (1 + (k + 1) * LAST) for k, (node, value) in enumerate(state.items())}
+    (a,), (b,) = (evaluate((x,), each, fifty_digits()) for each in (state, nearby))
     return bool(abs(a - b) <= COMPUTED * (1 + abs(a)))
 
 

@@ -222,8 +222,8 @@ class _Proof:
                 with suppress(NoValue, ZeroDivisionError):
                     if abs(x) <= COMPUTED * self._moved(aside, ASIDE / STEP):
                         continue
-                beside = self.nearby.going({**numbers, **{q: numbers[q] + STEP * d for q, d in aside.items()}}).a[u]
-                if abs(beside - x) > SHARE * abs(x):
+                nearby = self.nearby.going({**numbers, **{q: numbers[q] + STEP * d for q, d in aside.items()}}).a[u]
+                if abs(nearby - x) > SHARE * abs(x):
                     raise NoValue(f"{u.name} is 0/0 there")
                 return f"{u.name} changes by {float(x):.3g}"
         return ""

@@ -28,7 +28,7 @@ from eomgen.mechanics.linearization.polynomial import Polynomial
 from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
-from eomgen.proof.neighbouring_motions import Beside, Differences, DigitColumn
+from eomgen.proof.neighbouring_motions import Differences, DigitColumn, MotionDifference
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, sums_of_products
 from eomgen.symbolic.numeric.tolerances import (
@@ -85,14 +85,14 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
         yield _of_part(differences)
         return
     exact, tolerance = _entries(modes), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
-    beside, energies = [], []
+    nearby, energies = [], []
     for _ in range(DIRECTIONS):
         moved = (*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs)
-        beside.append(differences.along(_random(moved, rng)))
+        nearby.append(differences.along(_random(moved, rng)))
         energies.append(differences.energy_along(_random(small.whole.speeds, rng)))
     wrong = {
-        "motion": _in_equations(small, exact, beside, tolerance),
-        "state": _in_state_form(small, beside),
+        "motion": _in_equations(small, exact, nearby, tolerance),
+        "state": _in_state_form(small, nearby),
         "mass": _in_energy(small, exact["M"], energies, tolerance),
     }
     form = "M q'' + C q' + K q = B w" if small.is_second_order else "M u' + C u + K q = B w, q' = F q + E u"
@@ -173,17 +173,17 @@ def _random(nodes: Sequence[Node], rng: Random) -> Numbers50:
 
 
 def _in_equations(
-    small: SmallMotions, A: Mapping[str, list[list[Any]]], beside: Sequence[Beside], tolerance: float
+    small: SmallMotions, A: Mapping[str, list[list[Any]]], nearby: Sequence[MotionDifference], tolerance: float
 ) -> str:
     """Message for the first row in which M a + C u + K q = B w or q' = F q + E u does not hold; ""."""
     pushed = [[-x for x in row] for row in A["B"]]
     left = [[*m, *c, *k, *b] for m, c, k, b in zip(A["M"], A["C"], A["K"], pushed, strict=True)]
     units = [sum(map(abs, row)) for row in A["M"]]
-    balances = sums_of_products(left, [[*a, *u, *at.q, *at.w] for at, u, a in _moving(small, beside)])
+    balances = sums_of_products(left, [[*a, *u, *at.q, *at.w] for at, u, a in _moving(small, nearby)])
     rates = sums_of_products(
-        [[*f, *e] for f, e in zip(A["F"], A["E"], strict=True)], [[*at.q, *u] for at, u, _ in _moving(small, beside)]
+        [[*f, *e] for f, e in zip(A["F"], A["E"], strict=True)], [[*at.q, *u] for at, u, _ in _moving(small, nearby)]
     )
-    for at, rows, also in zip(beside, balances, rates, strict=True):
+    for at, rows, also in zip(nearby, balances, rates, strict=True):
         for speed, row, unit in zip(small.numbers.speeds, rows, units, strict=True):
             if wrong := _left(0, row, tolerance, unit):
                 return f"the equation of {speed.name.rstrip(chr(39))}: {wrong}"
@@ -193,20 +193,22 @@ def _in_equations(
     return ""
 
 
-def _in_state_form(small: SmallMotions, beside: Sequence[Beside]) -> str:
+def _in_state_form(small: SmallMotions, nearby: Sequence[MotionDifference]) -> str:
     names = [x.name for x in (*small.numbers.coordinates, *small.numbers.speeds)]
     both = np.hstack([small.state_matrix, small.input_matrix]).tolist()
-    found = sums_of_products(both, [[*at.q, *u, *at.w] for at, u, _ in _moving(small, beside)])
-    for (at, _, a), rows in zip(_moving(small, beside), found, strict=True):
+    found = sums_of_products(both, [[*at.q, *u, *at.w] for at, u, _ in _moving(small, nearby)])
+    for (at, _, a), rows in zip(_moving(small, nearby), found, strict=True):
         for name, rate, row in zip(names, (*at.q1, *a), rows, strict=True):
             if wrong := _left(-rate, row, COMPUTED):
                 return f"the row of {name}: {wrong}"
     return ""
 
 
-def _moving(small: SmallMotions, beside: Sequence[Beside]) -> list[tuple[Beside, DigitColumn, DigitColumn]]:
+def _moving(
+    small: SmallMotions, nearby: Sequence[MotionDifference]
+) -> list[tuple[MotionDifference, DigitColumn, DigitColumn]]:
     """Each with the speeds and their rates that the equations speak of."""
-    return [(at, at.q1, at.q2) if small.is_second_order else (at, at.u, at.a) for at in beside]
+    return [(at, at.q1, at.q2) if small.is_second_order else (at, at.u, at.a) for at in nearby]
 
 
 def _in_energy(

@@ -131,7 +131,7 @@ class _Again:
         return self._of_right() if each.is_right else self._of_wrong()
 
     def _of_right(self) -> str:
-        states = list(self._along() if self.judged.is_of_start else self._beside())
+        states = list(self._along() if self.judged.is_of_start else self._nearby())
         apart = [found for state in states if (found := self._apart(state)) is not None]
         if not apart:
             raise NoValue("no state has values for it")
@@ -142,7 +142,7 @@ class _Again:
         return "" if off is None else f"it is judged right, and its sides differ by {off.value:.6g}"
 
     def _of_wrong(self) -> str:
-        own = list(self._along() if self.judged.is_of_start else self._beside())
+        own = list(self._along() if self.judged.is_of_start else self._nearby())
         apart = [found for state in own if (found := self._apart(state)) is not None]
         if len(apart) < 2:
             raise NoValue("no state has values for it")
@@ -153,7 +153,7 @@ class _Again:
 
     # -- states ------------------------------------------------------------------------------------
 
-    def _beside(self) -> Iterator[NumericState]:
+    def _nearby(self) -> Iterator[NumericState]:
         """States that satisfy the constraints: near the start, then random ones."""
         equations, up_to = self.judged.equations, self.judged.up_to
         own = any(word in up_to for word in (*OF_THE_FILE, "holds where", "a constant of"))

@@ -1,4 +1,4 @@
-"""A robot file of another program -> the text of a model file, what was left out of it, the model."""
+"""A robot file of another program -> the text of a model file, the parts that were left out, the model."""
 
 from __future__ import annotations
 
@@ -27,8 +27,8 @@ class ImportedRobot:
 
     Args:
         text: the model file.
-        model: what it declares.
-        left_out: what of the robot's file has no counterpart in it.
+        model: the model of this text.
+        left_out: parts of the robot's file that have no counterpart in it.
         source: the robot's file as it was read: a pipe is read once.
     """
 
@@ -60,7 +60,7 @@ def imported(path: str | Path, *, floating: bool = False, model: str | None = No
 
 
 def import_robot(path: str | Path, *, floating: bool = False, model: str | None = None) -> Model:
-    """The model of a robot in a file of another program; `imported` has its text and what was left out.
+    """Model of a robot in a file of another program; `imported` gives its text and the parts that were left out.
 
     Args:
         floating: of URDF: nothing holds the base; else it is fixed to the ground.

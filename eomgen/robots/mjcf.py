@@ -1,8 +1,6 @@
-"""MJCF -> tables of a model file, by MuJoCo's own reader.
+"""MJCF -> tables of a model file, by MuJoCo's own reader and compiler (the extra `[mujoco]`).
 
-MJCF -> tables of a model file, by MuJoCo's own reader and compiler (the extra `[mujoco]`).
-
-What MuJoCo has compiled is what is imported: defaults are in it, inertias of geoms, names of meshes. A body's joints
+The model as MuJoCo has compiled it is imported, with defaults, inertias of geoms, names of meshes. A body's joints
 become joints one after the other, with frames without mass between them; each sits at its own place in the body.
 A position of a hinge or slide counts from `ref`; free and ball joints turn by quaternions, scalar first, with the
 angular velocity in the body's axes, as here.
@@ -357,7 +355,7 @@ def _rest(r: CompiledRobot) -> None:
     for what, size, why in (
         ("cameras", m.ncam, "pictures only"),
         ("lights", m.nlight, "pictures only"),
-        ("sensors", m.nsensor, "outputs ask for what is measured"),
+        ("sensors", m.nsensor, "outputs request measured quantities"),
         ("keyframes", m.nkey, "start values are set by --start"),
         ("flexible bodies", m.nflex, "bodies are rigid"),
         ("plugins", m.nplugin - sum(r.by_plugin(k) for k in range(len(m.actuator_trntype))), "code of a simulator"),
@@ -372,8 +370,8 @@ def _rest(r: CompiledRobot) -> None:
 MOST_MADE = (
     3_000  # elements that <replicate> makes: MuJoCo takes the square of it, of 3000 some 3 s, and cannot be stopped
 )
-MOST_VALUES = 10_000_000  # of one array that a file asks for
-SIZES = {  # what makes arrays as large as a number in the file, or as the product of several
+MOST_VALUES = 10_000_000  # values of one array that a file requests
+SIZES = {  # elements with arrays as large as a number in the file, or as the product of several
     "hfield": ("nrow", "ncol"),
     "texture": ("width", "height"),
     "flexcomp": ("count",),
@@ -418,10 +416,10 @@ def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int
     """Number of elements that replicas make of a file, and of those that it includes.
 
     Args:
-        first: beside which included files lie.
-        times: how often this file stands there.
+        first: the first file; included files lie next to it.
+        times: number of copies of this file.
     Raises:
-        ModelError: more than anything can be computed with; MuJoCo would ask for the memory, or work on it for hours.
+        ModelError: too many elements; MuJoCo would request the memory for them, or work for hours.
     """
     text = data.decode("utf-8", "replace")
     text = COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text)
@@ -445,7 +443,7 @@ def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int
             raise ModelError(what, where, "make fewer: equations of so many bodies are not derived")
         sizes = [_product(given[key]) for key in SIZES.get(tag, ()) if key in given]
         if sizes and max(max(sizes), 1 if tag in ALONE else math.prod(sizes)) > MOST_VALUES:
-            what = f"<{tag}> asks for more than {MOST_VALUES} values"
+            what = f"<{tag}> requests more than {MOST_VALUES} values"
             raise ModelError(what, where, "make it smaller: no equation depends on it")
     return made
 

@@ -1,7 +1,4 @@
-"""Tendons, equalities and motors of MuJoCo -> forces and inputs.
-
-Tendons and equalities of a compiled model of MuJoCo -> forces and constraints of a model file.
-"""
+"""Tendons, equalities and motors of a compiled model of MuJoCo -> forces, constraints and inputs of a model file."""
 
 from __future__ import annotations
 
@@ -34,11 +31,11 @@ from eomgen.symbolic.expression.spatial import IDENTITY, apply
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, ROUNDING
 
 CONNECT, WELD, JOINT, TENDON = range(4)  # the numbers of MuJoCo: of equalities,
-SITE = 6  # of what an equality is of
+SITE = 6  # of the objects that they connect
 NEWTON_STEPS = 50
-TURNING = 10  # where a weld says how much its turning counts beside its place
+TURNING = 10  # index of the weight of the rotation of a weld relative to its position
 BEYOND = (*("tendon_frictionloss", "tendon_stiffnesspoly", "tendon_dampingpoly", "tendon_springyield"),)
-"""of tendons, what has no counterpart"""
+"""Properties of tendons without a counterpart."""
 
 
 def tendons(r: CompiledRobot) -> None:
@@ -156,7 +153,7 @@ def _equality(r: CompiledRobot, e: int, raw: str) -> Entries | None:
         return _weld(r, first, second, raw, data)
     if kind not in (JOINT, TENDON):
         return None
-    sides: list[tuple[str, Decimal, set[str]]] = []  # what it counts, where it starts, its units
+    sides: list[tuple[str, Decimal, set[str]]] = []  # its variables, start and units
     for which in (first, second):
         if which < 0:
             sides.append(("", ZERO, set()))
@@ -255,7 +252,7 @@ def mujoco_matrix(mujoco: Any, quaternion: Any) -> Any:
 # Motors of a compiled model of MuJoCo -> inputs and forces of a model file.
 
 
-ON_JOINT, IN_PARENT, ON_TENDON, ON_SITE = 0, 1, 3, 4  # the numbers of MuJoCo: of what a motor acts on,
+ON_JOINT, IN_PARENT, ON_TENDON, ON_SITE = 0, 1, 3, 4  # the numbers of MuJoCo: of the target of a motor,
 FIXED, AFFINE = 0, 1  # of its laws
 LIMITS = ("ctrl", "force", "act")
 Length = list[tuple[Decimal, str]]
@@ -479,7 +476,7 @@ def _thrust(r: CompiledRobot, k: int, w: str) -> bool:
 
 
 # -------- mjcf reading ----------------------------------------------------------------------------------------
-# A compiled model of MuJoCo, and what is made of it: what the readers of bodies and of what acts on them share.
+# A compiled model of MuJoCo, and the tables made of it, shared by the readers of bodies and of forces.
 
 
 FREE, BALL, SLIDE, HINGE = range(4)  # the numbers of MuJoCo: of joints,
@@ -491,7 +488,7 @@ class CompiledRobot:
     """Compiled model of MuJoCo, and the tables that are made of it.
 
     Args:
-        rotors, dampers: what motors add to joints and tendons, by ("joint" or "tendon", number).
+        rotors, dampers: inertia and damping that motors add to joints and tendons, by ("joint" or "tendon", number).
         in_space: motors on free and ball joints, with their inputs.
         omega: the rates of free and ball joints: of places, about the axes of the body.
         start: the positions at which the model starts.

@@ -258,7 +258,7 @@ class _Reading:
         """Pose of the model in the world: of its own frame, or of the one by which it is placed."""
         pose = next((child for child in self.model.children if child.tag == "pose"), None)
         if pose is not None and pose.attributes.get("relative_to", "world") != "world":
-            pose.seen = False  # to what is not imported: it is told among what is left out
+            pose.seen = False  # relative to a thing that is not imported: reported among the parts left out
             return Pose(IDENTITY, ORIGIN)
         frame = self.model.get("placement_frame") or "__model__"
         if pose is not None:
@@ -272,7 +272,9 @@ class _Reading:
         body: Entries = {"about": f"link {raw}"} if name != raw else {}
         files = self.flat.scope_of(element).files
         inertial = element.one("inertial")
-        if not (fixed and inertial is not None and inertial.get("auto") in YES):  # of what stands no mass is asked
+        if not (
+            fixed and inertial is not None and inertial.get("auto") in YES
+        ):  # a link that stands still needs no mass
             body |= link_masses(element, lambda shape: self._in_link(shape, raw), files)
         gravity = element.one("gravity")
         if gravity is not None and gravity.text in ("false", "0"):

@@ -52,10 +52,10 @@ class ModelScope:
     """Place of the elements of a model in the whole file.
 
     Args:
-        frame: that of their model, from which poses count.
-        files: that include one another, theirs last.
-        old: an axis is given in that frame.
-        prefix: of their names.
+        frame: frame of their model, to which poses are relative.
+        files: files that include one another, theirs last.
+        old: True if an axis is given in that frame.
+        prefix: prefix of their names.
     """
 
     frame: str = "__model__"
@@ -115,12 +115,12 @@ class SdfChoice:
             return False
 
     def flat(self) -> FlatModel:
-        """Raises: ModelError: what it includes is not there."""
+        """Raises: ModelError: the included file is not there."""
         model, scope = self.element, self.scope
         model.seen = True
         if model.tag == "include":
             model, scope = included(model, scope)
-            self.element.children.append(model)  # what nobody reads of it is left out
+            self.element.children.append(model)  # its parts that are not read are left out
         found = FlatModel(model, scope)
         _flatten(found, model, scope)
         return found
@@ -236,7 +236,7 @@ def _within(model: XmlElement, scope: ModelScope) -> Iterator[tuple[XmlElement, 
         elif child.tag == "include":
             uri = next((x.text for x in child.children if x.tag == "uri"), "")
             if file_of(uri, scope.files) is None:
-                continue  # it is told among what is left out
+                continue  # reported among the parts left out
             child.seen = True
             inner, own = included(child, scope)
             child.children.append(inner)
@@ -258,7 +258,7 @@ def _rename(element: XmlElement, scope: ModelScope) -> None:
 
 
 WATER = Decimal(1000)  # kg/m^3, where no density is given
-SIZES = {  # of a shape: what its element says
+SIZES = {  # values of the element of a shape
     "box": ("size",),
     "sphere": ("radius",),
     "cylinder": ("radius", "length"),
@@ -331,7 +331,7 @@ def _by_density(
     if not shapes:
         name = link.attributes.get("name", "")
         raise ModelError(
-            f"link '{name}' has no <collision> to tell its mass by", inertial.where, "give mass and inertia"
+            f"link '{name}' has no <collision> that determines its mass", inertial.where, "give mass and inertia"
         )
     usual = inertial.one("density")
     parts = [_part(shape, usual, placed(shape), files) for shape in shapes]
@@ -450,9 +450,9 @@ def _mesh(mesh: XmlElement, density: Decimal, files: tuple[str, ...]) -> MassPar
     path = file_of(where, files)
     if path is None:
         fix = "put it into this folder, or one above it; or give mass and inertia"
-        raise ModelError(f"no file is there for '{where}', by which the mass is told", mesh.where, fix)
+        raise ModelError(f"no file is there for '{where}', which determines the mass", mesh.where, fix)
     if any(child.tag == "submesh" for child in mesh.children):
-        raise ModelError("the mass of a part of a surface is not told", mesh.where, "give mass and inertia")
+        raise ModelError("the mass of a part of a surface is not computed", mesh.where, "give mass and inertia")
     found = enclosed(path, [1.0] * 3 if scale is None else [float(x) for x in scale.value(3)])
     S = [[density * decimal_of_double(float(x)) for x in row] for row in found.second]
     xx, yy, zz = (S[i][i] for i in range(3))
@@ -463,7 +463,7 @@ def _mesh(mesh: XmlElement, density: Decimal, files: tuple[str, ...]) -> MassPar
 
 
 # -------- meshes ----------------------------------------------------------------------------------------------
-# Files of closed surfaces (STL, OBJ) -> volume, centre and second moments of what they enclose.
+# Files of closed surfaces (STL, OBJ) -> volume, centre and second moments inside them.
 
 
 LARGEST_MESH = 100_000_000  # bytes

@@ -249,7 +249,7 @@ class _Joints:
             letters, angles = letters[::-1], angles[::-1]
         return {"orientation": letters, "angles": angles}
 
-    # what acts
+    # loads
 
     def _forces(self) -> Entries:
         found: Entries = {}
@@ -259,7 +259,7 @@ class _Joints:
                 loads += each.to_loads()
         for load in loads:
             self._load(load, found)
-        if lagrangian_method(self.system) is not None:  # Kane's method asks no body for a potential energy
+        if lagrangian_method(self.system) is not None:  # Kane's method uses no potential energy of a body
             energies = [body.potential_energy for body in self.system.bodies]
             for k, text in enumerate(self.words.texts([x for x in energies if x != 0])):
                 found[self.forces.new(f"V{k + 1}")] = {"kind": "potential", "energy": text}
@@ -383,7 +383,7 @@ def _stands(body: Any, system: Any) -> bool:
     frame = getattr(body, "frame", system.frame)
     try:
         still = frame.dcm(system.frame) == sympy.eye(3) and body.masscenter.pos_from(system.fixed_point) == 0
-    except ValueError:  # what sympy raises where nothing connects them
+    except ValueError:  # raised by sympy where nothing connects them
         return False
     return bool(still)
 
@@ -437,7 +437,7 @@ class Words:
         """An expression in the symbols of the graph.
 
         Raises:
-            DerivationError: what a model has no word for.
+            DerivationError: a model has no counterpart for it.
         """
         t = dynamicsymbols._t
         expression = sympy.sympify(expression, strict=True)
@@ -486,7 +486,7 @@ def with_rationals(expression: Any) -> Any:
 def file_texts(scalars: Sequence[Scalar], taken: Container[str] = ()) -> list[Any]:
     """Scalars as they stand in a model file, numbers as decimals where they end.
 
-    What would be longer than a formula may be has its parts named before it: "z1 = sin(q); z1^2 + z1".
+    A formula that would be too long gets names for its parts: "z1 = sin(q); z1^2 + z1".
 
     Args:
         taken: names that no part may have.
@@ -511,7 +511,7 @@ def _refuse_misread(scalars: Sequence[Scalar], found: Sequence[Any]) -> None:
     for x, text in zip(scalars, found, strict=True):
         if not isinstance(text, str):
             continue
-        with suppress(NoValue, ExpressionError, ArithmeticError, ValueError):  # a root of what is negative there
+        with suppress(NoValue, ExpressionError, ArithmeticError, ValueError):  # a root of a negative number there
             (due,) = evaluate((x,), state, FLOAT)
             read = float(parse(text, longest=LONGEST_WITH_PARTS).evaluate(names))
             if abs(read - due) > COMPUTED * (1 + abs(due)):

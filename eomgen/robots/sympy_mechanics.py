@@ -1,16 +1,15 @@
 """Systems of sympy.physics.mechanics -> models: System, KanesMethod, LagrangesMethod.
 
 A `System` whose bodies hang on joints becomes bodies on joints, with its gravity, springs, forces and torques. Anything
-else has its energies, and what the equations have beside them. With w = q' and u = Y w + y the speeds, T(q, w, t) the
+else is imported by its energies and the remaining forces. With w = q' and u = Y w + y the speeds, T(q, w, t) the
 kinetic energy of all bodies, the generalized forces are
 
     Q_i = sum F . dv/dw_i + M . domega/dw_i
           + d/dt dT/dw_i - dT/dq_i - sum d(m v)/dt . dv/dw_i + dH/dt . domega/dw_i
 
 in which the accelerations cancel. The second line vanishes where velocities are the rates of places; those that were
-given and are not (a wheel that rolls) so leave in Q what constraints them. Everything is written into one graph, in
-which what
-is met again is one node: sympy multiplies nothing out.
+given and are not (a wheel that rolls) so leave in Q the terms that constrain them. Everything is written into one
+graph, in which equal subexpressions are one node: sympy expands nothing.
 """
 
 from __future__ import annotations
@@ -78,11 +77,11 @@ class Formed:
     Args:
         ground: the frame in which velocities are.
         q, u: coordinates and speeds, the dependent ones included.
-        kinematic: what vanishes of q' and u.
-        gaps, velocities: what vanishes of q, and of q and u.
-        masses: what moves.
+        kinematic: expressions in q' and u that vanish.
+        gaps, velocities: expressions in q, and in q and u, that vanish.
+        masses: the moving masses.
         pushes: (force, velocity of its point) or (torque, angular velocity), vectors.
-        T, V: kinetic and potential energy, where they are known beside the masses.
+        T, V: kinetic and potential energy, where they are known in addition to the masses.
         still: auxiliary speeds, which are 0.
     """
 
@@ -111,7 +110,7 @@ def from_sympy(system: Any, *, name: str = "model", path: str | Path | None = No
         path: where the model file is written; None: nowhere.
     Raises:
         UsageError: something else.
-        DerivationError: what a model has no counterpart for: rates of given functions, masses that change.
+        DerivationError: a model has no counterpart: rates of given functions, masses that change.
     """
     if not isinstance(system, (SympySystem, KanesMethod, LagrangesMethod)):
         what = "a System, KanesMethod or LagrangesMethod of sympy.physics.mechanics is needed"
@@ -208,7 +207,7 @@ class _Energies:
                 self.q.append(own)
                 kinematic.append(own.diff(t) - u)
         rates = speeds_as_rates(self.q, formed.u, kinematic)
-        rates = {  # what stands in another's equation is no speed by itself
+        rates = {  # a speed in the equation of another is not determined by itself
             u: q for u, q in rates.items() if sum(x.has(q.diff(t)) or x.has(u) for x in kinematic) == 1
         }
         self.words = Words(self.q, formed.u, rates)
@@ -336,7 +335,7 @@ class _Energies:
         return file_texts(scalars, self.words.names.given)
 
     def _mass(self, mass: MovingMass, moved: list[tuple[Triple, Triple]], q: list[Node], w: list[Node]) -> list[Scalar]:
-        """m v^2/2 and omega . I omega/2; (m v, v) and (H, omega) in the ground's axes are put beside `moved`."""
+        """m v^2/2 and omega . I omega/2; (m v, v) and (H, omega) in the ground's axes are appended to `moved`."""
         m, v = self._scalar(mass.mass), self._vector(mass.velocity)
         moved.append((times(m, v), v))
         T = HALF * m * dot(v, v)

@@ -29,7 +29,7 @@ Triple = tuple[Any, Any, Any]
 Nine = tuple[Triple, Triple, Triple]
 
 DIGITS = 40
-WRITTEN = 17  # digits of a number that had to be computed: what a double holds
+WRITTEN = 17  # digits of a computed number: those of a double
 SURE = 13  # digits by which a decimal is taken for a part of pi
 PARTS = 24  # of pi, that people write
 
@@ -182,14 +182,14 @@ def six(I: Nine) -> list[Decimal]:
 
 
 # -------- drawn up --------------------------------------------------------------------------------------------
-# What the readers of robot files share: legal names, joints in a row, what was left out; tables of a model file.
+# Shared by the readers of robot files: legal names, joints in a row, parts left out; tables of a model file.
 
 
 RESERVED = ("t", "pi", "nan", "inf", "infinity", "ground")
 ILLEGAL = re.compile(r"[^A-Za-z0-9_]+")
-UNLIMITED = "1e9"  # what an export writes where a format wants a limit and there is none
+UNLIMITED = "1e9"  # written by an export where a format needs a limit and there is none
 _FIGURE = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
-REMARKS = {  # what an import tells in a coordinate's or a body's remark, and an export reads there
+REMARKS = {  # written by an import into the remark of a coordinate or a body, and read there by an export
     "name": r"^(?:joint|link) (.+?)(?=, from |, at most |$)",
     "lower": rf"\bfrom {_FIGURE} to \S+ (?:rad|m)\b",
     "upper": rf"\bfrom \S+ to {_FIGURE} (?:rad|m)\b",
@@ -201,7 +201,7 @@ NO_COUNTERPART = "eomgen has no counterpart"
 SLIDING = 'torque or force of the joint, with "- f*tanh(rate/small)": it slides, and creeps where it would stick'
 IN_SPACE = "a [forces] `couple` in axes of the body, by its quaternion and `omega`"
 LAW = "a formula with max and min in the motor's force"
-NEAREST = {  # what of a model comes nearest to a thing that changes the motion and has no counterpart
+NEAREST = {  # nearest counterpart in a model of a thing that changes the motion and cannot be imported
     "collision": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
     "pairs of geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
@@ -239,7 +239,7 @@ NEAREST = {  # what of a model comes nearest to a thing that changes the motion 
     "plugin": "the law as a force in [forces]",
     "plugins": "the law as a force in [forces]",
     "model": "eomgen import FILE --model NAME",
-    "include": "put the file beside this one, and import again",
+    "include": "put the file next to this one, and import again",
     "joint": "both models within one <model>",
     "fluid_added_mass": "a `kinetic` energy in [forces]",
     "drake:rotor_inertia": "the `armature` of a joint, ratio^2*J",
@@ -255,10 +255,10 @@ class LeftOut:
     """Things of one sort in a file that a model has no counterpart for.
 
     Args:
-        what: their sort: "collision".
+        what: their kind: "collision".
         where: each of them.
         why: why there is none, or how a model says it.
-        nearest: what of a model comes nearest to it; None where no motion depends on it.
+        nearest: nearest counterpart in a model; None where no motion depends on it.
     """
 
     what: str
@@ -285,8 +285,8 @@ class Imported:
     """A robot file as the tables of a model file.
 
     Args:
-        tables: what a TOML reader would give.
-        left_out: what has no counterpart.
+        tables: tables as a TOML reader would give them.
+        left_out: parts without a counterpart.
     """
 
     tables: Entries

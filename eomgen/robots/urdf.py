@@ -46,12 +46,12 @@ from eomgen.symbolic.numeric.tolerances import NOT_NEGATIVE
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
-LEFT_OUT = {  # what has no counterpart, and why
+LEFT_OUT = {  # elements without a counterpart, and why
     "visual": "pictures only",
     "material": "pictures only",
     "collision": "no contact is declared by a shape: see [constraints]",
     "gazebo": "settings of a simulator",
-    "sensor": "not mechanics; outputs ask for what is measured",
+    "sensor": "not mechanics; outputs request measured quantities",
     "joint of <mimic>": "no joint about or along one axis is called so",
     "name of <joint>": "no joint that moves by one axis is called so",
     "calibration": "not mechanics",
@@ -64,7 +64,7 @@ LEFT_OUT = {  # what has no counterpart, and why
     "friction": "of Coulomb in a joint",
 }
 LEFT_OUT |= {f"{key} of <inertia>": "below zero by rounding: 0" for key in ("ixx", "iyy", "izz")}
-SPEAKING = ("include", "joint")  # elements that are told by their own names, not by those of what holds them
+SPEAKING = ("include", "joint")  # elements that are reported by their own names, not by those of their parents
 WORLD = "world"  # a parent that is no link is the ground
 GRAVITY = {"kind": "gravity", "acceleration": [0, 0, "-g"]}
 
@@ -136,7 +136,7 @@ class _Reading:
     Args:
         above: of each link the joint by which it hangs.
         coordinates, bodies: the legal names, of joints and of links.
-        rotors: by joint, what motors behind gears add to its inertia.
+        rotors: inertia that motors behind gears add, by joint.
     """
 
     robot: XmlElement
@@ -208,7 +208,7 @@ class _Reading:
         named = set()
         for transmission in self.robot.all("transmission"):
             transmission.get("name")
-            transmission.get("type"), transmission.one("type")  # whatever carries it over, the input acts at the joint
+            transmission.get("type"), transmission.one("type")  # whatever the transmission, the input acts at the joint
             for joint in transmission.all("joint"):
                 raw = joint.get("name") or ""
                 named.add(raw)
@@ -221,7 +221,7 @@ class _Reading:
         return (named & own) or own
 
     def _rotor(self, transmission: XmlElement, actuator: XmlElement) -> None:
-        """Adds the rotor behind a gear, ratio^2 J, where one joint of one axis is driven; else it is reported as left out."""
+        """Adds the rotor behind a gear, ratio^2 J, where one joint of one axis is driven; else reported as left out."""
         raw = [joint.get("name") or "" for joint in transmission.all("joint")]
         if len(raw) == 1 and raw[0] in self.coordinate and _need_kind(self.joints[raw[0]]) in ONE_AXIS:
             inertia, ratio = (actuator.one(f"drake:{tag}") for tag in ("rotor_inertia", "gear_ratio"))
@@ -292,7 +292,7 @@ class _Reading:
         q, other = self.coordinate[raw], mimic.need("joint")
         leader = self.joints.get(other)
         unit = None if leader is None else ONE_AXIS.get(_need_kind(leader))
-        if unit is None:  # some files have it so: it is told among what is left out
+        if unit is None:  # some files have it so: reported among the parts left out
             mimic.read.discard("joint")
             return
         factor, offset = mimic.number("multiplier", "1"), mimic.number("offset", "0")

@@ -24,7 +24,7 @@ class XmlElement:
         tag: its name.
         attributes: as they are written.
         where: "file:line:column" at which it begins.
-        text: what stands in it, blanks at its ends left out.
+        text: its text, without blanks at the ends.
     """
 
     tag: str
@@ -94,7 +94,7 @@ class XmlElement:
             found = ()
         beyond = next((x for x in found if x.is_finite() and x and not _is_double(x)), None)
         if beyond is not None:
-            what = f"a number beyond what is computed with in <{self.tag}>: {(text or '').strip()[:30]}"
+            what = f"a number beyond the range of computation in <{self.tag}>: {(text or '').strip()[:30]}"
             raise ModelError(what, self.where, f"at most {LARGEST_EXPONENT} digits, and as many zeros")
         if len(found) != size or not all(x.is_finite() for x in found):
             needed = "a number is" if size == 1 else f"{size} numbers are"

@@ -1,1 +1,1 @@
-"""Derivatives by parameters and starts: of the right-hand side, of outputs, of a run, of small motions, of rest."""
+"""Derivatives by parameters and starts: of the right-hand side, outputs, runs, small motions and equilibria."""

@@ -45,11 +45,11 @@ from eomgen.symbolic.numeric.tolerances import (
 from eomgen.symbolic.numeric.work import check_patience
 
 # -------- along a run -----------------------------------------------------------------------------------------
-# Equations, what changes -> how a motion changes along its way: the variational equations, integrated with it.
+# Equations, changes of parameters and start -> change along a motion: the variational equations, integrated with it.
 #
 #     x' = f(t, x, p),   s' = f_x s + f_p,   s(0) = dx(0)/dp
 #
-# One program gives both; where constraints close, f is what the elimination of the multipliers leaves.
+# One program gives both; where constraints close, f is the right-hand side with the multipliers eliminated.
 
 
 JUMPS = ("sign", "less", "less_equal", "select")
@@ -237,7 +237,7 @@ def _corrected(
 
 
 def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seeds: Seeds) -> None:
-    """Close to the state, on both sides, scalars must be what their slopes make of them.
+    """Refuses a state near which, on both sides, scalars are not those that their derivatives predict.
 
     Raises:
         DerivationError: one is not.
@@ -249,10 +249,10 @@ def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seed
     found = evaluate((*scalars, *tangent(tuple(scalars), seeds)), numbers, digits)
     for side in (-1, 1):
         step = side * digits.number(1) * BESIDE
-        beside = evaluate(scalars, {**numbers, **{x: numbers[x] + step * rate for x, rate in rates.items()}}, digits)
-        for here, there, slope in zip(found, beside, found[len(scalars) :], strict=False):
+        nearby = evaluate(scalars, {**numbers, **{x: numbers[x] + step * rate for x, rate in rates.items()}}, digits)
+        for here, there, slope in zip(found, nearby, found[len(scalars) :], strict=False):
             if abs((there - here) / step - slope) > CARRIED * (1 + abs(slope)):
-                raise DerivationError("it, or a force, has a corner or a jump there", fix="ask beside it")
+                raise DerivationError("it, or a force, has a corner or a jump there", fix="take a state near it")
 
 
 # -------- differences -----------------------------------------------------------------------------------------
@@ -260,7 +260,7 @@ def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seed
 #
 #     f' = (8 (f(h) - f(-h)) - (f(2h) - f(-2h)))/12h + O(h^4)
 #
-# What the coarse and the fine difference differ by says how far they are to be trusted. The value itself is
+# The difference between the coarse and the fine one gives their accuracy. The value itself is
 #
 #     f = (4 (f(h) + f(-h)) - (f(2h) + f(-2h)))/6 + O(h^4)
 
@@ -273,9 +273,9 @@ class Derivatives:
     """Derivatives that are found [SI].
 
     Args:
-        values: of each formula what it is, those that have one.
-        slopes: by (formula, name).
-        run: the same along a motion; None where none was asked.
+        values: value of each formula that has one.
+        slopes: derivative by (formula, name).
+        run: values and derivatives along a motion; None where none was requested.
     """
 
     values: Mapping[str, float]
@@ -308,7 +308,7 @@ def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> 
     try:
         f = [computed(value + k * h) for k in (-2, -1, 1, 2)]
     except (EomgenError, ArithmeticError, ValueError) as error:
-        return [unchecked(name, f"without a value beside: {error}", HOW) for name in names]
+        return [unchecked(name, f"without a value nearby: {error}", HOW) for name in names]
     found = []
     for k, (text, name) in enumerate(zip(of, names, strict=True)):
         low2, low, high, high2 = (each[k] for each in f)
@@ -317,7 +317,7 @@ def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> 
         own, noise = reported.slope(text, to), share * np.max(np.abs(high), initial=0.0)
         trust = np.abs(fine - coarse) + noise / h + COMPUTED * np.max(np.abs(own))
         if not np.all(np.isfinite(fine)):
-            found.append(unchecked(name, "without a value beside", HOW))
+            found.append(unchecked(name, "without a value nearby", HOW))
             continue
         wrong = _worst(own, fine, trust)
         here = reported.value(text)

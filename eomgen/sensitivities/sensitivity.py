@@ -1,7 +1,7 @@
 """Model -> Sensitivity: exact derivatives of requested formulas by parameters and start values.
 
-At the start, where all forces balance, of small motions, or along a run; each in closed form where the question has
-one, as a number always, by differentiating the equations that define it: no step, no difference.
+They are taken at the start, at an equilibrium, of small motions, or along a run: in closed form where one exists, as a
+number always, by differentiating the equations that define them: without a step or a difference.
 """
 
 from __future__ import annotations
@@ -67,14 +67,14 @@ class Sensitivity(Result):
 
     Args:
         model: the model.
-        of: what is asked, as formulas.
+        of: the requested formulas.
         to: the parameters and starts.
-        values: of each formula what it is, in its unit.
-        slopes: by (formula, name) its derivative: exact where it has a closed form; the value in the formula's unit
-            over the name's.
-        run: the same along a motion; None where none was asked.
+        values: value of each formula, in its unit.
+        slopes: derivative by (formula, name): exact where it has a closed form; its number in the formula's unit over
+            the name's.
+        run: values and derivatives along a motion; None where none was requested.
         in_si: the derivatives in SI.
-        wanted: what was asked, in words: "rhs" is several formulas.
+        wanted: the requests as they were written: "rhs" is several formulas.
     """
 
     model: Model
@@ -92,7 +92,7 @@ class Sensitivity(Result):
     def __getitem__(self, pair: tuple[str, str]) -> Quantity:
         """The derivative of a formula by a name."""
         if pair not in self.slopes:
-            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was asked", fix="ask for it in the call")
+            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was requested", fix="request it in the call")
         return self.slopes[pair]
 
     @property
@@ -129,9 +129,9 @@ class Sensitivity(Result):
         return pandas.DataFrame(self.matrix, index=list(self.of), columns=list(self.to))
 
     def certify(self) -> Certificate:
-        """Each derivative, and what it is of, against central differences of the whole computation, made anew.
+        """Proof of each derivative and formula by central differences of the whole computation, made anew.
 
-        And as it is told: in its unit and as a text against its number in SI, of the formulas that were asked.
+        Reported values in units and texts are compared with the numbers in SI, and formulas with the requests.
         """
         off = (
             f"{named(*pair)} is {found.value * parse_unit(found.unit or '1').size:.9g} in SI for {self.in_si[pair]:.9g}"
@@ -167,7 +167,7 @@ class Sensitivity(Result):
             if left[: len(due)] != due:
                 return f"{', '.join(left)} for {text}"
             left = left[len(due) :]
-        return f"{', '.join(left)} beside {', '.join(self.wanted)}" if left and self.wanted else ""
+        return f"{', '.join(left)} in addition to {', '.join(self.wanted)}" if left and self.wanted else ""
 
     def _meant(self, text: str, left: tuple[str, ...]) -> tuple[str, ...]:
         """Formulas for which a text stands, by names of the file; `left` gives the number of speeds and frequencies."""
@@ -366,11 +366,11 @@ class _Asking:
         if requests_of(output.value, OF_A_RUN) or output.from_ is not None or output.event is not None:
             raise DerivationError(
                 "it is of a whole run, or of one instant of it: no derivative is sought of that",
-                fix="ask for last(...), or sweep over the parameter",
+                fix="request last(...), or sweep over the parameter",
             )
         rest = isinstance(output.at, AtRest)
         if output.at is not None and not rest:
-            raise DerivationError("it is asked at an instant", fix="give `time`: derivatives along the run")
+            raise DerivationError("it is requested at an instant", fix="give `time`: derivatives along the run")
         if requests_of(output.value, SMALL_MOTIONS):
             return self._of_small_motions(output.value, name)
         return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
@@ -420,7 +420,7 @@ class _Asking:
         changed = self._changed(name, phase)
         if not changed and not self._rests_alone:
             raise DerivationError(
-                "it may rest in many places beside one another, of which the start tells one",
+                "it has many equilibria next to one another, of which the start selects one",
                 fix="hold it by a spring or a constraint",
             )
         seeds = ParameterSlopes(self.small.small, changed).seeds if changed else {}
@@ -474,7 +474,7 @@ class _Asking:
             value = frequency.mode.frequency or 0.0
             if value == 0:
                 raise DerivationError(
-                    "a motion that does not swing has no frequency that would change", fix="ask for an eigenvalue"
+                    "a motion that does not swing has no frequency that would change", fix="request an eigenvalue"
                 )
             slope = changing.eigenvalue(frequency.mode.eigenvalue).imag if changing.parameters else 0.0
             return value, slope, frequency.exact

@@ -1,6 +1,6 @@
 """Ranges, distributions, seed -> values of run k, by its number alone, in any order and on any machine.
 
-Ranges, distributions, a seed -> the values of run k: by its number alone, whatever was run before and where.
+The values do not depend on the runs made before, or on the process that makes them.
 
 A run is a point of the grid and a draw: k = point * draws + draw. Draws are u in (0, 1)^d, and a distribution gives the
 value that belongs to a share u of all.
@@ -42,8 +42,8 @@ class Distribution:
     """A distribution.
 
     Args:
-        arguments: what they are called; `plain` of them have no unit.
-        quantile: (u, arguments) -> the value below which a share u of all lies.
+        arguments: their names; those in `plain` have no unit.
+        quantile: (u, arguments) -> the value below which the probability is u.
     """
 
     arguments: tuple[str, ...]
@@ -95,10 +95,10 @@ class DrawnValues:
 
 
 def spread_of(model: Model, text: str, *, declared: bool = True) -> tuple[DrawnValues, Taken]:
-    """(the distribution that a text means, "phi=normal(0, 0.1)", what was made of it).
+    """(distribution of a text, "phi=normal(0, 0.1)", the reading of its numbers).
 
     Raises:
-        UsageError: no parameter or start of that name, no law, or arguments that are none of it.
+        UsageError: no parameter or start has that name, the law is unknown, or its arguments are wrong.
     """
     name, equals, law = (part.strip() for part in text.partition("="))
     word, opened, inside = law.partition("(")
@@ -178,7 +178,7 @@ class Design:
         return self.points * self.draws
 
     def runs(self, first: int, last: int) -> tuple[list[int], np.ndarray]:
-        """(a seed of each below 2^63, what is set in it [SI], runs x names) of the runs from `first` up to `last`."""
+        """(seeds below 2^63, values that are set [SI], runs x names) of the runs from `first` up to `last`."""
         runs = np.arange(first, last)
         seeds = [_seed_of(self.seed, int(k)) for k in runs]
         columns, point = [], runs // self.draws
@@ -248,10 +248,10 @@ def _chance(seeds: Sequence[int], many: int) -> np.ndarray:
 
 
 def refuse_bad_design(kind: Any, runs: Any, seed: Any) -> None:
-    """Refuses what is no design.
+    """Refuses a wrong design.
 
     Raises:
-        UsageError: its kind, the number of its runs or its seed.
+        UsageError: its kind, the number of its runs or its seed is wrong.
     """
     if kind not in DESIGNS:
         raise UsageError(f"no design '{kind}'", fix=f"one of {', '.join(DESIGNS)}")
@@ -265,7 +265,7 @@ def refuse_bad_design(kind: Any, runs: Any, seed: Any) -> None:
 # SweepPlan: everything on which the numbers of a sweep depend, as a file that a person can read.
 
 
-FIXED = ("run", "seed", "status", "message")  # columns before what is set and what is asked
+FIXED = ("run", "seed", "status", "message")  # columns before the values set and requested
 SCHEMA = 1
 
 
@@ -284,12 +284,12 @@ class SweepPlan:
     """A sweep.
 
     Args:
-        text: the model file; "" of a model that was made in Python.
-        title: the name of a model that gives itself none.
+        text: the model file; "" for a model that was made in Python.
+        title: the name of a model that has none of its own.
         given, start: values that hold in every run, as they were typed; plain numbers are in the unit of the file.
         over: the values of each name over which it goes [SI].
         random: (name, law, arguments [SI]) of each name that is drawn.
-        ask, critical: what is asked of each run, and what changes its sign at a critical value; "" is nothing.
+        ask, critical: requests of each run, and the expression that changes its sign at a critical value; "": none.
         made: the model that was made in Python.
     """
 
@@ -371,7 +371,7 @@ def asdict_of(plan: SweepPlan) -> dict[str, Any]:
 
 
 def plan_of(reported: Mapping[str, Any], made: Model | None = None) -> SweepPlan:
-    """The plan that `as_dict` or `written` tells.
+    """Plan written by `as_dict` or `written`.
 
     Raises:
         UsageError: it is none.

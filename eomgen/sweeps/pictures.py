@@ -172,4 +172,4 @@ VIEWS: dict[str, Callable[[Drawable, _Columns, Mapping[str, str]], Picture]] = {
     "heat": _heat,
     "scatter": _scatter,
 }
-"""what can be seen of a sweep, by name"""
+"""views of a sweep, by name"""

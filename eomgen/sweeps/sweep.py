@@ -1,4 +1,4 @@
-"""Model, ranges, distributions -> Sweep: a row for each run, kept in a ledger from which a killed sweep goes on."""
+"""Model, ranges, distributions -> Sweep: a row for each run, in a ledger with which an interrupted sweep goes on."""
 
 from __future__ import annotations
 
@@ -56,9 +56,9 @@ class Sweep:
     """Results of every run.
 
     Args:
-        plan: what was to be run.
-        ledger: its rows.
-        folder: where they are; None: in memory.
+        plan: the plan of the runs.
+        ledger: the rows.
+        folder: folder of the files; None: in memory.
     """
 
     plan: SweepPlan
@@ -86,7 +86,7 @@ class Sweep:
 
     @property
     def critical(self) -> list[dict[str, Any]]:
-        """The critical values: what stays, the name, its value, what is left there, a message."""
+        """Critical values: the values that stay, the name, its value, the residual there, a message."""
         names = ("at", "name", "value", "left", "message")
         return [dict(zip(names, (json.loads(row[1]), *row[2:]), strict=True)) for row in self.ledger.critical()]
 
@@ -139,7 +139,7 @@ class Sweep:
 
         Raises:
             UsageError: there is no such run.
-            RunFailed: it asks no motion, or its model is not known here.
+            RunFailed: the sweep requests no motion, or its model is not known here.
         """
         _refuse_no_run(self.plan, run)
         kernel = SweepKernel(_known(self.plan))
@@ -168,7 +168,7 @@ def _refuse_no_run(plan: SweepPlan, run: int) -> None:
         raise UsageError(f"there is no run {run}", fix=f"from 0 to {plan.runs.count - 1}")
 
 
-# -- as a user asks for it ---------------------------------------------------------------------------------
+# -- as a user requests it ---------------------------------------------------------------------------------
 
 
 def sweep(
@@ -189,7 +189,7 @@ def sweep(
     atol: float = RUN,
     method: str = "DOP853",
 ) -> Sweep:
-    """Many runs of a model, each by its number alone; what is done already in `out` is not done again.
+    """Many runs of a model, each by its number alone; runs that are done in `out` are not repeated.
 
     Args:
         over: values of parameters and starts, every one with every other: numbers in SI, or a text "100:1000:10",
@@ -197,14 +197,14 @@ def sweep(
         random: distributions: "normal(0, 0.1)", "uniform(1, 2)", "loguniform", "lognormal", "triangular".
         runs: how many are drawn (at each point of the grid).
         design: "random", "sobol" or "lhs" (Latin hypercube).
-        ask: what is asked of each run: outputs by name, "max(reaction_x(A))", "theta' at theta = 0", "frequency(1)";
-            of nothing, and without `critical`, all [outputs].
-        critical: an expression whose changes of sign are sought along what is first in `over`.
+        ask: requests of each run: outputs by name, "max(reaction_x(A))", "theta' at theta = 0", "frequency(1)";
+            without requests, and without `critical`, all [outputs].
+        critical: an expression whose changes of sign are sought along the first name of `over`.
         workers: processes here.
         executor: anything with `submit`, instead of them: of dask.distributed, loky, mpi4py.futures.
         out: a folder for plan.json, ledger.sqlite, table.csv.
     Raises:
-        UsageError: what is asked makes no sense; another plan is in `out`.
+        UsageError: the request makes no sense; another plan is in `out`.
     """
     text, title, made = _source(model)
     declared = made if made is not None else loads(text, str(model), title)
@@ -256,7 +256,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     """The plan of a sweep, checked before anything is run.
 
     Raises:
-        UsageError: what is asked makes no sense.
+        UsageError: the request makes no sense.
     """
     draws = 1 if runs is None else runs
     refuse_bad_design(fields["design"], draws, fields["seed"])
@@ -281,7 +281,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
         fields["ask"] = tuple(name for name, output in model.outputs.items() if output.event != "every")
     plan = SweepPlan(draws=draws, **fields)
     if not plan.requested:
-        raise UsageError("nothing is asked of the runs", fix='--ask "max(theta)", or give the model [outputs]')
+        raise UsageError("nothing is requested of the runs", fix='--ask "max(theta)", or give the model [outputs]')
     how = fields["how"]
     if not how.time > 0:
         raise UsageError(f"the time {how.time:g} s makes no sense", fix="give one above 0")
@@ -292,7 +292,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
         if to and to.removesuffix("'") not in (*model.parameters, *model.coordinates, *model.speeds):
             raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'", fix="name one of the model")
         if output.event is not None and not isinstance(output.event, int):
-            raise UsageError(f"'{text}' is of several instants", fix="ask for one of them: event 1")
+            raise UsageError(f"'{text}' is of several instants", fix="request one of them: event 1")
     return plan
 
 
@@ -337,7 +337,7 @@ def _kept(count: int, folder: Path | None) -> str:
 
 
 def _whole(plan: SweepPlan, row: SampleRow) -> SampleRow:
-    """The row of a run that no worker survived has what was set, and nothing that was asked."""
+    """Row of a run; where every worker died of it, the row has the values set and no results."""
     if len(row) == len(plan.columns):
         return row
     values = plan.runs.runs(row[0], row[0] + 1)[1][0].tolist()
@@ -407,7 +407,7 @@ def sweep_at(folder: str | Path) -> Sweep:
     reported = _plan_reported(folder)["hash"]
     if plan.hash != reported and plan.text:
         raise UsageError(
-            f"'{folder / PLAN}' was changed by hand: its hash is not that of what it says",
+            f"'{folder / PLAN}' was changed by hand: its hash is not that of its content",
             fix="begin the sweep again in another folder",
         )
     object.__setattr__(plan, "hash", reported) if not plan.text else None
@@ -483,16 +483,15 @@ def _several(rows: Iterable[SampleRow], many: int) -> Iterator[list[SampleRow]]:
 
 
 # -------- critical --------------------------------------------------------------------------------------------
-# Rows of a sweep -> critical values: where what is asked changes its sign along the first of its ranges.
-#
-# And what was asked in vain.
+# Rows of a sweep -> critical values: where an expression changes its sign along the first of the ranges; and remarks on
+# requests without an effect.
 
 
-JUMP = 1e-3  # of what it was at both ends of the bracket: more is left where a function jumps or has a pole
+JUMP = 1e-3  # share of the values at both ends of the bracket: a larger residual is a jump or a pole
 
 
 def critical_values(plan: SweepPlan, ledger: SweepLedger, pool: Pool | None) -> list[SampleRow]:
-    """(number, what stays, name, value, left, message) for each change of sign between two neighbours of the grid."""
+    """(number, values that stay, name, value, residual, message) of each change of sign between grid neighbours."""
     known = {row[0] for row in ledger.critical()}
     tasks = [task for task in _brackets(plan, ledger) if task[0] not in known]
     payload = payload_of(plan)
@@ -503,11 +502,11 @@ def critical_values(plan: SweepPlan, ledger: SweepLedger, pool: Pool | None) -> 
 
 
 Bracket = tuple[int, dict[str, float], str, tuple[float, float], tuple[float, float], str]
-"""(number, what stays, the name, its two values, what is asked at them, the expression)"""
+"""(number, values that stay, the name, its two values, results at them, the expression)"""
 
 
 def _brackets(plan: SweepPlan, ledger: SweepLedger) -> Iterator[Bracket]:
-    """Neighbours along the first range at which what is asked has different signs; every other value stays."""
+    """Neighbours along the first range at which the expression has different signs; every other value stays."""
     design, name = plan.runs, next(iter(plan.over))
     many = design.count // len(plan.over[name])
     k = len(plan.columns) - len(plan.requested) + plan.requested.index(plan.critical)
@@ -535,7 +534,7 @@ def remarks_of(plan: SweepPlan, ledger: SweepLedger) -> tuple[str, ...]:
         if count < 2 or low is None or high is None:
             continue
         same = high - low <= plan.how.rtol * max(abs(low), abs(high))
-        reported = f"'{name}' is {high:.9g} in all runs: nothing that is set changes it"
+        reported = f"'{name}' is {high:.9g} in all runs: none of the values set changes it"
         if plan.requested[column - len(plan.columns)] == plan.critical and not ledger.critical():
             reported = reported if same else f"it goes from {low:.9g} to {high:.9g}"
             remarks.append(f"'{plan.critical}' changes its sign nowhere along {next(iter(plan.over))}: {reported}")
@@ -553,7 +552,7 @@ def bisected(
     values: tuple[float, float],
     text: str,
 ) -> SampleRow:
-    """The critical value between two, enclosed until nothing is left between them (Brent's method)."""
+    """Critical value between two values, by Brent's method."""
     from scipy.optimize import brentq
 
     (a, b), (low, high) = ends, values

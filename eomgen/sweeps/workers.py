@@ -1,9 +1,9 @@
 """Chunks of runs -> their rows, in any process.
 
-Chunks of runs -> their rows, in this process, in a pool of processes here, or by any executor with `submit`.
+They are made in this process, in a pool of processes here, or by any executor with `submit`.
 
-The distribution is the executor's: what is asked of one is `submit(function, *arguments)`, and of its futures
-`result()` and `add_done_callback`, or else `done()`. A chunk whose worker dies is given out again, at last run by run.
+An executor needs `submit(function, *arguments)`, and its futures `result()` and `add_done_callback`, or else `done()`.
+A chunk whose worker dies is given out again, at last run by run.
 """
 
 from __future__ import annotations
@@ -42,12 +42,12 @@ from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of
 from eomgen.symbolic.numeric.work import PatienceEnded
 
-A_CHUNK = 0.5  # s of work in one: long beside what giving it out costs, short beside what a kill loses
+A_CHUNK = 0.5  # s of work in one: long compared with the cost of giving it out, short compared with the loss by a kill
 MOST_IN_ONE = 2000  # runs
 AHEAD = 3  # chunks given out for each worker
 TRIES = 3  # of a chunk whose worker died
 UNKNOWN_WORKERS = 16  # of an executor that does not say
-LOOK = 1.0  # s between two looks after the parent, or after futures that tell nobody
+LOOK = 1.0  # s between two looks after the parent, or after futures without a callback
 
 Chunk = tuple[int, int]
 """The runs from the first up to the last, which is not among them."""
@@ -66,7 +66,7 @@ class ChunkSizes:
 
 
 def in_chunks(stretches: Iterable[Chunk], sizes: ChunkSizes) -> Iterator[Chunk]:
-    """The runs of some stretches, as many in each chunk as is right when it is asked for."""
+    """Runs of some stretches, in chunks of the size that is right when each is requested."""
     for first, last in stretches:
         while first < last:
             end = min(last, first + sizes.runs)
@@ -95,7 +95,7 @@ class Pool:
     """Processes here, or an executor of the user's.
 
     Args:
-        workers: how many processes; of the user's executor what it has, as far as anybody knows.
+        workers: number of processes; for the user's executor its own number, as far as it is known.
         executor: of the user; None: processes here.
     """
 
@@ -118,7 +118,7 @@ class Pool:
             RunFailed: the executor is the user's.
         """
         if self.executor is not None:
-            raise RunFailed("the executor broke: a worker of it died", fix="what is done is kept: start again")
+            raise RunFailed("the executor broke: a worker of it died", fix="finished runs are saved: start again")
         if self._own is not None:
             self._own.shutdown(wait=False, cancel_futures=True)
         self._own = None
@@ -131,7 +131,7 @@ class Pool:
 
 
 def end_with_parent(parent: int) -> None:
-    """A process of the pool ends when its parent is gone: nobody would take what it finds."""
+    """Ends a process of the pool when its parent is gone: its results would be lost."""
 
     def watch() -> None:
         while os.getppid() == parent:
@@ -212,7 +212,7 @@ def _give_out(pool: Pool, payload: Payload, out: _Out, fresh: Iterator[Chunk]) -
 
 
 def _after_death(pool: Pool, out: _Out, chunk: Chunk, seeds: Callable[[int], int]) -> Iterator[list[SampleRow]]:
-    """The pool is new, and what was out is given out again; a run that no worker survives is a row that says so."""
+    """Makes a new pool, which gets the chunks that were out; a run that kills every worker becomes a failed row."""
     lost = [chunk, *out.futures.values()]
     alone = len(lost) == 1
     out.futures.clear()
@@ -239,7 +239,7 @@ FAILED = "failed"
 WITHOUT_MOTION = "computed"
 CUT: dict[str, type[BaseException]] = {"interrupted": KeyboardInterrupt, "out of patience": PatienceEnded}
 SampleRow = tuple[Any, ...]
-"""run, seed, status, message, what was set, what was asked; None where it has no value"""
+"""run, seed, status, message, values set, values requested; None where there is no value"""
 
 
 @dataclass(frozen=True)
@@ -262,7 +262,7 @@ class SweepKernel:
         return found
 
     def requested(self, set_: Mapping[str, float]) -> tuple[str, str, list[float | None]]:
-        """(status, message, what is asked) of a run; what goes wrong is its message."""
+        """(status, message, requested values) of a run; an error becomes its message."""
         reported: dict[str, float | None] = dict.fromkeys(self.plan.requested)
         status, messages = WITHOUT_MOTION, list[str]()
         for part in (self._in_motion_reported, self._without_motion, self._slopes_reported):
@@ -370,7 +370,7 @@ def finite(x: float | None) -> float | None:
 # -- in any process ------------------------------------------------------------------------------------------
 
 Payload = tuple[str, Any]
-"""(the plan as JSON, the model that was made in Python or None): what another process needs"""
+"""(the plan as JSON, the model that was made in Python or None): data for another process"""
 
 
 def payload_of(plan: SweepPlan) -> Payload:
@@ -417,7 +417,7 @@ def progress_of(runs: int, done: int) -> Iterator[Callable[[int], object]]:
 # -------- ledger ----------------------------------------------------------------------------------------------
 # The ledger of a sweep: a row for each run that is done, once and for ever, in a file that sqlite reads.
 #
-# One process writes it, by transactions: whoever is killed at whatever instant leaves whole rows behind.
+# One process writes it, by transactions: a process that is killed leaves whole rows behind.
 
 
 AT_ONCE = 10_000  # rows that are read at once
@@ -504,7 +504,7 @@ class SweepLedger:
             yield from some
 
     def add_critical(self, rows: Iterable[SampleRow]) -> None:
-        """Critical values: (number, what stays, the name, its value, what is left, message)."""
+        """Critical values: (number, values that stay, the name, its value, the residual, message)."""
         with self.connection:
             self.connection.executemany("INSERT OR IGNORE INTO critical VALUES (?, ?, ?, ?, ?, ?)", rows)
 
@@ -513,8 +513,8 @@ class SweepLedger:
         return list(self.connection.execute("SELECT * FROM critical ORDER BY number"))
 
     def settle(self) -> None:
-        """All that is done stands in the one file; what is beside it while rows are added is gone."""
-        with suppress(sqlite3.OperationalError):  # somebody else reads it: whoever is the last does it
+        """Moves all rows into the one file; the files next to it, which exist while rows are added, are removed."""
+        with suppress(sqlite3.OperationalError):  # another process reads it: the last one does it
             self.connection.execute("PRAGMA journal_mode=DELETE")
 
     def close(self) -> None:
