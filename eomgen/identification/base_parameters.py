@@ -179,7 +179,7 @@ def _agree(number: Any, terms: LengthTerms, values: Mapping[str, Any]) -> bool:
 def _sampled(
     system: System, entries: ScalarRow, size: tuple[int, int], seed: int, given: Any = None
 ) -> list[list[int]]:
-    """W modulo the prime: the entries at so many states, in rows so wide; the parameters are the same in all.
+    """W modulo the prime at a number of states, rows of a given width; the parameters are the same at all states.
 
     The states are one: each has coordinates, speeds and accelerations of its own name.
     """
@@ -340,7 +340,7 @@ class Dependence:
 def by_transfers(
     system: System, names: Sequence[str], rows: Sequence[ScalarRow], moving: Sequence[int], dependence: Dependence
 ) -> dict[tuple[int, int], str]:
-    """The entries of K as formulas, where all of it comes of masses that change their body, and of plain numbers.
+    """Entries of K as formulas, where they follow from masses moved between bodies and plain numbers.
 
     {} where something else makes columns follow from others. A transfer is tried on Y with other lengths than the
     model's, a formula is compared with its number.
@@ -383,7 +383,7 @@ def by_transfers(
 
 
 def _of_columns(transfers: Iterable[Transfer], place: Mapping[str, int]) -> Iterator[Mapping[int, Scalar | None]]:
-    """Transfers between parameters that there are, by their columns; those that no motion feels are left out."""
+    """Existing transfers between parameters, by their columns; those without an effect on any motion are left out."""
     for each in transfers:
         yield {place[name]: x for name, x in each.items() if name in place}
 
@@ -503,7 +503,7 @@ def transfers_of(system: System, states: Sequence[State]) -> Iterator[Transfer]:
 
 
 def _shared(system: System, states: Sequence[State]) -> Iterator[SharedPoint]:
-    """The points of bodies that are one point at all states, and those that stand still."""
+    """Points of bodies that coincide at all states, and points that are fixed in the ground."""
     motion = system.motion
     places: list[tuple[str, Vector]] = []
     for link in motion.links:

@@ -59,7 +59,7 @@ def columns_along(
 
 
 def constrained_states(system: System, rng: Random, *, shaken: bool = False) -> Iterator[tuple[State, np.ndarray]]:
-    """(a generic state that keeps the constraints, the motions that they allow there), without end."""
+    """Endless pairs (generic state that satisfies the constraints, the motions that they allow there)."""
     symbols, constraints = system.symbols, system.constraints
     size = len(symbols.u)
     J = tuple(x for row in constraints.J for x in row)

@@ -68,7 +68,7 @@ class Identified:
     fit: tuple[Check, ...] = ()
 
     def certify(self) -> Certificate:
-        """The proof of the regressor and its groups, and that least squares left nothing that they could take."""
+        """Proof of the regressor and its groups, and of the optimum of least squares."""
         return self.regressor.certify() + self.fit
 
     @property
@@ -82,7 +82,7 @@ class Identified:
 
 @dataclass(frozen=True)
 class Stacked:
-    """W pi = b, of all samples one above the other; `sizes` says how many rows each has."""
+    """System W pi = b of all samples, stacked; `sizes` gives the number of rows of each sample."""
 
     W: np.ndarray
     b: np.ndarray
@@ -164,7 +164,7 @@ def _samples(found: Regressor, data: Data, stacked: Stacked) -> StackedSamples:
 
 
 def _splined(symbols: Symbols, data: Data) -> list[str]:
-    """The columns whose rates come of a spline."""
+    """Columns whose rates are those of a spline."""
     wanted = [x.name[:-1] for x in (*symbols.u, *symbols.a) if x.name not in data]
     return list(dict.fromkeys(name if name in data else name[:-1] for name in wanted))
 

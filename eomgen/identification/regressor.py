@@ -93,7 +93,7 @@ class Regressor:
 
     @property
     def blocks(self) -> dict[str, tuple[ScalarRow, ...]]:
-        """Y, y0 and Y_base, the columns of Y that lead groups, as far as they hold something.
+        """Y, y0 and Y_base, the columns of Y that lead groups, as far as they are not 0.
 
         Y pi + y0 = Y_base base + y0
         """

@@ -80,7 +80,7 @@ class Certificate:
 
     @property
     def ok(self) -> bool | None:
-        """False: something contradicts the result. True: what was checked holds. None: nothing could be checked."""
+        """False if something contradicts the result, True if the checks made hold, None if nothing could be checked."""
         states = {check.status for check in self.checks}
         return False if "fails" in states else True if "holds" in states else None
 

@@ -179,7 +179,7 @@ def _misplaced(phase: Phase, apart: System) -> str:
 
 
 def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
-    """A state of the run at 50 digits; quaternions of doubles miss norm 1 by 1e-16 and are put to it."""
+    """State of the run with 50 digits; quaternions of doubles are normalized, as their norm is off by 1e-16."""
     symbols = system.symbols
     known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
     known |= on_unit_norms(system.scope.quaternions, known)

@@ -422,7 +422,7 @@ class ActingElement(InNumbers):
         return dot(minus(self.ends[1], self.ends[0]), n), dot(minus(speeds[1], speeds[0]), n)
 
     def _turned(self, body: str | None) -> tuple[Any, Any]:
-        """(the angle of its axes, by the whole turns that the body has made; its spin) about z."""
+        """Angle of the axes about z, with the whole turns of the body, and its rate."""
         if body is None:
             return 0, 0
         link = self.motion.link(body)
@@ -600,7 +600,7 @@ class _Strung(InNumbers):
         return self.vector(named[way]) if isinstance(way, str) else direction_at(self.vector(self._scene.vector(way)))
 
     def _lengthening(self, first: _Stop, second: _Stop, d: Numbers) -> Any:
-        """d . (v_2 - v_1) of what it touches."""
+        """Relative velocity d . (v_2 - v_1) of the two surfaces."""
         return dot(d, minus(*(self.velocity(stop.body, stop.touched(d)) for stop in (second, first))))
 
     # -- as it is declared -----------------------------------------------------------------------------------

@@ -391,7 +391,7 @@ class Nearby:
         return evaluate(tuple(scalars), state, fifty_digits())
 
     def state(self, given: Mapping[Node, Any]) -> Numbers50:
-        """The state in which some are as `given`, the dependent ones as the constraints say.
+        """State with given values of some unknowns, the dependent ones by the constraints.
 
         Raises:
             NoValue: the constraints do not close there, or leave a coordinate or speed open.
@@ -478,7 +478,7 @@ class Nearby:
 
 
 def _first(rows: Sequence[Sequence[Any]], n: int) -> DigitRow | None:
-    """The first n unknowns, the multipliers of rows that follow from others at 0; None where they are open."""
+    """First n unknowns, with multipliers of dependent rows 0; None where they are not determined."""
     found = solved_nearby(rows)
     if found is not None:
         return found[:n]

@@ -71,7 +71,7 @@ class PhaseMotion:
     equations: EquationsOfMotion
 
     def values(self, at: TriedState) -> State:
-        """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
+        """Values of every symbol except a and lam at a state, with 50 digits; inputs of the model, or given ones."""
         symbols = self.equations.symbols
         nodes = (*symbols.q, *symbols.u, *symbols.parameters.values())
         found = {node: precise(float(value)) for node, value in zip(nodes, (*at.x, *at.p), strict=True)}
@@ -203,7 +203,7 @@ def _held(system: System, given: State) -> State | None:
 
 
 def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], name: str) -> Check:
-    """The code's accelerations fulfil the equations at states; one next to a singular position says nothing.
+    """Check that the code's accelerations satisfy the equations at states; one next to a singular position is left out.
 
     Where the constraints hold they are put to the free bodies too, which choose no rows: at the first PUT states.
     """
@@ -339,7 +339,7 @@ class Written:
         )
 
     def code(self) -> Code | None:
-        """The function as it is written; None where nothing runs the language.
+        """The written function, compiled; None where the language cannot be run here.
 
         Raises:
             ToolMissing, RunFailed: its compiler is not there, or refuses it.
@@ -357,7 +357,7 @@ class Written:
 
 
 def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -> Iterator[Check]:
-    """A contradiction where a number of test vectors stands in no self-test of a language; else nothing.
+    """A failing check where a number of the test vectors is missing in the self-test of a language; else none.
 
     A number is found wherever one like it to the digits of floats stands, in any language's form.
     """
@@ -493,7 +493,7 @@ class Judged:
         return dict(zip(self.motion.equations.symbols.a, found.tolist(), strict=True))
 
     def _inverse(self, code: Code, at: Iterable[TriedState], name: str) -> Check:
-        """tau put back as forces and inputs: M a - J^T lam = forcing(tau) + columns tau, with J a + gamma = 0."""
+        """Check of tau as forces and inputs: M a - J^T lam = forcing(tau) + columns tau, with J a + gamma = 0."""
         system = self.motion.equations.system
         columns = {actuator: acting(system, actuator) for actuator in self.actuators if actuator not in system.inputs}
 

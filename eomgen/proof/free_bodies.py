@@ -395,7 +395,7 @@ class _Bodies(InNumbers):
 
     @property
     def _inertia_sizes(self) -> list[tuple[Any, Any]]:
-        """(force, moment) of its terms, without signs: what centripetal acceleration takes from another counts too."""
+        """Sizes of force and moment: sums of the absolute values of their terms, so that cancellation is seen."""
         found, of_origins = [], list[tuple[Any, Any]]()  # (|wd|, |acc|) of every body
         for link, own, rate, (w, _, _), mass in zip(
             self.links, *self._moving, self._motions, self._masses, strict=True
@@ -459,7 +459,7 @@ class _Bodies(InNumbers):
         return sizes
 
     def along_joints(self) -> Iterator[tuple[int, Any, Any]]:
-        """(speed, what a joint gives along it, of which size): the columns of s and r' by each speed, on its wrench."""
+        """(speed, force of a joint along it, its size), by the columns of s and r' for each speed, on its wrench."""
         place = {symbol: k for k, symbol in enumerate(self.system.scope.symbols.u)}
         values = iter(self.at(self.formulas.columns))
         for own, joint, wrench, (f, tau) in zip(
@@ -577,7 +577,7 @@ class _Named(InNumbers):
         return [fifty_digits().number(rng.randint(20, 90)) / 7 for _ in self.balance.components]
 
     def stated(self, named: NamedReaction) -> tuple[Any, Any]:
-        """(what it comes to, of terms of which size)"""
+        """(value of a named reaction, size of its terms)"""
         *factors, given = self.at((*named.combination.values(), named.given))
         x = self.values
         terms = [given, *(k * x[j] for j, k in zip(named.combination, factors, strict=True))]
@@ -600,7 +600,7 @@ class _Named(InNumbers):
         return tuple(x + y for x, y in zip(total, self._turned(on, efforts, couple, 1), strict=True))
 
     def _turned(self, on: int, effects: Iterable[Effect], couple: str, share: Any) -> Any:
-        """A share of what effects do to one body together, turned by the pose of the body."""
+        """Part of the wrench of effects on one body, turned by the pose of the body."""
         total = [0 * fifty_digits().number(1)] * 3
         for effect in (each for each in effects if each.link == on):
             own = self.at(effect.couple if couple else effect.force)

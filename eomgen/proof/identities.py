@@ -36,7 +36,7 @@ class Claim:
 
 
 def compared(claims: Sequence[Claim], states: States | None = None) -> list[Check]:
-    """A check of each claim: in a prime field, which holds at every state; where that cannot tell at real ones.
+    """Check of each claim, in a prime field, which proves it at every state; where that fails, at real states.
 
     Args:
         states: real states that come before random ones.

@@ -1,4 +1,4 @@
-"""An MJCF file, the model made of it, its equations -> whether it stands, weighs and accelerates as MuJoCo has it.
+"""MJCF file, the model made of it, its equations -> check that it stands, weighs and accelerates as in MuJoCo.
 
     T of every body,    M u' = Q - c    against    M u' = actuators + passive forces - bias
 

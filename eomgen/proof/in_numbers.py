@@ -78,7 +78,7 @@ class InNumbers:
         return vector_of(self.at(v))
 
     def carried(self, body: str | None, place: Numbers, *, direction: bool = False) -> Numbers:
-        """A place or direction of a body; the ground's is itself."""
+        """Place or direction of a body in ground axes."""
         if body is None:
             return place
         R, p = self._stand(body)
@@ -182,7 +182,7 @@ class Way:
 
 
 def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) -> Way:
-    """The motion through a state with the accelerations that stand in it, to first or second order in q."""
+    """Motion through a state with given accelerations, to first or second order in q."""
     symbols, scope = system.symbols, system.scope
     first = evaluate(scope.rates, state, fifty_digits())
     second = evaluate(scope.with_accelerations(scope.rates), state, fifty_digits()) if order == 2 else [0] * len(first)

@@ -293,7 +293,7 @@ class _Proof:
     # -- centres ---------------------------------------------------------------------------------------------
 
     def wrong_centers(self) -> str | None:
-        """v_i = v_j there; at infinity w_i = w_j and v_j - v_i across the direction."""
+        """Message if a centre is wrong: v_i = v_j there, at infinity w_i = w_j and v_j - v_i normal to it; ""."""
         mechanism = self.state.mechanism
         if mechanism is None or not mechanism.centers:
             return None

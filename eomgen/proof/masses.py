@@ -176,7 +176,7 @@ def _tensor(P: np.ndarray) -> np.ndarray:
 
 
 def _in_order(found: Mapping[str, float]) -> dict[str, float]:
-    """The principal moments and radii ascending, which stand in another order where it depends on the values."""
+    """Principal moments and radii in ascending order, as their order may depend on the values."""
     groups = [[name for name in (f"{letter}_{k}" for k in (1, 2, 3)) if name in found] for letter in "Ik"]
     ordered = [dict(zip(names, sorted(found[name] for name in names), strict=True)) for names in groups]
     return {**found, **ordered[0], **ordered[1]}

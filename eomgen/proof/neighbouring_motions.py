@@ -93,7 +93,7 @@ class Differences:
 
     @cached_property
     def _spins(self) -> dict[Node, SmallTurn]:
-        """The same of the speeds: rates of turns about axes that stand still."""
+        """Small rotation for each of its labels among the speeds: rates of rotations about fixed axes."""
         return self._named(self.small.whole.speeds, "'")
 
     def _named(self, labels: Sequence[Node], prime: str) -> dict[Node, SmallTurn]:
@@ -146,7 +146,7 @@ class Differences:
         return rotation_of("quaternion", tuple(self.origin.state[e] for e in turn.four))
 
     def _speed(self, going: Going, label: Node) -> tuple[Any, Any]:
-        """A speed and its rate; about axes that stand still R_0 w, and R_0 (w_0 x w + w')."""
+        """Speed and its rate; about fixed axes R_0 w, and R_0 (w_0 x w + w')."""
         if label not in self._spins:
             return going.state[label], going.a[label]
         turn = self._spins[label]

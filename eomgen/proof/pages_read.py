@@ -58,7 +58,7 @@ PageLine = tuple[PagePart, ...]
 
 @dataclass(frozen=True)
 class PageBlock:
-    """One thing that stands on a page.
+    """One block of a page.
 
     Args:
         kind: "heading", "words", "formula", "table" or "lines".
@@ -145,7 +145,7 @@ def markdown_page(text: str) -> Iterator[PageBlock]:
 
 
 def _markdown_blocks(text: str) -> Iterator[tuple[bool, str]]:
-    """(whether it stands between fences, the block)."""
+    """(True for a fenced block, its text)."""
     for k, part in enumerate(re.split(r"^```$\n?", text, flags=re.MULTILINE)):
         if k % 2:
             yield True, part.removesuffix("\n")

@@ -16,14 +16,14 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def other_data(motion: Motion) -> Iterator[Check]:
-    """A contradiction where parameters or bodies' masses are not those of the file; whether samples hold."""
+    """A failing check of parameters or masses that are not those of the file; the check of sampled functions."""
     yield from other_parameters(motion.scope)
     yield from other_masses(motion)
     yield from other_functions(motion.scope.model)
 
 
 def other_parameters(scope: Scope) -> Iterator[Check]:
-    """A contradiction where the numbers at which all else is looked at are not those of the file; else nothing."""
+    """A failing check where the numbers used by all other checks are not those of the file; else none."""
     known, found = exact_parameters(scope.model), values_of_parameters(scope, None)
     there = {x.name: float(value) for x, value in found.items()}
     pairs = [(name, there.get(name, math.nan), float(right)) for name, right in known.items()]

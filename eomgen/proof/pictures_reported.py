@@ -229,7 +229,7 @@ class _Shown(InNumbers):
         return "" if off <= near else f"fills {sizes[0]} m for {sizes[1]} m, or elsewhere"
 
     def _declared(self, link: BodyLink) -> dict[str, np.ndarray]:
-        """Its points, and where others hang on it, in its axes: its lines leave out none."""
+        """Points of a body, and the seats of other bodies on it, in its axes: its lines reach all of them."""
         part, points = self.system.scope.model.bodies[link.name], self.motion.points[link.name]
         found = {f"its point {name}": points[name] for name in part.points}
         found |= {f"where '{x.name}' hangs on it": x.before.p for x in self._hung(link)}
@@ -271,7 +271,7 @@ class _Shown(InNumbers):
         return [x for x in found if x.body == name and (x.radius is not None or x.semiaxes is not None)]
 
     def _wrong_round(self, link: BodyLink, what: TouchingRound, own: np.ndarray) -> tuple[str, np.ndarray]:
-        """(that a body is not as round as it rolls, what else is drawn of it): |(r - c)/h| = 1 along each axis."""
+        """(message if a body is not as round as it rolls, its other drawn places): |(r - c)/h| = 1 along each axis."""
         if what.axis is not None:  # a wheel is drawn by symbols
             return "its wheel is not drawn", own
         semiaxes = what.semiaxes or (what.radius,) * 3
@@ -299,7 +299,7 @@ class _Shown(InNumbers):
         return "its ellipsoid has other moments" if off > 2 * STANDS_FOR_A_MASS * float(np.max(moments)) else ""
 
     def _hung(self, link: BodyLink) -> list[BodyLink]:
-        """The bodies that hang on a place of a body that does not move in it."""
+        """Bodies whose joints sit at a place fixed in the body."""
         others = (other for other in self.motion.links if other.parent == self.motion.index[link.name])
         return [other for other in others if not self.motion.moves(other.before.p)]
 
@@ -506,7 +506,7 @@ class _Page:
         return {frame["name"] for frame in self.reported["frames"]} - {""}
 
     def _own(self, kind: str, mark: Mapping[str, Any]) -> np.ndarray | None:
-        """The places of a form in its own axes that reach farthest; None of what has no length of its own."""
+        """Farthest places of a form in its own axes; None for a form without a length in the model."""
         if kind in ("line", "polygon", "polyhedron"):
             return np.array([self.spot(at) for at in mark["points"]])
         if kind == "rod":

@@ -460,7 +460,7 @@ class _Contact(InNumbers):
 
     @cached_property
     def _anchor(self) -> Numbers:
-        """`at` of the surface in its body's axes, over the graph; where it is not given, where the point stands."""
+        """Place `at` of the surface in its body's axes, over the graph; by default the point's place at the start."""
         surface = self.meeting.surface
         assert not isinstance(surface, (BodyLine, Groove))
         if surface.at is not None:

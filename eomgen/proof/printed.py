@@ -259,7 +259,7 @@ class ReadBack:
         return ""
 
     def _declared_start(self) -> dict[Node, Any]:
-        """t, parameters, coordinates and speeds at the start as they are declared; parameters without a value some."""
+        """Values of t, parameters (random without a value), coordinates and speeds at the start, as declared."""
         scope, symbols = self.equations.system.scope, self.equations.symbols
         known, parts = exact_parameters(scope.model), scope.model.coordinates
         values: dict[Node, Any] = {symbols.t: precise(0), **dict.fromkeys(symbols.inputs.values(), precise(0))}
@@ -300,7 +300,7 @@ def _broken(equations: EquationsOfMotion, state: State) -> str:
 
 
 def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
-    """The first pair that is not equal at a state, to nine digits, in words; where a side is 0/0 it says nothing."""
+    """Message for the first pair that is not equal at a state, to nine digits; a side that is 0/0 is left out; ""."""
     values = iter(evaluate([x for _, *sides in pairs for x in sides], state, fifty_digits()))
     for where, *sides in pairs:
         a, b = next(values), next(values)
@@ -310,7 +310,7 @@ def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
 
 
 def _has_value(x: Scalar, state: State) -> bool:
-    """True if it is nearly the same with the last digits of all numbers changed: what is left of 0/0 is not."""
+    """True if its value hardly changes with the last digits of all numbers, which 0/0 does."""
     nearby = {node: value * (1 + (k + 1) * LAST) for k, (node, value) in enumerate(state.items())}
     (a,), (b,) = (evaluate((x,), each, fifty_digits()) for each in (state, nearby))
     return bool(abs(a - b) <= COMPUTED * (1 + abs(a)))

@@ -15,7 +15,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> Iterator[Check]:
-    """Each text at the start, in pieces and at random, against the bodies' equations solved there in doubles.
+    """Check of each text at the start, in pieces and at random, by the bodies' equations solved there in doubles.
 
     Args:
         texts: of each reaction by its name, a function of q, u, t and accelerations.

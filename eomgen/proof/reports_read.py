@@ -238,7 +238,9 @@ def _file(link: Markup) -> tuple[str, bytes, tuple[str, ...]]:
 
 
 def copies_undone(content: bytes) -> bytes:
-    """A file in which what stood far back is said by where it stood: first the length of what is said so.
+    """Content of a file whose repetitions were replaced by copies of earlier bytes.
+
+    The length of the list of copies stands first.
 
     Of each copy the new bytes before it, how far back it lies, its length; seven bits a byte, the lowest first.
     """
@@ -409,7 +411,7 @@ _NUMBERED = re.compile(r"(?<!\\)(?:\\u[0-9a-f]{4})+")
 
 
 def _unhidden(text: str) -> str:
-    """The text with what files hold by its number only, as \\u001b, as it is."""
+    """Text with characters that files contain only as \\u001b, restored."""
 
     def letters(found: re.Match[str]) -> str:
         raw = json.loads(f'"{found[0]}"')

@@ -38,7 +38,7 @@ NOTHING_ACCELERATED = "no acceleration at the equilibria"
 
 
 def balance_check(places: Sequence[Equilibrium]) -> Check:
-    """Q + J^T lam = 0 and phi = 0, put back into the equations of statics."""
+    """Check that Q + J^T lam = 0 and phi = 0 hold at each equilibrium."""
     name = "forces balance and constraints are satisfied at every equilibrium"
     return attempted(name, BY_MOTION, lambda: _first_at(places, _unbalanced))
 
@@ -56,7 +56,7 @@ def _unbalanced(place: Equilibrium) -> str:
 
 
 def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
-    """The same at places of the curve that it stands for."""
+    """Message for an equation that does not hold at other places of a curve of equilibria; ""."""
     statics, digits = place.statics, fifty_digits()
     curve = place.curve
     points: Any = () if curve is None else curve.points[:: 1 + len(curve.points) // MOST]

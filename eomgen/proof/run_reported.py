@@ -85,7 +85,7 @@ class _RunReported:
 
     @cached_property
     def own(self) -> dict[str, np.ndarray]:
-        """The columns by their names, put together here."""
+        """Columns of the run by their names."""
         found = {"t": self.run.t}
         for k, name in enumerate((*self.run.coordinates, *self.run.speeds)):
             found[name] = self.run.x[:, k]

@@ -164,7 +164,7 @@ def _wrong_parts(modes: Modes) -> str:
 
 
 def _printed_half(modes: Modes, A: list[list[Any]]) -> list[list[Any]]:
-    """A symmetric or skew matrix, above the diagonal as it is printed."""
+    """Symmetric or skew matrix, from its part above the diagonal as it is printed."""
     return [[modes.written(x) if j >= i else x for j, x in enumerate(row)] for i, row in enumerate(A)]
 
 

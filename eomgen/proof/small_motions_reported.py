@@ -335,7 +335,7 @@ class Pencil:
         return np.linalg.solve(self.P, self.Q)
 
     def answers(self, omega: np.ndarray, right: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(x of (i w P - Q) x = right at each frequency, what rounding makes of it: by how much it differs by A)."""
+        """(x of (i w P - Q) x = right at each frequency, its rounding error: the difference from the solution by A)."""
         A, forced = self.A, np.linalg.solve(self.P, right)
         found = np.array([np.linalg.solve(self.at(1j * w), right) for w in omega])
         by_A = np.array([np.linalg.solve(1j * w * np.eye(len(A)) - A, forced) for w in omega])

@@ -58,7 +58,7 @@ class Supply:
 
 @dataclass(frozen=True)
 class States:
-    """The states of a system; of each supply the first one is taken at which there are values.
+    """States of a system; the first state with values of each supply is used.
 
     Args:
         scalars: all scalars to check; piecewise ones are checked in each of their pieces.
@@ -82,7 +82,7 @@ class States:
 
     @cached_property
     def _identities(self) -> tuple[Scalar, ...]:
-        """Gaps that the coordinates satisfy by themselves, as far as that is not plain: |1 + s| + |1 - s| - 2."""
+        """Gaps that vanish identically, but not for all values of the coordinates: |1 + s| + |1 - s| - 2."""
         rows = (row for row in self.system.constraints.rows if row.identical and row.gap is not None)
         return tuple(row.gap for row in rows if row.gap is not None and not is_zero(row.gap))
 
@@ -161,7 +161,7 @@ class States:
             yield place
 
     def _closed(self, state: State, switch: Switch, piece: int) -> TrialState | None:
-        """The state with its constraints closed; None where that takes it out of its piece: no motion comes there."""
+        """State with its constraints satisfied; None where that leads out of its piece: no motion comes there."""
         state = state | on_unit_norms(self.system.scope.quaternions, state)
         constraints = self.system.constraints
         if all(row.identical for row in constraints.rows):
@@ -179,7 +179,7 @@ class States:
 
 
 def own_start(system: System) -> State | None:
-    """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold.
+    """Model at its own start, with its own parameters or random ones; None where the constraints do not hold.
 
     One state serves all checks: its accelerations are found once.
     """
@@ -219,7 +219,7 @@ def _set_moving(system: System, state: State, rng: Random) -> State:
 
 
 def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
-    """A state near another one, its constraints closed where they close."""
+    """State near another one, its constraints satisfied where they can be."""
     symbols = system.symbols
     shifted = {x: state[x] + of_50_digits(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
     shifted[symbols.t] = state[symbols.t] + of_50_digits(rng.uniform(0, spread))

@@ -92,7 +92,7 @@ def diagrams_drawn(
     influence: InfluenceLine | None,
     panels: Sequence[DrawnPanel],
 ) -> Iterator[Check]:
-    """Every panel that says that it shows N, V or M of a body, or the influence line."""
+    """Check of every panel titled N, V or M of a body, or influence line."""
     proof, tally = _Proof(found), Tally(DRAWN, HOW_DRAWN)
     drawn = set[str]()
     for panel in panels:
@@ -110,7 +110,7 @@ def diagrams_drawn(
 
 
 def state_of(found: StaticReactions) -> dict[Node, Any]:
-    """Every symbol with 50 digits; parameters without a value are something, unknown loads what they come to."""
+    """Every symbol with 50 digits; parameters without a value are random, unknown loads have their solution."""
     return _Proof(found).state
 
 
@@ -219,7 +219,7 @@ class _Proof:
         return float(evaluate((piece.value(kind, section),), {**self.values, section: x}, FLOAT)[0])
 
     def wrong_extremes(self, forces: SectionForces) -> str:
-        """V = 0 there, and the M that is stated, both from the other end; where V changes its sign there is one."""
+        """Message if V is not 0 at an extreme, M is not the stated one, or an extreme is missing; ""."""
         stated = [self.numbers((extreme.x, extreme.M)) for extreme in forces.extremes]
         for x, M in stated:
             mine = [p for p in forces.pieces if self.one(p.start) < x < self.one(p.end)]
@@ -427,7 +427,7 @@ class _Proof:
 
 @dataclass(frozen=True)
 class _Diagram:
-    """N, V or M of one body as it is drawn.
+    """Check of N, V or M of one body as it is drawn.
 
     Args:
         letter: which of them; unit: in which.

@@ -85,7 +85,7 @@ class Trials:
 
     @cached_property
     def states(self) -> States:
-        """The states of the system; poses and equations are looked at for pieces."""
+        """States of the system, in every piece of its poses and equations."""
         e, links = self.equations, self.equations.system.motion.links
         poses = (x for link in links for row in (*link.pose.R, link.pose.p) for x in row)
         entries = (x for rows in (e.M, e.J, e.N) for row in rows for x in row)
@@ -260,8 +260,7 @@ class Trials:
         return self._at_states(name, "differences at 50 digits", check)
 
     def accelerations(self) -> Iterable[Check]:
-        """a of the equations, put to the free bodies that all constraints hold at once; none where no constraint
-        closes."""
+        """Check of a by the equations of the free bodies with all constraints; none where no constraint closes."""
         if self._whole.constraints.closing:
             name = "accelerations are those of the free bodies, all constraints holding at once"
             how = "differences at 50 digits, rank of all rows at the state"
@@ -367,7 +366,7 @@ class Trials:
             yield self._at_states(name, "50 digits", lambda state: apart(self.equations.system, state))
 
     def threads(self) -> Iterable[Check]:
-        """Strings and links run and pull as they are declared; none where there are none."""
+        """Check that strings and links run and pull as they are declared; none without them."""
         if threads_of(self.equations.system):
             name = "strings and links touch their guides, keep their length and pull along it"
             yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
@@ -379,15 +378,14 @@ class Trials:
             yield self._at_states(name, "50 digits", lambda state: open_at_start(self.equations.system, state))
 
     def slack_springs(self) -> Iterable[Check]:
-        """Springs that keep the length of the start have it there, constraints closed; none where no constraints
-        are."""
+        """Check that springs with the length of the start have it there; none without such springs."""
         system = self.equations.system
         if springs_of_the_start(system) and system.constraints.rows:
             name = "springs declared slack at the start are so where the motion starts"
             yield attempted(name, "the start that the constraints complete", lambda: pulled_at_start(system))
 
     def elements(self) -> Iterable[Check]:
-        """Springs, dampers and pulls act as they are declared; none where there are none."""
+        """Check that springs, dampers and pulls act as they are declared; none without them."""
         if elements_of(self.equations.system) or self.equations.system.loads.efforts:
             name = "springs, dampers and drives act as they are declared, equal and opposite"
             yield self._at_states(name, "50 digits", lambda state: undeclared(self.equations.system, state))
@@ -407,7 +405,7 @@ class Trials:
         return (found,) if found.status == "fails" else ()
 
     def printed(self, printed: Printed) -> Iterable[Check]:
-        """Formulas as they are printed, read back; none where nothing can be read."""
+        """Check of printed formulas, read back; none where nothing can be read."""
         text = ReadBack(self.equations, printed)
         if text.equalities:
             name = "printed formulas, read back, hold along the motion"

@@ -241,7 +241,7 @@ class Rounded:
 
 
 def _at(state: NumericState, judged: Judged) -> Rounded | None:
-    """Left minus right at a state; None where it has no value there, or another piece is spoken of."""
+    """Left side minus right side at a state; None where it has no value there, or is stated for another piece."""
     error = CARRIED if judged.is_of_start else ITERATED
     sides = Sides(state, judged.stands_for, error)
     try:
@@ -331,7 +331,7 @@ class Sides:
         return stack[0]
 
     def _named(self, name: str) -> Rounded:
-        """A name with its primes; of the author's own what it stands for."""
+        """Value of a name with its primes; of a name of the author by the text that defines it."""
         bare = name.rstrip("'")
         if bare in self.stands_for:
             return self._renamed(parse(self.stands_for[bare]), len(name) - len(bare))
@@ -356,7 +356,7 @@ class Sides:
         return 1e-3 * max((abs(float(self._values[x])) for x in held), default=0.0)
 
     def _renamed(self, meant: Expression, dots: int) -> Rounded:
-        """k q + c, or its rate: k q' by the slope of what stands for the name."""
+        """Value of k q + c, or of its rate k q' by the derivative of the defining text."""
         if not dots:
             return self.worked(meant)
         total, names = Rounded(0.0, 0.0), self.state.equations.system.scope.names
@@ -458,7 +458,7 @@ def _function(name: str, args: Sequence[Rounded]) -> Rounded:
 
 
 def _rounded(operation: Callable[..., float], args: Sequence[Rounded]) -> Rounded:
-    """The value, and how far it goes when each argument goes as far as it may be off."""
+    """Value and error bound of a function of arguments with error bounds."""
     values = [x.value for x in args]
     value, error = float(operation(*values)), 0.0
     for k, x in enumerate(args):

@@ -1,4 +1,4 @@
-"""Moments of a motion: what is known of the state at an instant, exactly and in numbers, in one phase or the next."""
+"""States of a motion at an instant, exactly and in numbers, in one phase or the next."""
 
 from __future__ import annotations
 

@@ -388,7 +388,7 @@ NOT_THERE = "Error opening file"  # so MuJoCo says it
 
 
 def spec_of(path: Path, data: bytes) -> Any:
-    """A file as MuJoCo reads it; files of pictures need not be there, nor those of meshes that give no mass.
+    """Model of a file as MuJoCo reads it, without files of pictures, and of meshes that give no mass.
 
     Raises:
         ToolMissing: MuJoCo is not installed.
@@ -449,7 +449,7 @@ def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int
 
 
 def _included(path: Path) -> bytes:
-    """A part of a file; nothing where it is missing, which MuJoCo says."""
+    """Part of a file; empty where it is missing, which MuJoCo reports."""
     try:
         return read(path, LARGEST)
     except OSError:

@@ -175,7 +175,7 @@ def _equality(r: CompiledRobot, e: int, raw: str) -> Entries | None:
 
 
 def _weld(r: CompiledRobot, first: int, second: int, raw: str, data: Any) -> Entries | None:
-    """Two bodies as they stand: where that is not how they are welded, there is no counterpart."""
+    """Weld of two bodies in their positions at the start; None where they are welded in others."""
     mujoco, state = _at_start(r)
     back, there = state.xmat[first].reshape(3, 3).T, state.xmat[second].reshape(3, 3)
     away = back @ (state.xpos[second] + there @ data[:3] - state.xpos[first])
@@ -188,7 +188,7 @@ def _weld(r: CompiledRobot, first: int, second: int, raw: str, data: Any) -> Ent
 
 
 def _weld_of_sites(r: CompiledRobot, first: int, second: int, data: Any) -> Entries | None:
-    """Two sites with their axes as they stand."""
+    """Weld of two sites in their positions at the start; None where they are welded in others."""
     _, state = _at_start(r)
     turns, apart = data[TURNING] != 0, abs(state.site_xmat[first] - state.site_xmat[second]).max()
     away = abs(state.site_xpos[first] - state.site_xpos[second]).max()
@@ -207,7 +207,7 @@ def _at_start(r: CompiledRobot) -> tuple[Any, Any]:
 
 
 def start_of(r: CompiledRobot) -> Any:
-    """The positions at which bodies that are welded stand so, by Newton's steps on all equalities; else MuJoCo's own.
+    """Positions that satisfy the welds, by Newton's steps on all equalities; else those of MuJoCo.
 
     dq = -J^+ phi
     """
@@ -458,7 +458,7 @@ def _law(
 
 
 def _thrust(r: CompiledRobot, k: int, w: str) -> bool:
-    """A force and a couple in the axes of a site, whose length is 0; whether they hold w."""
+    """Reads force and couple of a motor in the axes of a site, whose length is 0; True if they depend on w."""
     m, site = r.m, int(r.m.actuator_trnid[k][0])
     body, R = int(m.site_bodyid[site]), turn_by(m.site_quat[site])[0]
     gain = decimal_of_double(m.actuator_gainprm[k][0])
@@ -545,7 +545,7 @@ class CompiledRobot:
         return [(decimal_of_double(m.wrap_prm[i]), self.joint[int(m.wrap_objid[i])]) for i in wraps]
 
     def ends(self, t: int) -> list[str]:
-        """The two places of a tendon that is straight between them; [] of another one."""
+        """Places of a tendon that is straight between two; [] for another one."""
         at = range(self.m.tendon_adr[t], self.m.tendon_adr[t] + self.m.tendon_num[t])
         straight = len(at) == 2 and all(self.m.wrap_type[k] == SITE_WRAP for k in at)
         return [self.sites[int(self.m.wrap_objid[k])] for k in at] if straight else []

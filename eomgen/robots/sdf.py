@@ -76,7 +76,7 @@ def sdf(data: bytes, name: str, wanted: str | None = None) -> Imported:
 
 
 def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Entries]:
-    """The first model that moves, else the first that is there; an include of a file that is not there is passed by.
+    """First model that is not static, else the first one; an include of a missing file is skipped.
 
     Raises:
         ModelError: of the first one, where nothing can be read.
@@ -205,7 +205,7 @@ class _Reading:
         return name
 
     def _ordered(self) -> list[str]:
-        """Each link after that on which it hangs."""
+        """Links in an order in which each follows its parent."""
         order: list[str] = []
 
         def add(link: str, below: tuple[str, ...]) -> None:
@@ -391,7 +391,7 @@ class _Reading:
         return keys
 
     def _mimic(self, q: str, mimic: XmlElement) -> bool:
-        """q = multiplier (other - reference) + offset; whether that other is there."""
+        """Equation q = multiplier (other - reference) + offset; True if the other coordinate exists."""
         leader = mimic.attributes.get("joint", "")
         known = self.second if mimic.attributes.get("axis") == "axis2" else self.coordinate
         kind = self.joints[leader].get("type") if leader in known else None

@@ -228,7 +228,7 @@ def _flatten(found: FlatModel, model: XmlElement, scope: ModelScope) -> None:
 
 
 def _within(model: XmlElement, scope: ModelScope) -> Iterator[tuple[XmlElement, ModelScope, bool]]:
-    """The models within a model, where they come from, whether they are merged into it."""
+    """Nested models, with their files, and whether they are merged into the whole."""
     for child in [*model.children]:
         if child.tag == "model":
             child.seen = True

@@ -66,7 +66,7 @@ class BodyAxes:
 
 
 def lagrangian_method(system: Any) -> Any:
-    """The method of Lagrange by which a system's equations are formed, or must be where it has no speeds; else None."""
+    """LagrangesMethod of a system that is formed by it, or has no speeds; else None."""
     if isinstance(system.eom_method, LagrangesMethod):
         return system.eom_method
     if len(system.u) or not len(system.q):
@@ -209,7 +209,7 @@ class _Joints:
         return [0, 0, 0] if vector == 0 else list(self.words.texts(vector.to_matrix(frame)))
 
     def _moves(self, joint: Any) -> list[Entries]:
-        """The joint that there is for it, or several in a row.
+        """Joint of a model file for a joint of sympy, or several in a row.
 
         Raises:
             _NoBodies: a kind of joint that no model has.
@@ -243,7 +243,7 @@ class _Joints:
         raise _NoBodies
 
     def _sequence(self, joint: Any, angles: list[Any]) -> Entries:
-        """The three turns about axes of the body; about axes of the parent they come in the opposite order."""
+        """Three rotations about axes of the body; about axes of the parent in the opposite order."""
         letters = "".join("xyz"[int(x) - 1] if x.isdigit() else x for x in str(joint._rot_order).lower())
         if joint._rot_type.upper() == "SPACE":
             letters, angles = letters[::-1], angles[::-1]

@@ -46,7 +46,7 @@ def decimals(values: Iterable[Any]) -> Triple:
 
 
 def decimal_of_double(x: float) -> Decimal:
-    """A double as a decimal: with 15 digits where it is the next but few to that, else as it is."""
+    """Decimal of a double: short, where one of less than 12 digits is nearly the same double, else exact."""
     short, close = Decimal(f"{x:.15g}"), 2 * sys.float_info.epsilon * abs(x)
     return short if len(short.as_tuple().digits) < 12 and abs(float(short) - x) <= close else Decimal(repr(float(x)))
 
@@ -160,7 +160,7 @@ def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
 
 
 def _plain(x: Decimal) -> Decimal:
-    """A ratio, made short where it is so to 14 digits."""
+    """Decimal with 6 digits where that is right to 14 digits; else as `computed`."""
     short = Context(prec=6).plus(x)
     return short.normalize() if abs(short - x) < SAME_TURN else computed(x)
 

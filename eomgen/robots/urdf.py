@@ -192,7 +192,7 @@ class _Reading:
         return Imported(tables, left_out(self.robot, LEFT_OUT))
 
     def _below(self, root: str) -> list[str]:
-        """A link and all that hang on it, each after what it hangs on."""
+        """Reads a link and all links below it, each after its parent."""
         order, waiting = [], [root]
         children: dict[str, list[str]] = {}
         for child, joint in self.above.items():

@@ -272,7 +272,7 @@ def _alone(model: Model, of: str, to: str, time: float) -> Sensitivity:
 
 
 def slope_in_si(model: Model, of: str, to: str, time: float) -> tuple[float | None, str]:
-    """(one derivative in SI, why there is none).
+    """(one derivative in SI, the reason why there is none).
 
     Args:
         of: a formula as `sensitivity` takes it, or "last(F)", F at the end of a run.

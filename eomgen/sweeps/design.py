@@ -236,7 +236,7 @@ def _seed_of(seed: int, run: int) -> int:
 
 
 def _chance(seeds: Sequence[int], many: int) -> np.ndarray:
-    """Numbers between 0 and 1, neither of them, so many of each seed: the generator SplitMix64 begun there.
+    """Random numbers in the open interval (0, 1), so many for each seed, by the generator SplitMix64.
 
     Source: Steele, Lea & Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
     """

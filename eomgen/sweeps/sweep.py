@@ -135,7 +135,7 @@ class Sweep:
         return picture
 
     def replay(self, run: int, samples: int = 1001) -> Trajectory:
-        """A run once more, as it was, with all its columns.
+        """One run repeated, with all its columns.
 
         Raises:
             UsageError: there is no such run.

@@ -168,7 +168,7 @@ class _Out:
 def rows_by(
     pool: Pool, payload: Payload, stretches: Iterable[Chunk], seeds: Callable[[int], int]
 ) -> Iterator[list[SampleRow]]:
-    """The rows of every chunk as they come, by a pool.
+    """Rows of every chunk as they are finished, by a pool.
 
     Args:
         seeds: of a run, for the row of one that no worker survives.
@@ -436,7 +436,7 @@ class SweepLedger:
     plan: SweepPlan
 
     def __getstate__(self) -> dict[str, Any]:
-        """Its rows; out of a pickle comes a ledger in memory."""
+        """Pickled state: its rows; unpickled it is a ledger in memory."""
         return {"connection": self.connection.serialize(), "plan": self.plan}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -527,7 +527,7 @@ def _stored(row: SampleRow) -> SampleRow:
 
 
 def ledger_at(path: Path | None, plan: SweepPlan) -> SweepLedger:
-    """The ledger in a file, begun where there is none; None: in memory.
+    """Ledger in a file, which is created where there is none; None: in memory.
 
     Raises:
         UsageError: it is of another plan, or no ledger.
