@@ -151,7 +151,7 @@ def test_a_kink_and_a_jump_are_enclosed():
         ),
         ("max(q) + speed(rod.end)", "last(speed(rod.end))"),
         ("max(mean(q))", "a function of a whole run has no value along it"),
-        ("max(q) at q = 0", "is of no instant"),
+        ("max(q) at q = 0", "belongs to no instant"),
         ("q at equilibrium", "`eomgen solve` answers it"),
         ("period(q^0)", "passes its mean upward 0 times"),
     ],

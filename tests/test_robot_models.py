@@ -291,7 +291,7 @@ def test_a_surface_in_a_file_gives_the_mass_that_it_encloses(form, tmp_path):
 @pytest.mark.parametrize(
     ("text", "what"),
     [
-        (auto(""), "has no <collision> to tell its mass by"),
+        (auto(""), "has no <collision> that determines its mass"),
         (auto(collision("<plane/>")), "<plane> gives no mass by its density"),
         (auto(collision("<mesh><uri>no.stl</uri></mesh>")), "no file is there for 'no.stl', which determines the mass"),
         (auto(collision("<mesh><uri>a.dae</uri></mesh>")), "a surface that is not read"),

@@ -104,7 +104,7 @@ def test_a_wrong_word_of_stability_is_seen(monkeypatch: pytest.MonkeyPatch) -> N
         return replace(found, kind=other.get(found.kind, found.kind))
 
     monkeypatch.setattr(search, "stability_of", planted)
-    assert "what is said of stability" in wrong_checks(PENDULUM)
+    assert "stated stability" in wrong_checks(PENDULUM)
 
 
 def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:

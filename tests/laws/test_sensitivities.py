@@ -271,7 +271,7 @@ def test_a_corner_has_no_slope():
 def test_a_place_of_rest_among_others_has_no_slope_by_the_start():
     """Of a sled that rests anywhere: dx/dx is 1 and not 0, and not told; of a block on a spring it is 0."""
     found = eomgen.sensitivity(eomgen.loads(SLEIGH), "x at equilibrium", ("x", "m"))
-    assert "many places" in (found["x at equilibrium", "x"].message or "") and found.matrix[0, 1] == 0
+    assert "many equilibria" in (found["x at equilibrium", "x"].message or "") and found.matrix[0, 1] == 0
     assert eomgen.sensitivity(eomgen.loads(UNDAMPED), "x at equilibrium", "x").matrix[0, 0] == 0
 
 
@@ -353,5 +353,5 @@ def test_words_stand_for_formulas_by_the_names_of_the_file(word, of):
     """What is asked in a word is certified to be its formulas; one more beside them is not."""
     found = eomgen.sensitivity(eomgen.loads(SWING), word, "m")
     checks = [x.certify().checks for x in (found, replace(found, of=(*of, "m")))]
-    held = [next(check.ok for check in each if "what was asked" in check.name) for each in checks]
+    held = [next(check.ok for check in each if "requested quantities" in check.name) for each in checks]
     assert found.of == of and held == [True, False]

@@ -94,7 +94,7 @@ def test_reactions_and_statics_tell_the_sums_in_which_self_stress_leaves_no_trac
         assert sorted(x.value for x in sums.values()) == [-2.5, 5.0, 7.5]
         assert sorted(x.exact for x in sums.values()) == ["-1/4*P", "1/2*P", "3/4*P"]
     assert reported.certify().ok and at_rest.certify().ok
-    assert any("one value, whatever self-stress" in check.name for check in at_rest.certify().checks)
+    assert any("one value, whatever the self-stress" in check.name for check in at_rest.certify().checks)
 
 
 def test_a_sum_that_a_self_stress_changes_contradicts(table):
