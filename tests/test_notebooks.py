@@ -53,7 +53,9 @@ def test_a_notebook_shows_all_on_a_code_host(script):
     assert not re.search(r"/(?:tmp|home|root|opt|usr)/|\bat 0x[0-9a-f]+", re.sub(r'"image/png": "[^"]*"', "", text))
     results = [output for cell in kept(script)["cells"] for output in cell.get("outputs", ())]
     assert results and not [found for found in results if "".join(found.get("data", {}).get("text/html", ()))]
-    plain = ["".join(found["data"]["text/plain"]) for found in results if found.get("data", {}).keys() == {"text/plain"}]
+    plain = [
+        "".join(found["data"]["text/plain"]) for found in results if found.get("data", {}).keys() == {"text/plain"}
+    ]
     assert not [shown for shown in plain if shown.startswith("<")]
 
 

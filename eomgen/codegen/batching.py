@@ -150,7 +150,7 @@ class Batch:
 
         Args:
             threads: among which they are divided.
-            check: called now and then; what it raises ends all runs.
+            check: called now and then; its exceptions end all runs.
         """
         x0, p = np.ascontiguousarray(x0, dtype=float), np.ascontiguousarray(p, dtype=float)
         runs, n = x0.shape
@@ -206,7 +206,7 @@ def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
 
 
 def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:
-    """Each piece of work in a thread of its own; what `check` raises, called now and then, sets their event."""
+    """Each piece of work in a thread of its own; if `check`, called now and then, raises, their event is set."""
     from concurrent.futures import ThreadPoolExecutor, wait
 
     stop = threading.Event()

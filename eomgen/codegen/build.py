@@ -52,7 +52,7 @@ class Compiler:
         zig: the command of ziglang that can replace it; "" if there is none.
         flags: always; last: after the file.
         once, usual, long: of a text that is called a few times only, so that it is made soonest; of others; of long.
-        patience: seconds of work that it may take; how long a loaded machine needs for them nobody counts.
+        patience: seconds of work that it may take; the time on a loaded machine is not limited.
         trial: a text of nothing, which it takes where it works at all.
         fix: how to install it.
     """
@@ -148,7 +148,7 @@ def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDL
         quickly: it is called a few times only.
     Raises:
         ToolMissing: there is no compiler, or none that starts.
-        RunFailed: the compiler does not come back, or makes what is no library; TextRefused: it refuses the text.
+        RunFailed: the compiler does not end, or makes no library; TextRefused: it refuses the text.
     """
     path = _compiled_file(text, by, quickly)
     with suppress(OSError):  # another machine's: made anew below
@@ -237,7 +237,7 @@ def _works(by: Compiler) -> bool:
 
 
 def _ran(command: list[str], by: Compiler, place: Path) -> tuple[int, str]:
-    """(the exit code, what it said) of a compiler; it and all that it has started end with this call.
+    """(exit code, output) of a compiler; it and all that it has started end with this call.
 
     Raises:
         TimeoutError: it works too long, does nothing, or takes more than its share of what a user waits.
@@ -264,7 +264,7 @@ def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
     """Output of a compiler until it ends.
 
     Raises:
-        TimeoutError: why nobody waits for it any longer.
+        TimeoutError: the reason why it was given up.
     """
     left, begun = time_left(), time.monotonic()
     at_most = math.inf if left is None else SHARE * left

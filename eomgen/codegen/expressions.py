@@ -1,6 +1,6 @@
 """Statements of a Program -> text of assignments, in the grammar that languages share.
 
-Signs and constants are written in place, and so is what is used once and short; everything else
+Signs and constants are written in place, and so are short parts that are used once; everything else
 gets a variable. The order of operations is the graph's: the text rounds as the graph does.
 """
 
@@ -29,7 +29,7 @@ class ExpressionWriter:
     Args:
         call: a function's text from its op and its arguments' texts, in the language.
         number: the text of an exact number, in the language.
-        names: the identifier of each symbol, and the text of what was computed elsewhere.
+        names: the identifier of each symbol, and the text of values computed elsewhere.
         inverse: of divisors the text of their reciprocals.
         prefix: of our variables, v1, v2, ...
     """

@@ -154,7 +154,7 @@ class _Reader:
         raise NotImplementedError(f"a kernel has no {ast.unparse(s)}")
 
     def _call(self, call: ast.Call, name: str = "") -> Call:
-        """A function of the kernels that is called, and the name of what it gives."""
+        """A function of the kernels that is called, and the name of its result."""
         function, texts = _function(call), tuple(map(self._text, call.args))
         kinds = [_named(a.annotation) for a in _parsed()[function].args.args]
         changed = tuple(text for text, kind in zip(texts, kinds, strict=True) if kind in (CHANGED, PLACES))

@@ -99,7 +99,7 @@ def solve_by(
     (Y^T D^-1 Y) lam = g - Y^T D^-1 L^-1 f,  a = L^-T D^-1 (L^-1 f + Y lam)
 
     Rows that depend on others have lam 0. Where M is no more positive, f + J^T W g stands in the place of f. All is
-    done once more for what rounding left.
+    done once more for the residual of rounding.
     """
     w = order[K + 2]
     if w < 0:
@@ -219,7 +219,7 @@ def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
 
 
 def laid(M: Reals, L: Work) -> None:
-    """L becomes M, along what may not be zero in the factors of M: nothing else of M is read."""
+    """Copies to L the entries of M that may not be zero in its factors: nothing else of M is read."""
     for j in range(N):
         row = j * N
         L[row + j] = M[row + j]
@@ -249,7 +249,7 @@ def weigh(M: Reals, J: Reals, weight: Work) -> None:
 
 
 def invert(size: Work) -> None:
-    """Each becomes 1/size; 0 of what is rounding: the sizes are squares of lengths."""
+    """Replaces each by 1/size; by 0 if it is rounding: the sizes are squares of lengths."""
     nothing = zeros(1)
     for m in range(K):
         if size[m] > nothing[0]:

@@ -163,7 +163,7 @@ def right_hand_side(equations: EquationsOfMotion) -> Program:
     M a = forcing, or with closing rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
 
     Raises:
-        DerivationError: the mass matrix is singular whatever the state.
+        DerivationError: the mass matrix is singular at all states.
     """
     return program_in_motion((*kinematic_rates(equations), *equations.symbols.a), equations)
 
@@ -174,7 +174,7 @@ def program_in_motion(outputs: ScalarRow, equations: EquationsOfMotion) -> Progr
     Args:
         outputs: expressions in the symbols of the equations, accelerations among them.
     Raises:
-        DerivationError: the mass matrix is singular whatever the state.
+        DerivationError: the mass matrix is singular at all states.
     """
     if equations.J and not equations.friction:
         return _program(outputs, equations, bordered(equations))
@@ -372,7 +372,7 @@ def scheduled(needs: Needs, later: Set[Node]) -> Sequence[Node]:
     """The statements in the order that takes the fewest loads and stores.
 
     Args:
-        needs: of each statement what it reads, other statements and symbols, in the order of their making.
+        needs: of each statement the statements and symbols that it reads, in the order of their making.
         later: nodes that are read after them.
     """
     symbols = {a for needed in needs.values() for a in needed if a.op == "symbol"}
@@ -481,7 +481,7 @@ def identifiers(
     """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot.
 
     Args:
-        taken: words of the language, and what stands for something else.
+        taken: words of the language, and names in use.
         folded: key in which no two identifiers may agree: in a language without capitals, the small letters.
     """
     chosen: dict[str, str] = {}

@@ -152,7 +152,7 @@ class InverseDynamics:
     def along(
         self, t: Any, motion: Mapping[str, Any], parameters: Mapping[str, float] | None = None
     ) -> dict[str, np.ndarray]:
-        """{actuator: what it has to give at each instant} of a given motion, n each [N, N m].
+        """{actuator: its force or torque at each instant} of a given motion, n each [N, N m].
 
         Args:
             t: the instants, n, ascending.
@@ -223,7 +223,7 @@ def slopes_of(equations: EquationsOfMotion) -> RateSlopes:
     Where no constraints close and it takes fewer operations, those of the accelerations written out.
 
     Raises:
-        DerivationError: the mass matrix is singular whatever the state.
+        DerivationError: the mass matrix is singular at all states.
     """
     if equations.J and not equations.friction:
         return _solved(equations)
@@ -273,7 +273,7 @@ def _solved(equations: EquationsOfMotion) -> RateSlopes:
 
 
 def _change(motion: Solve, x: Node, change: ScalarRow) -> Solve:
-    """The system behind d(a, lam)/dx, by what x changes in that behind (a, lam)."""
+    """The system behind d(a, lam)/dx, by the derivative of that behind (a, lam) with respect to x."""
     unknowns = tuple(x.graph.symbol(f"{y.name} by {x.name}") for y in motion.unknowns)
     return replace(motion, right=tuple(-y for y in change), unknowns=unknowns)
 
@@ -346,7 +346,7 @@ def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Sc
     """a and lam of M a = forcing + J^T lam, J a + gamma = 0, as expressions; redundant rows are left out, their lam 0.
 
     Raises:
-        DerivationError: the mass matrix is singular whatever the state.
+        DerivationError: the mass matrix is singular at all states.
     """
     symbols = equations.system.symbols
     if equations.friction and equations.accelerations is not None:

@@ -117,7 +117,7 @@ class RightHandSide:
         return without_series(self.program)
 
     def series(self, order: int) -> Series | None:
-        """The power series of the motion, in C; None of what has none."""
+        """The power series of the motion, in C; None if it has none."""
         if order not in self._series:
             self._series[order] = series_of(self.program, order)
         return self._series[order]
@@ -224,7 +224,7 @@ def parameter_vector(model: Model, overrides: Mapping[str, Any] | None = None) -
     """p: the value of every parameter, in the model's order.
 
     Args:
-        overrides: other values: numbers in SI, or what brings its unit.
+        overrides: other values: numbers in SI, or values with a unit.
     Raises:
         MissingValues: parameters without a value, all named.
     """

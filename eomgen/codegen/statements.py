@@ -1,6 +1,6 @@
 """Statements that every language has, over text of scalars -> lines of a language.
 
-A name for a value that stays, an array and what is put into it, a table, `for` over a range, `if`, a call, `return`:
+A name for a value that stays, an array and assignments to it, a table, `for` over a range, `if`, a call, `return`:
 no more. A number that changes is an array of one. Indices count from 0.
 """
 
@@ -63,7 +63,7 @@ class For:
 
 @dataclass(frozen=True)
 class If:
-    """A condition, what is done where it holds, and where it does not."""
+    """A condition, with the statements for both cases."""
 
     condition: str
     body: tuple[Statement, ...]
@@ -83,7 +83,7 @@ class Call:
 
 @dataclass(frozen=True)
 class Return:
-    """The end of a function, and what it gives, "" where that is nothing."""
+    """The end of a function, with its result; "" without one."""
 
     value: str = ""
 
@@ -107,7 +107,7 @@ class Function:
 
     Args:
         arguments: (name, kind).
-        gives: the kind of what it returns, "" where that is nothing.
+        gives: the kind of its result, "" without one.
         out: (name, size) of the array that the caller gets; last among the arguments where results are arguments.
         apart: it is not to become one with the function that calls it.
         about: one line.
@@ -133,7 +133,7 @@ def itself(name: str) -> str:
 
 
 def one_line(text: str) -> str:
-    """Text with blanks for what is not printed."""
+    """Text with blanks for characters that are not printed."""
     return "".join(letter if letter.isprintable() else " " for letter in text)
 
 
@@ -334,7 +334,7 @@ def _ended(end: str, out: str, name: str, what: str) -> str:
 
 
 def _declared(statements: Iterable[Statement]) -> Iterator[tuple[str, tuple[str, str]]]:
-    """(name, (kind, size)) of what the statements declare; the kind of an array is that of its numbers."""
+    """(name, (kind, size)) of the names that the statements declare; the kind of an array is that of its numbers."""
     for s in statements:
         match s:
             case Let(name=name, kind=kind):

@@ -47,7 +47,7 @@ def without_series(program: Program) -> str:
 
 
 def series_text(program: Program, language: Language, order: int) -> tuple[str, int]:
-    """(the function that gives the coefficients up to an order, how many numbers it works in).
+    """(the function that gives the coefficients up to an order, the size of its work array).
 
     `void eomgen_series(REAL t, const REAL *x, const REAL *p, const REAL *c, REAL *X, REAL *W)`, X of order + 1 rows of
     states, c as eomgen_constants gives it. It stands behind taylor.c and the kernels of the program. What is short is
@@ -146,7 +146,7 @@ class _Writer:
     # -- series -------------------------------------------------------------------------------------
 
     def needed(self, lines: list[tuple[object, str]]) -> list[str]:
-        """The lines, without those that fill a row which nobody reads."""
+        """The lines, without those that fill a row which is not read."""
         there = [(key, line) for key, line in lines if key is None or key in self.rows]
         return [line if key is None else line.format(self.row(key)) for key, line in there]
 
@@ -215,7 +215,7 @@ class _Writer:
         return f"SERIES_SUM({len(self.sums) - 1}, {a}, {b}, j)"
 
     def product(self, a: str, b: str) -> str:
-        """sum of a_i b_(j-i); what has come last is added last, so that nothing waits for it"""
+        """sum of a_i b_(j-i); terms with the newest coefficients are added last, so that nothing waits for them"""
         last = f"(SERIES_FIRST({a})*SERIES_NOW({b}, j) + {self.between(a, b)})"
         return f"(SERIES_NOW({a}, j)*SERIES_FIRST({b}) + {last})"
 
@@ -405,7 +405,7 @@ class Series:
 
 
 def series_of(program: Program, order: int) -> Series | None:
-    """The series of a program in C, up to an order; None of what has none.
+    """The series of a program in C, up to an order; None if it has none.
 
     Raises:
         RunFailed, ToolMissing: as of `library`.

@@ -1,6 +1,6 @@
 """Program -> the texts of files that others can use, and right answers at random states.
 
-Program -> right answers at random states, in 50 digits: what emitted code is held against.
+Program -> right answers at random states, in 50 digits, with which emitted code is compared.
 """
 
 from __future__ import annotations
@@ -261,7 +261,7 @@ def texts_of(
     """{path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json.
 
     Args:
-        name: of the functions: the model file's stem; what is no identifier is made one.
+        name: of the functions: the model file's stem; other characters are replaced.
         emitted: the right-hand side first, then reactions and whatever else is requested.
         targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
         notes: omissions of the code, with their reasons, a line each.

@@ -51,7 +51,7 @@ def derivation_of(
 
     By "lagrange" the energies are differentiated in the form in which they are printed, so that each step follows
     from the one before; by "projection" the balance of momentum of every body is projected on its free motions.
-    What is too long to print is said to be so, with its size, unless `full`.
+    Equations that are too long to print are replaced by their size, unless `full` is set.
 
     Args:
         equations: those that a user gets; printed with named sub-expressions where the method's own are long.
@@ -203,7 +203,7 @@ _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
 
 
 def printed_formulas(document: Document) -> Printed:
-    """The formulas that hold at any state, and what is said to stay constant, as they are printed."""
+    """The formulas that hold at any state, and the stated first integrals, as they are printed."""
     formulas: list[tuple[str, ...]] = []
     constants: list[tuple[str, str]] = []
     laws = [x for step in document.steps if step.key == "laws" for x in step.statements if isinstance(x, Formula)]

@@ -39,11 +39,11 @@ class Document:
         steps: its sections, in order.
         equations: the equations of motion as printed; empty where they are too long.
         definitions: sub-expressions with a name of their own, in the order of their use.
-        entries: gives what machines get by name, with quantities as leaves; made on demand.
+        entries: gives the JSON entries by name, with quantities as leaves; made on demand.
         failed: errors or open questions of the result; "" if there are none.
         notes: further remarks, a line each on stderr.
         certificate: the proof; None where none was made.
-        interrupted: it holds what there was when somebody stopped it.
+        interrupted: it holds the results up to an interruption.
         cautions: warnings of what is allowed in the model but probably a mistake.
         taken: the values that were read from typed text.
         notation: typesetting of its symbols in LaTeX.
@@ -136,7 +136,7 @@ def plain_document(
     notes: tuple[str, ...] = (),
     answer_code: int = 0,
 ) -> Document:
-    """A document of one section without a head: what is no derivation."""
+    """A document of one section without a head, for results that are no derivation."""
     steps = (Step("", "", statements),)
     document = Document(model.name, steps=steps, entries=entries, notation=notation_of(model))
     values = constant_parameters(model, Graph())

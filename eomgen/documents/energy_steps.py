@@ -123,7 +123,7 @@ def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEner
 
 
 def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
-    """The kinetic energy of each body, of each rotor, and what is given as one."""
+    """The kinetic energy of each body, of each rotor, and given kinetic energies."""
     formulas: list[Pair] = []
     for link, energy in zip(system.motion.links, energies, strict=True):
         of_body = energy.translation + energy.rotation
@@ -174,7 +174,7 @@ def _is_potential(name: Side) -> bool:
 
 
 def _force(system: System, force: Applied) -> list[Pair]:
-    """The potential of a force, or what it is and its virtual work."""
+    """The potential of a force, or its kind and its virtual work."""
     if force.potential is not None:
         return [(Name("V", force.name), force.potential)]
     formulas: list[Pair] = []
@@ -290,7 +290,7 @@ WITH_CONSTRAINTS = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J
 def maggi_equations(
     equations: EquationsOfMotion, free: System, reader: Reader, momenta: Momenta, forces: ScalarRow
 ) -> EquationSteps | None:
-    """The equations in the rates of all coordinates, and what the dependent ones stand for; None where they are long.
+    """The equations in the rates of all coordinates, and those of the dependent ones; None where they are long.
 
     Args:
         momenta, forces: of the free system, one entry a coordinate.

@@ -63,7 +63,7 @@ class EquationSteps:
     """The equations as printed, and the steps that print them.
 
     Args:
-        definitions: (name, what it stands for) of what has a name in them; those of coefficients no step states yet.
+        definitions: (name, expression) of the named parts in them; those of coefficients no step states yet.
         meanings: of names of coefficients, for the table of symbols.
     """
 
@@ -101,7 +101,7 @@ def sides_of(
 def equations_of(
     equations: EquationsOfMotion, reader: Reader, sides: Sequence[Sides], rule: tuple[Piece, ...]
 ) -> EquationSteps:
-    """The equations of motion, divided by what is common, and the accelerations where that is short.
+    """The equations of motion, divided by common factors, and the accelerations where that is short.
 
     Args:
         sides: of each equation, as the method gave them.
@@ -145,7 +145,7 @@ def _equations(
 
 
 def readable_equations(reader: Reader, equations: EquationsOfMotion, sides: Sequence[Sides]) -> list[Equation] | None:
-    """Each equation in readable form, divided by what both sides have in common; None where one is too long."""
+    """Each equation in readable form, divided by the common factors of both sides; None where one is too long."""
     written = []
     for u, row in zip(equations.symbols.u, sides, strict=True):
         left, right = reader.shown(row.left), reader.shown(row.right)
@@ -211,7 +211,7 @@ def _symbols(equations: EquationsOfMotion) -> tuple[Node, ...]:
 
 
 def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
-    """Each equation on a line of its own, and by what it was divided."""
+    """Each equation on a line of its own, and the factor by which it was divided."""
     statements: list[Statement] = []
     coordinates = dict(zip(system.symbols.u, moved_coordinates(system), strict=True))
     for equation in equations:
@@ -352,7 +352,7 @@ class FrictionTerms:
 
     Args:
         forces: generalized force of all friction, written with the normal reactions' symbols, nu.
-        definitions: (symbol of a normal reaction, what it is, accelerations in it).
+        definitions: (symbol of a normal reaction, its expression, accelerations in it).
         step: that prints them.
         solved: the step of the accelerations, () where they are long.
     """

@@ -60,12 +60,12 @@ class Picture:
 
         Raises:
             UsageError: another ending.
-            WriteFailed: the file cannot be written; what was there before is then still there.
+            WriteFailed: the file cannot be written; the old file is then unchanged.
         """
         self.saved(path)
 
     def saved(self, path: str | Path) -> tuple[DrawnPanel, ...]:
-        """`save`, and what the panels of the figure in the file show."""
+        """`save`, and the content of the panels of the figure in the file."""
         path = Path(path)
         if path.suffix.lower() not in FORMATS:
             raise UsageError(f"no picture can be written as '{path.name}'", fix=f"endings are {', '.join(FORMATS)}")
@@ -476,7 +476,7 @@ def _resultants(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Pictu
 
 
 def _polar(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
-    """The force of each hinge by size and direction, a curve over the run: what its bearing has to take."""
+    """The force of each hinge by size and direction, a curve over the run: the load of its bearing."""
     reactions = [name.removeprefix("reaction_x(").removesuffix(")") for name in run.reactions if "reaction_x(" in name]
     hinges = [owner for owner in reactions if f"reaction_y({owner})" in run.reactions]
     hinges = [owner for owner in hinges if f"reaction_z({owner})" not in run.reactions]

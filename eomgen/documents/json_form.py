@@ -33,7 +33,7 @@ def render(document: Document) -> str:
 
 
 def as_dict(document: Document) -> dict[str, Any]:
-    """The document as plain data; of one without entries what is printed."""
+    """The document as plain data; of one without entries its printed text."""
     entries = document.entries() or _printed(document)
     own: dict[str, Any] = {"warnings": [each.as_dict() for each in document.warnings]} if document.title else {}
     own |= {"taken": taken_as_dict(document.taken)} if document.title else {}
@@ -57,7 +57,7 @@ def symbols(document: Document) -> dict[str, str]:
 
 
 def _plain(entry: Any) -> Any:
-    """An entry, quantities as what is known of them."""
+    """An entry, with quantities as their known values."""
     if isinstance(entry, Quantity):
         return entry.as_dict()
     if isinstance(entry, Mapping):

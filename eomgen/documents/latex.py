@@ -122,7 +122,7 @@ def _symbols(part: object) -> list[Node]:
 
 
 def render(document: Document) -> str:
-    """The document as a file of LaTeX; its proof is a comment, what contradicts it is visible."""
+    """The document as a file of LaTeX; its proof is a comment, contradictions are visible."""
     document = with_listings_typeset(document)
     setter = setter_of(document)
     proof = () if document.certificate is None else str(document.certificate).splitlines()
@@ -273,7 +273,7 @@ def _matrix(setter: Setter, matrix: Matrix) -> Set:
 
 
 def setter_width(setter: Setter, side: Side) -> float:
-    """About how many characters wide a side is set on one line."""
+    """Approximate width of a side that is set on one line [characters]."""
     return _whole(setter, side).width
 
 
@@ -323,7 +323,7 @@ def unit_latex(unit: str) -> str:
 
 
 def value_latex(value: str) -> str:
-    """A value: -0.5 and 2.2e-06 as numbers, what else it may be as it is."""
+    """A value: -0.5 and 2.2e-06 as numbers, anything else as it is."""
     number = re.fullmatch(r"(-?\d+(?:\.\d+)?)(?:e([-+]\d+))?", value)
     if number is None:
         return latex_escaped(value)

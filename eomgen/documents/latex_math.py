@@ -1,6 +1,6 @@
 r"""Node -> LaTeX as a textbook sets it.
 
-Node -> LaTeX as a textbook sets it: \frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta, and how wide that is.
+Node -> LaTeX as a textbook sets it: \frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta, and its width.
 
 Only amsmath and KaTeX's common ground is used. Factors are juxtaposed, functions last, quotients are fractions.
 Loops over an explicit stack, as the printing of text does.
@@ -138,7 +138,7 @@ class Setter:
         return Set(rf"\frac{{{above.tex}}}{{{below.tex}}}", max(above.width, below.width), SUM)
 
     def _juxtaposed(self, c: Number, found: tuple[Factor, ...]) -> Set:
-        """c and the factors side by side; functions last, so that what follows is no part of their argument."""
+        """c and the factors side by side; functions last, so that no factor seems to belong to their argument."""
         if not found:
             return _number(c)
         if len(found) == 1 and c == 1 and found[0][1] == 1:
@@ -210,7 +210,7 @@ class Setter:
 
 
 def width_of(tex: str) -> float:
-    """About how many characters wide a symbol is set."""
+    """Approximate width of a symbol [characters]."""
     return max(1.0, 0.9 * len(_SILENT.sub("", _COMMAND.sub("x", tex.replace(r"\mathrm", "").replace(r"\dot", "")))))
 
 
@@ -220,7 +220,7 @@ def bracketed(inside: Set) -> Set:
 
 
 def _in_brackets(tex: str) -> str:
-    """Parentheses that grow with what they hold, plain ones round what is no higher than a line: they stand closer."""
+    """Parentheses that grow with their content, plain ones round content no higher than a line: they stand closer."""
     return rf"\left({tex}\right)" if _HIGH.search(tex) else f"({tex})"
 
 
@@ -467,7 +467,7 @@ class Notation:
         return symbol.dotted(len(name) - len(bare))
 
     def index(self, name: str) -> str:
-        """The name of a body, a constraint, a force or a point as an index: bar, or what it declares; bar.end."""
+        """The name of a body, a constraint, a force or a point as an index: bar, or its declared symbol; bar.end."""
         owner, dot, point = name.partition(".")
         found = self.indices.get(owner) or index_latex(owner)
         return f"{found}{dot}{index_latex(point)}" if dot else found

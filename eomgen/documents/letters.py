@@ -33,7 +33,7 @@ class PlacedName:
 
     Args:
         at: data coordinates.
-        rank: those with a smaller one choose first; what finds no room is left out.
+        rank: those with a smaller one choose first; names without room are left out.
         along: the other end of the line along which it is written, from `at`; None: it is upright, next to its place.
     """
 
@@ -208,7 +208,7 @@ class NamesArtist(Artist):
                 text.draw(renderer)
 
     def _others(self, renderer: Any) -> list[PageBox]:
-        """The boxes of what else is written on the panel."""
+        """The boxes of the other texts on the panel."""
         texts = [text for text in self.axes.texts if text.get_visible() and text.get_text()] if self.axes else []
         return [PageBox(*text.get_window_extent(renderer).extents) for text in texts]
 

@@ -27,7 +27,7 @@ _SPECIAL = re.compile(r"([\\`*_{}\[\]<>#|$~^])")
 
 
 def render(document: Document) -> str:
-    """The document as Markdown: what contradicts it first, its proof last."""
+    """The document as Markdown: contradictions first, its proof last."""
     document = with_listings_typeset(document)
     setter = setter_of(document)
     blocks = [f"**{document.distrust}**"] if document.distrust else []
@@ -64,7 +64,7 @@ def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str
 
 
 def listing_markdown(rows: Sequence[Found], model: Model | None = None) -> str:
-    """Quantities in a table, a row each: name, formula and number typeset; what is longer than a line is shortened."""
+    """Quantities in a table, a row each: name, formula and number typeset; one longer than a line is shortened."""
     setter = Setter(Notation() if model is None else notation_of(model))
     return "\n".join(["| | |", "|---|---|", *(f"| `{row.name}` | {_reported(setter, row.quantity)} |" for row in rows)])
 

@@ -155,7 +155,7 @@ def _held(system: System) -> list[Pair]:
 
 
 def _dependent(system: System, free: System, reader: Reader) -> list[Statement]:
-    """The rates of the dependent coordinates, and how derivatives are meant from here on."""
+    """The rates of the dependent coordinates, and the meaning of derivatives from here on."""
     known = dict(zip((q.name for q in system.symbols.q), system.scope.rates, strict=True))
     parts = system.scope.model.coordinates
     solved = [u for u in free.symbols.u if parts[u.name[:-1]].dependent]
@@ -325,7 +325,7 @@ def _velocities(system: System) -> list[Statement]:
 
 
 def _coordinates(system: System) -> Step:
-    """Coordinates, their rates and accelerations, and what moves as the model says."""
+    """Step with the coordinates, their rates and accelerations, and the laws of driven ones."""
     model, symbols, scope = system.scope.model, system.symbols, system.scope
     values = exact_parameters(model)
     begun = _begun(system)

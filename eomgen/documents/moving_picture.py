@@ -1,6 +1,6 @@
 """Trajectory -> a movie: frames of a scene, as GIF, MP4 or a strip.
 
-Movie -> a GIF, an MP4 or a strip of frames: what stays is drawn once, what moves is drawn over it.
+Movie -> a GIF, an MP4 or a strip of frames: still parts are drawn once, moving parts over them.
 """
 
 from __future__ import annotations
@@ -136,7 +136,7 @@ def images(movies: Sequence[Movie], progress: Progress | None = None) -> Iterato
 
 
 def _tallness(movie: Movie) -> float:
-    """Height over width of what is drawn."""
+    """Height over width of the drawing."""
     if movie.plane:
         low, high = limits(movie.drawing)
     else:
@@ -336,7 +336,7 @@ def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), f
         trail: points that leave a trail.
         forces: applied forces and reactions are arrows.
     Raises:
-        UsageError: a point that is not there; a run whose equations nobody knows.
+        UsageError: a point that is not there; a run without its equations.
     """
     if not run.phases or run.phases[0].model is None:
         raise UsageError("nothing is known of the bodies of this run", fix="take eomgen.simulate(model)")

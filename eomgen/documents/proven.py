@@ -37,7 +37,7 @@ RELATION = {"<": "less", "<=": "less_equal"}
 
 
 def proven(document: Document, certificate: Certificate | None) -> Document:
-    """The document with the proof of what was found, and of what is printed of it; None: none was requested."""
+    """The document with the proof of what was found, and of its printed texts; None: none was requested."""
     entries = document.entries
     if certificate is not None:
         certificate = _joined(certificate, _printed_as_found(document))
@@ -112,7 +112,7 @@ def _misread(x: Node) -> str:
 
 
 def _as_printed(x: Scalar) -> Iterator[tuple[str, Scalar]]:
-    """(text, what it stands for): of a formula that has cases each of them, and both sides of its condition."""
+    """(text, its formula): of a formula that has cases each of them, and both sides of its condition."""
     if not is_piecewise(x):
         yield side_text(x), x
         return
@@ -129,7 +129,7 @@ def _as_printed(x: Scalar) -> Iterator[tuple[str, Scalar]]:
 
 
 def _read(text: str, meant: Scalar) -> Scalar:
-    """A text over the symbols of what it stands for; a multiplier, lam(floor, 2), is a symbol as a whole."""
+    """A text over the symbols of its formula; a multiplier, lam(floor, 2), is a symbol as a whole."""
     if len(text) > LONGEST:
         raise NoValue("too long to be read back")
     if not isinstance(meant, Node):
@@ -161,7 +161,7 @@ def _unlike(found: Scalar, meant: Scalar) -> str:
 def _compared(
     quantities: Iterable[tuple[str, Quantity]], values: Mapping[str, Any]
 ) -> Iterator[tuple[str, Callable[[], str]]]:
-    """(name, what differs between its text and its number) of those that have both, of parameters with values."""
+    """(name, difference between its text and its number) of those that have both, of parameters with values."""
     for name, quantity in quantities:
         text = quantity.exact
         if text is None:

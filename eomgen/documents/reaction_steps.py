@@ -1,6 +1,6 @@
 """The kineto-static steps: each body cut free, and its reactions.
 
-Reactions -> the step that gives them: each as an expression, indeterminate ones with what they leave open.
+Reactions -> the step that gives them: each as an expression, indeterminate ones with their free components.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def _too_long(number: int, after: bool) -> Prose:
 
 
 def _formulas(readings: Readings, letters: Lettered) -> tuple[list[Formula], int]:
-    """(the formulas of as many reactions as a reader can take, how many more there are)."""
+    """(the formulas of as many reactions as a reader can take, the number of further ones)."""
     kept: list[Formula] = []
     length, left_out = 0, 0
     with_friction = {contact.component for contact in letters.contacts}  # these stand in the step of friction
@@ -162,7 +162,7 @@ def _start(system: System) -> dict[Node, Scalar] | None:
 
 
 def _open(reader: Reader, letters: Lettered) -> list[Statement]:
-    """The reactions that rigid bodies leave open, and what may be added to them without a trace."""
+    """The reactions that rigid bodies leave open, and the self-stresses that may be added to them."""
     reactions = letters.reactions
     if not reactions.indeterminate:
         return []
@@ -273,7 +273,7 @@ def _others(number: int) -> Step:
 def _body(
     reader: Reader, letters: Lettered, body: str, equations: Sequence[BodyEquation], *, plane: bool
 ) -> tuple[Step, int]:
-    """One body cut free, and how long that is in print."""
+    """One body cut free, and its length in print."""
     inertia: list[Pair] = [(_inertia_name(e, plane), -e.inertia) for e in equations if not is_zero(e.inertia)]
     statements: list[Statement] = []
     length = 0
@@ -301,7 +301,7 @@ def _inertia_name(equation: BodyEquation, plane: bool) -> Name:
 
 
 def _balanced(reader: Reader, letters: Lettered, equation: BodyEquation) -> Scalar | Omitted:
-    """sum of coefficients * reactions + applied - inertia, each readable; or how large it is."""
+    """sum of coefficients * reactions + applied - inertia, each readable; or its size."""
     parts: list[tuple[Scalar | Omitted, Scalar]] = [(reader.shown(c), s) for s, c in _terms(letters, equation)]
     parts += [(reader.shown(given), 1) for given in (equation.applied, -equation.inertia)]
     long = tuple(part for shown, _ in parts if isinstance(shown, Omitted) for part in shown.parts)

@@ -288,7 +288,7 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
 
 
 def reaction_name(label: str, owner: str, *more: str) -> str:
-    """B_x, R_stick_x, N_wall, T_rope_2, M_E: what a reaction is called.
+    """Name of a reaction: B_x, R_stick_x, N_wall, T_rope_2, M_E.
 
     A force along an axis of an owner that is no letter has R before it: stick_x would be a position of the stick.
     """

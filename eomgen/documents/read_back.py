@@ -1,6 +1,6 @@
 """A document and the page that was made of it -> checks that the page, read back, says what the document holds.
 
-The page is read by a reader of its own. What is compared is what stands there: every formula in numbers, every entry of
+The page is read by a reader of its own. The content is compared: every formula in numbers, every entry of
 a table under its head, every word, in their order; not how it was made.
 """
 
@@ -205,7 +205,7 @@ class PageComparison:
 
     @cached_property
     def leaning_letters(self) -> SetLetters:
-        """The same where nobody says which letters stand upright."""
+        """The same where it is not said which letters stand upright."""
         bare = {name: " ".join(_leaning(tokens_of(tex))) for name, tex in self.letters.bare.items()}
         return SetLetters(bare, self.letters.names)
 
@@ -222,7 +222,7 @@ class PageComparison:
             yield unchecked(NAME, f"{', '.join(names[:3])}{', ...' if len(names) > 3 else ''}: {why}", HOW)
 
     def of_all(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> None:
-        """Each thing on the page against what is to stand there.
+        """Compares each block of the page with the required one.
 
         Raises:
             Unlike: something else stands there.
@@ -399,7 +399,7 @@ class PageComparison:
                 self._sides((side,), between_equals(entry), where)
 
     def _named(self, side: Name | Entry | Partial | Rate, tokens: Tokens, where: str) -> None:
-        """A quantity by its letter: what looks like it is it, and a derivative is by what it is to be."""
+        """A quantity by its letter: equal letters are equal quantities; a derivative is read as the required one."""
         tex = " ".join(tokens)
         if isinstance(side, Rate) and isinstance(side.of, Node):
             self._symbol(f"{side.of.name}'", tokens, where)

@@ -1,6 +1,6 @@
 """Graph scalars -> the same as a reader wants them: short, with names for what is long.
 
-Graph scalars -> the same scalars as a reader wants them, with bounded work; what is too long to print is known.
+Graph scalars -> the same scalars as a reader wants them, with bounded work; those that are too long to print are known.
 """
 
 from __future__ import annotations
@@ -139,7 +139,7 @@ class Reader:
         return over.expressions
 
     def shown(self, x: Scalar) -> Scalar | Omitted:
-        """x in its readable form with a symbol for each root of a sum, or how large it is."""
+        """x in its readable form with a symbol for each root of a sum, or its size."""
         short = self._read(x)
         return omitted(x) if short is None else short
 
@@ -152,7 +152,7 @@ class Reader:
         return tuple(map(self.whole, self.short_with_symbols(scalars)))
 
     def divided(self, left: Scalar, right: Scalar) -> tuple[Scalar, Scalar, Scalar]:
-        """(left / divisor, right / divisor, divisor), all as shown: both sides without what every term of them holds.
+        """(left / divisor, right / divisor, divisor), all as shown: both sides without the common factor of all terms.
 
         A number is divided by only where it is small; nothing is where the equation gets longer by it.
         """
@@ -242,7 +242,7 @@ def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
 def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x).
 
-    Where x = y exactly it is the mean of both. What holds where two things are equal alone is left out.
+    Where x = y exactly it is the mean of both. A case that holds only where two sides are equal is left out.
     """
     if not any(holds_op(x, "select") for x in scalars):
         return tuple(scalars)
@@ -293,7 +293,7 @@ class Shortened:
     """Expressions in which long and repeated parts have names.
 
     Args:
-        definitions: (symbol, what it stands for), each before its use.
+        definitions: (symbol, its expression), each before its use.
         expressions: written with the symbols.
     """
 
@@ -345,7 +345,7 @@ class NamedCoefficients:
 
     Args:
         equations: with the names.
-        definitions: (name, what it stands for).
+        definitions: (name, its expression).
         units: of each name, "" where it is not known.
     """
 
@@ -485,7 +485,7 @@ def _always(x: Scalar) -> bool:
 
 
 def with_parts_named(written: Written, graph: Graph, taken: Container[str], raw: Container[Scalar]) -> Written:
-    """z1, z2, ... for the long and the repeated parts of what is too long for one formula.
+    """z1, z2, ... for the long and the repeated parts of expressions that are too long for one formula.
 
     Args:
         raw: scalars that are not in readable form, and too long to be printed whole.
@@ -544,7 +544,7 @@ def _introduced(
 def _definitions(
     x: Scalar, parts: Mapping[Node, Scalar], known: dict[Node, Scalar], named: Callable[[Node], Node]
 ) -> Iterator[tuple[Node, Scalar]]:
-    """(symbol, what it stands for): the definitions that x needs and that do not stand yet; `known` grows by them."""
+    """(symbol, its expression): the definitions that x needs and that do not stand yet; `known` grows by them."""
     for part in order((x,), known):
         if part in parts and part not in known:
             if parts[part] is not part:

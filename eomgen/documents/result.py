@@ -38,7 +38,7 @@ class Result:
         raise NotImplementedError
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
-        """The proof of its picture, by what its panels show."""
+        """The proof of its picture, by the content of its panels."""
         return ()
 
     def entries(self) -> Mapping[str, Any]:

@@ -138,7 +138,7 @@ class Meaning:
 
 @dataclass(frozen=True)
 class Table:
-    """A list of symbols and what they stand for; `head` names the columns symbol, meaning, unit, value."""
+    """A list of symbols and their meanings; `head` names the columns symbol, meaning, unit, value."""
 
     head: tuple[str, str, str, str]
     rows: tuple[Meaning, ...]
@@ -174,7 +174,7 @@ def narrow_grid(head: Sequence[Cell], rows: Sequence[tuple[Cell, ...]], kept: Se
 
 @dataclass(frozen=True)
 class Found:
-    """A quantity by its name, and what it is in words."""
+    """A quantity by its name, and its meaning in words."""
 
     name: str
     quantity: Quantity
@@ -183,7 +183,7 @@ class Found:
 
 @dataclass(frozen=True)
 class Listing:
-    """Quantities one after the other, each with what is known of it."""
+    """Quantities one after the other, each with its known values."""
 
     rows: tuple[Found, ...]
 
@@ -331,7 +331,7 @@ class Quantity:
     Args:
         exact: text of the grammar with every parameter as a symbol, or None: an equation between quantities.
         value: a number in the unit, parameters and start (or instant) put in, or None.
-        unit: of the number; "" for SI, None where nobody names one.
+        unit: of the number; "" for SI, None where none is known.
         method: the method by which it was found.
         message: the reason if something is missing, or None.
         beside: further JSON entries by name: the way of its proof, its work.

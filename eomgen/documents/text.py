@@ -43,7 +43,7 @@ LAST = 30  # the same of the last column of a grid
 
 
 def render(document: Document) -> str:
-    """The document as text: what contradicts it first, its proof last."""
+    """The document as text: contradictions first, its proof last."""
     lines = [document.distrust, ""] if document.distrust else []
     lines += [*_headed(document.title, "="), *_remarks(document)] if document.has_heads else []
     for number, step in enumerate(document.steps, start=1):
@@ -188,7 +188,7 @@ def _cell(head: str, cell: Cell) -> str:
 
 
 def _column_lines(grid: Grid, wrapped: int, least: int) -> list[str]:
-    """Columns as wide as what stands in them; one is wrapped where they do not fit side by side.
+    """Columns as wide as their content; one is wrapped where they do not fit side by side.
 
     Args:
         least: the width that is left to that column.

@@ -166,7 +166,7 @@ class TextRead:
         self.lines = deque(line for line in text.split("\n") if line.strip())
 
     def document(self, document: Document) -> int:
-        """The whole page; how many statements it has.
+        """Reads the whole page and returns the number of its statements.
 
         Raises:
             Unlike: it says something else.
@@ -292,7 +292,7 @@ def formula_said(formula: Formula) -> str:
 
 
 def side_said(side: Side) -> str:
-    """Quantities by their letters, as Q(theta), v(bob)^2, M[x, y], -dV/dx; what is a formula as it is proven."""
+    """Quantities by their letters, as Q(theta), v(bob)^2, M[x, y], -dV/dx; a formula as it is proven."""
     if isinstance(side, Name):
         whose = ",".join([*([side.by.name] if side.by is not None else []), *([side.of] if side.of else [])])
         return side.letter + (f"({whose})" if whose else "") + (str(side.power) if side.power != 1 else "")

@@ -52,7 +52,7 @@ class LegendEntry:
     """Meaning of one line of a drawing.
 
     Args:
-        style: its class: its colour, and how it is dashed.
+        style: its class, which gives colour and dashes.
         name: in words and formulas.
     """
 
@@ -94,7 +94,7 @@ class ReportFigure:
         size: width and height of its box.
         marks: its content, SVG; its look is given by classes, so that a page can be dark.
         legend: its curves.
-        save: draws it into a file of its own, whose ending says how; None where that cannot be.
+        save: draws it into a file of its own, whose ending says how; None where that is not possible.
         fixed: its colours are its own, for light paper.
     """
 
@@ -135,7 +135,7 @@ class ReportSection:
         steps: of the document of a verb; formulas in it are graph scalars.
         drawings: in their order, after the steps.
         attachments: files that it offers.
-        live: gives what moves, as HTML that is complete in itself; None where nothing does.
+        live: gives a player as complete HTML; None where nothing moves.
         computed: the columns of the motion that it computes.
         remark: the reason why it is empty, or a further remark.
     """
@@ -160,7 +160,7 @@ class ReportSection:
 
 @dataclass(frozen=True)
 class Report:
-    """A model and what was found of it.
+    """A model and the results for it.
 
     Args:
         head: the document under whose name, remark and source it stands; with its proof.
@@ -199,7 +199,7 @@ class Report:
 
     @property
     def as_document(self) -> Document:
-        """Its head with every step of every section, and what legends say: the same notation for all."""
+        """Its head with every step of every section, and the texts of legends: the same notation for all."""
         steps = tuple(step for section in self.sections for step in section.steps)
         legends = (curve.name for section in self.sections for each in section.drawings for curve in each.legend)
         return replace(self.head, steps=(*steps, Step("", "", tuple(legends))))

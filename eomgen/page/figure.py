@@ -178,7 +178,7 @@ def number_axis(low: float, high: float) -> Axis:
 
 @dataclass(frozen=True)
 class Line:
-    """A curve: its values, how it looks, how it is called."""
+    """A curve: its values, its look, its name."""
 
     values: np.ndarray
     style: str
@@ -186,7 +186,7 @@ class Line:
 
 
 def motion_drawings(run: Trajectory, units: Mapping[str, Unit]) -> tuple[ReportFigure, ...]:
-    """Coordinates over time, one drawing a unit; the energy, or how far it strayed; reactions.
+    """Coordinates over time, one drawing a unit; the energy, or its error; reactions.
 
     Args:
         units: of the coordinates by name, in which they are drawn; absent: SI.

@@ -38,7 +38,7 @@ def markdown_files(report: Report, name: str) -> Mapping[str, str | bytes]:
 
 
 def markdown_head(report: Report) -> list[str]:
-    """The title, and what is to be known first."""
+    """The title, and the remarks to be read first."""
     head = report.head
     blocks = [f"# {markdown_escaped(head.title)}"]
     blocks += [f"**{markdown_escaped(head.wrong)}**"] if head.wrong else []
@@ -107,7 +107,7 @@ def notebook_text(report: Report) -> str:
 
     Raises:
         UsageError: the model has no text that a notebook could hold.
-        ToolMissing: what runs notebooks is not installed.
+        ToolMissing: the program that runs notebooks is not installed.
         RunFailed: a cell fails.
     """
     if not report.source:
@@ -152,7 +152,7 @@ def _cells(report: Report) -> Iterator[tuple[bool, str]]:
 
 
 def _quoted(text: str) -> str:
-    """A text as a literal over its lines, whatever stands in it."""
+    """A text as a literal over its lines, with any content."""
     plain = text.isprintable() or all(c.isprintable() or c == "\n" for c in text)
     if plain and '"""' not in text and "\\" not in text and not text.endswith('"'):
         return f'"""{text}"""'

@@ -64,7 +64,7 @@ def html_page(report: Report) -> str:
 
 
 def _set_apart(shown: Html) -> tuple[Html, dict[str, list[str]]]:
-    """(the same without what a page carries packed, which takes a fifth of it or less; that, in its order).
+    """(the page without its long parts, which are carried packed in a fifth of the size or less; these parts in order).
 
     Formulas that stand alone, as MathML: who runs no program reads their LaTeX. Large pictures: their words are left.
     The text that a button copies. A program of the page puts each in its place.

@@ -32,7 +32,7 @@ class Html(str):
 
 
 def html(text: str) -> Html:
-    """A text as markup; what steers a screen or turns its direction is shown."""
+    """A text as markup; control characters are shown."""
     return text if isinstance(text, Html) else Html(escape(visible(text)))
 
 
@@ -181,7 +181,7 @@ def _converters() -> tuple[Any, Any]:
 
 
 def mathml(tex: str, *, display: bool = False) -> Html:
-    """A formula as MathML; where it stands alone, with its LaTeX inside; what has no MathML stands as its LaTeX."""
+    """A formula as MathML; where it stands alone, with its LaTeX inside; one without MathML stands as its LaTeX."""
     converter = _converters()[display]
     from math_core import LatexError
 

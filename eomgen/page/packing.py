@@ -119,7 +119,7 @@ def with_far_copies(content: bytes) -> bytes:
 
 
 def _copies(content: bytes) -> Iterator[tuple[int, int, int]]:
-    """(where, how far back, length) of what repeats something far, in order."""
+    """(place, distance back, length) of repetitions of earlier bytes, in order."""
     seen: dict[bytes, int] = {}
     at = done = known = 0
     while at <= len(content) - BLOCK:

@@ -57,7 +57,7 @@ class Played:
         """The page as a file.
 
         Raises:
-            WriteFailed: it cannot be written; what was there before is then still there.
+            WriteFailed: it cannot be written; the old file is then unchanged.
         """
         files.write(path, self.html)
 
@@ -119,7 +119,7 @@ def play(
         forces: arrows of forces are shown from the start.
         speed: of the time.
     Raises:
-        UsageError: nothing moves; a slider of what there is not.
+        UsageError: nothing moves; a slider of an unknown name.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
     ranges, _ = slider_ranges(model, sliders, declared=False)
@@ -153,7 +153,7 @@ def slider_ranges(
     Args:
         declared: plain numbers are in the unit that the file declares; else in SI.
     Raises:
-        UsageError: what is no NAME=FROM:TO.
+        UsageError: an item is not NAME=FROM:TO.
     """
     found: dict[str, SliderRange | None] = {}
     taken: list[Taken] = []

@@ -86,7 +86,7 @@ class PlayedRun:
 
     @property
     def phase(self) -> PhaseModel:
-        """The first phase: what a run without others has."""
+        """The first phase, the only one of many runs."""
         found: PhaseModel = self.run.phases[0].model
         return found
 
@@ -359,7 +359,7 @@ class Playable(Protocol):
     """A motion that a player can show.
 
     Attributes:
-        live: the model as the page evaluates it, or None: what was computed is played.
+        live: the model as the page evaluates it, or None: the computed run is played.
         moves: the model lives in the page.
     """
 
@@ -471,7 +471,7 @@ def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
     """First number of the page's motion that is not the run's of that name, half-way through the run; "" if none.
 
     Args:
-        columns: ("x", place) in the state, ("frame", place) in what the page's program of the frame gives.
+        columns: ("x", place) in the state, ("frame", place) in the results of the page's frame program.
     """
     run, live = played.run, played.live
     if live is None or not len(run.t) or played.phase.system.inputs:

@@ -1,6 +1,6 @@
 """Report, its files -> checks: read again they say what the report holds; curves and tables are the run's.
 
-The report's text by the reader of what `derive` prints; every curve by the numbers at its axes; of a table the page
+The report's text by the reader of the output of `derive`; every curve by the numbers at its axes; of a table the page
 carries each column by its name.
 """
 
@@ -53,7 +53,7 @@ def report_read_back(report: Report, files: FilesByName, form: str, run: Traject
     """Checks that the files of a report say what it holds.
 
     Args:
-        form: the ending; what is no text is not read.
+        form: the ending; only texts are read.
         run: whose curves and columns they show.
     """
     if form not in READERS:

@@ -74,7 +74,7 @@ def wedge_of(system: System, link: BodyLink) -> PolygonForm | None:
 
 
 def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[list[SceneFrame], list[Mark]]:
-    """The frames and marks of the pieces of a composite body; holes lie over what they are cut from."""
+    """The frames and marks of the pieces of a composite body; holes lie over the pieces from which they are cut."""
     pieces = system.scope.model.bodies[body].parts if body in system.scope.model.bodies else None
     frames: list[SceneFrame] = []
     marks: list[Mark] = []
@@ -90,7 +90,7 @@ def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[lis
 
 
 def seen(system: System, forms: Iterable[Form]) -> list[Form]:
-    """The forms of a shape: in the plane what one sees of it along z."""
+    """The forms of a shape: in the plane its view along z."""
     if system.scope.model.space == "plane":
         return [flat for form in forms for flat in form.flat()]
     return list(forms)
@@ -152,7 +152,7 @@ def _turns(link: BodyLink) -> bool:
 
 
 def _plate(system: System, places: list[Vector]) -> list[Form]:
-    """A line through places; of what moves, and has places on more than one line, the plate between them."""
+    """A line through places; of a moving body with places on more than one line the plate between them."""
     if len(places) < 2:
         return []
     if not system.symbols.q or len(places) < 3 or any(system.motion.moves(place) for place in places):

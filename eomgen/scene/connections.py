@@ -60,7 +60,7 @@ BESIDE = 1  # of springs and dampers between the same places, each to its side [
 
 
 def joint_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
-    """The symbol of a body's joint, by what its subspace lets go; springs and dampers in it."""
+    """The symbol of a body's joint, by its free directions; springs and dampers in it."""
     if link.joint is None or not link.joint.carries_reaction:
         return []
     turning = [w for w, _ in link.S if not all(map(is_zero, w))]
@@ -143,7 +143,7 @@ def _reach(system: System, link: BodyLink, slides: bool) -> list[Mark]:
 
 
 def _joint_elements(system: System, link: BodyLink, frame: int, turns: bool) -> list[Mark]:
-    """Springs and dampers in a joint: along what slides, a spiral where it turns."""
+    """Springs and dampers in a joint: along a sliding direction, a spiral where it turns."""
     efforts = [effort for effort in link.joint.efforts() if effort is not None]
     springs, dampers = (any(getattr(e, name) is not None for e in efforts) for name in ("stiffness", "damping"))
     if not (springs or dampers):
@@ -230,7 +230,7 @@ def _members(system: System) -> list[Mark]:
 
 
 def string_marks(strands: Sequence[Strand], of: str) -> list[Mark]:
-    """The straight pieces, the arcs on what the string lies on, and the pegs."""
+    """The straight pieces, the arcs on pulleys, and the pegs."""
     found = [Mark(LineForm(strand.ends), 0, "string", of) for strand in strands]
     for one, other in pairwise(strands):
         if one.second.round:
@@ -339,7 +339,7 @@ def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: st
 
 
 def _held(system: System, rows: Sequence[Any], of: str) -> list[Mark]:
-    """A hinge or support, by what its rows can carry; a link as a bar."""
+    """A hinge or support, by the reactions of its rows; a link as a bar."""
     pushes = [push for row in rows for push in row.pushes if isinstance(push, PointForce)]
     parts = {row.component for row in rows}
     if not pushes:
@@ -406,7 +406,7 @@ def drive_marks(system: System) -> list[Mark]:
 
 
 def _arrow(link: BodyLink, q: Node) -> SymbolForm:
-    """Round the joint, or along what slides."""
+    """Arrow round the joint, or along its sliding direction."""
     w, v = next(column for s, column in zip(link.s, link.S, strict=False) if q in symbols_of((s,)))
     return SymbolForm("shifted", link.point, v) if all(map(is_zero, w)) else SymbolForm("turned", link.point)
 
@@ -511,7 +511,7 @@ def resultants(system: System, names: Container[str]) -> Iterator[Resultant]:
 
 
 def _contact(motion: Motion, components: Sequence[Component]) -> Resultant | None:
-    """Resultant of what acts at one place along directions of its own; None of hinges, strings and placed bodies."""
+    """Resultant of the forces at one place along directions of their own; None of hinges, strings and placed bodies."""
     owner, on = components[0].owner, components[0].effects[0].link
     pose, plane = motion.links[on].pose, motion.scope.model.space == "plane"
     pushes = [(c.label, c.name, c.effects) for c in components]

@@ -60,7 +60,7 @@ class WheelForm(Form):
 
 @dataclass(frozen=True)
 class TrackForm(Form):
-    """A straight line through a place, as long as the picture; with a normal it is the edge of what lies below.
+    """A straight line through a place, as long as the picture; with a normal it is the edge of the body below.
 
     In space with a normal, and no direction, a plane. `below`: so far against the normal it is drawn [symbol units].
     """

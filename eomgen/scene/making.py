@@ -82,7 +82,7 @@ def named_points(system: System) -> Iterator[tuple[str, Vector]]:
 
 
 def name_marks(system: System) -> Iterator[Mark]:
-    """The letters of points that somebody named, and the names of bodies."""
+    """The letters of named points, and the names of bodies."""
     motion, model = system.motion, system.scope.model
     for name, place in model.points.items():
         yield Mark(LabelForm(name, motion.scope.vector(place)), 0, "point", name)

@@ -3,7 +3,7 @@
 Trajectory -> one picture over all its phases: each phase is drawn by its own system, whose coordinates mean its own.
 
 Scenes of the same bodies become one: bodies, points and marks are found again by their names. A number that differs
-from piece to piece, or moves in one of them, gets a slot of its own; what a piece has not is nan there, and hidden.
+from piece to piece, or moves in one of them, gets a slot of its own; marks that a piece lacks are nan there, hidden.
 """
 
 from __future__ import annotations
@@ -234,7 +234,7 @@ class _Joined:
 
 
 def _by_identity(marks: Sequence[Mark]) -> dict[tuple[Any, ...], Mark]:
-    """The marks by what they are; of the same the first, the second, and so on."""
+    """The marks by their identity; of the same the first, the second, and so on."""
     seen: Counter[tuple[Any, ...]] = Counter()
     found = {}
     for mark in marks:
@@ -300,7 +300,7 @@ def picture_reported(drawing: Drawing, scene: Scene, frame: int) -> ReportedPict
 
 
 def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
-    """(name, how large) of dimension lines: between the tips of both heads; of arcs: from their legs' middle."""
+    """(name, size) of dimension lines: between the tips of both heads; of arcs: from their legs' middle."""
     strokes = iter([stroke for stroke in drawing.strokes if stroke.role == "dimension"])
     lengths, angles = [], []
     for mark in (mark for mark in scene.marks if mark.form.kind in ("dimension", "angle")):

@@ -1,7 +1,5 @@
 """System -> Scene: the drawable elements of a model at a state, as data; and the frame at one state.
 
-System -> Scene: what can be drawn of a model at a state, as data over the scalars of the graph.
-
 All numbers of a picture are slots of one frame: scalars of (t, q, u, a, lam, parameters) that one `Program` computes.
 Python runs it by numpy or C, a page by JavaScript; a drawer reads marks whose numbers are constants or slots.
 """
@@ -224,7 +222,7 @@ def plain_number(x: Any) -> float | int:
 
 
 def mapped(value: Any, change: Callable[[Any], Any]) -> Any:
-    """Lists of whatever stands in tuples, each changed."""
+    """Nested lists of the entries of tuples, each changed."""
     return [mapped(x, change) for x in value] if isinstance(value, tuple) else change(value)
 
 

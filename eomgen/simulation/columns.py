@@ -46,7 +46,7 @@ class OutputColumns:
     formulas: Mapping[str, Expression]
 
     def along(self, t: np.ndarray, x: np.ndarray) -> dict[str, np.ndarray]:
-        """Each formula at n states of the phase, n x states; nan where one has no value; what is `refused` is left out.
+        """Each formula at n states of the phase, n x states; nan where one has no value; `refused` ones are left out.
 
         Args:
             t: their instants, n.
@@ -132,7 +132,7 @@ class _Columns:
         """Each formula at n states.
 
         Args:
-            moving: the same states, what begins to slide among them a little later: for accelerations and reactions.
+            moving: the same states, those at which sliding begins a little later: for accelerations and reactions.
             p: the parameters' values.
         """
         made, symbols = self._made, self.system.symbols

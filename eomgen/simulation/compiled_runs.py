@@ -68,8 +68,8 @@ def marched(
 
     Args:
         starts: states, runs x states, and parameters, runs x parameters.
-        how: the integrator's way, with the tolerances of one step.
-        check: called now and then; what it raises ends all runs.
+        how: the integrator's options, with the tolerances of one step.
+        check: called now and then; its exceptions end all runs.
     """
     x0, p = (np.ascontiguousarray(each, dtype=float) for each in starts)
     n = len(x0)
@@ -84,7 +84,7 @@ def marched(
 
 
 def _march(phase: PhaseModel, x: np.ndarray, how: Stepping, instants: np.ndarray, end: float) -> CompiledSteps:
-    """A march that looks at what one run looks at."""
+    """A march with the checks of a single run."""
     nearness = phase.nearness
     lookout = None if nearness is None else RankLookout(nearness, NEARNESS[0], 0.0, x)
     hold = how.hold(phase.functions.rhs.unit_quaternions, phase.projection)

@@ -524,7 +524,7 @@ def _integrator(program: Program, p: Sequence[float], t: float, x: np.ndarray, t
 
 
 def _rates(program: Program, values: dict[Node, Any], heyoka: ModuleType) -> list[Any]:
-    """The right-hand side in heyoka's expressions; what parameters alone determine are floats."""
+    """The right-hand side in heyoka's expressions; constants of the parameters are floats."""
 
     def either(op: str, made: Callable[..., Any]) -> Callable[..., Any]:
         known = FLOAT.functions[op]

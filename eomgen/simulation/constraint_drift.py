@@ -7,7 +7,7 @@ System, parameters -> Projection: states put back onto the constraints, by the l
 
 Positions move in all coordinates, dependent ones as freely as others; speeds are those of the state. Measured by M the
 least change is the same in every set of coordinates. Driven coordinates and the time stay: their rows of N are zero.
-Redundant rows do no harm: what is open is closed in the sense of least squares, and directions in which the
+Redundant rows do no harm: residuals are removed in the sense of least squares, and directions in which the
 constraints all
 but do not resist (near a singular position) are passed over.
 Source: Eich, Convergence results for a coordinate projection method applied to mechanical systems with algebraic
@@ -49,7 +49,7 @@ ROUNDING = 64 * float(np.finfo(float).eps)  # of the largest entry of a state
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows J of some constraints, and what measures a change there.
+    """The rows J of some constraints, and the metric of a change there.
 
     Args:
         function: (t, x, p) -> M, J, N, one after the other.
@@ -110,11 +110,11 @@ class Projection:
         return not self._gap(t, x, slice(None)) <= max(allowed, rounding_of(x))
 
     def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
-        """(the nearest state in which the constraints hold, by how much they are open there all the same).
+        """(the nearest state in which the constraints hold, their residual there).
 
         Args:
             allowed: the residual that they may have; 0: as little as Newton's method reaches, as needed near a singular
-                position, where what is left is divided by what vanishes there.
+                position, where residuals are divided by a determinant that vanishes.
         """
         found = at_unit_norms(x, self.unit_quaternions)
         enough = max(FAR * allowed, rounding_of(x)) if allowed > 0 else 0.0
@@ -375,7 +375,7 @@ class ConstraintRank:
         rows: (t n, x n x states) -> J, n x (k nu).
         constraints: the constraint of each row, k.
         rank: the number of rows that are independent at almost every state.
-        dependent: constraints, and what dependent coordinates they determine, in words.
+        dependent: constraints, and the dependent coordinates that they determine, in words.
     """
 
     rows: Callable[[np.ndarray, np.ndarray], np.ndarray]
@@ -454,7 +454,7 @@ class Nearness:
             determined; None where there are none.
         rows: the rows that close by multipliers; None where there are none.
         what: of each determinant, what is not determined where it vanishes.
-        lengths, largest: of the rows, and of what vanishes, the greatest so far.
+        lengths, largest: the greatest so far, of the rows and of the determinants.
     """
 
     determinants: Measure | None

@@ -375,7 +375,7 @@ class ContactSignals:
     def _with_rank(self) -> frozenset[str]:
         """The columns for which the balance of the bodies is solved at each state, with its rank.
 
-        A formula that divides by nothing but what the parameters make, and here is not zero, has a value at all states.
+        A formula whose divisors depend on parameters only, and are not zero here, has a value at all states.
         """
         symbols = self.functions.equations.symbols
         known = dict(zip(symbols.parameters.values(), self.functions.p.tolist(), strict=True))

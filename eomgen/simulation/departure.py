@@ -376,7 +376,7 @@ class Configurations:
 
 @dataclass(frozen=True)
 class _Sensed:
-    """The way in one sense, s growing: the condition, and how far u_s^2 allows the motion to go.
+    """The way in one sense, s growing: the condition, and the range in which u_s^2 > 0.
 
     Args:
         along: the configurations.

@@ -1,4 +1,4 @@
-"""The model with every contact that can end taken away: how far its contacts are open, and what an impact does.
+"""The model with every contact that can end removed: the gaps of its contacts, and the effect of an impact.
 
     M (u+ - u-) = J^T Lam,   J u+ + sigma = 0 where Lam > 0,   0 <= Lam,   0 <= J u+ + sigma   (contacts that can end)
 

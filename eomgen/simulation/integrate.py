@@ -69,7 +69,7 @@ def integrate(
         projection: onto the constraints; by it these are also measured.
         slope: (t, x) -> df/dx for the implicit methods; None: by differences.
         breakpoints: instants across which no step goes, ascending.
-        nearness: to singular positions, across which the motion is carried; None: nobody looks.
+        nearness: to singular positions, across which the motion is carried; None: not watched.
     Raises:
         UsageError: a start, parameter, tolerance, method or time that is missing or makes no sense.
     """
@@ -105,7 +105,7 @@ def integrate(
 def _open(
     t: np.ndarray, x: np.ndarray, projection: Projection | None, gaps: FunctionOfStates | None
 ) -> tuple[float | None, float | None]:
-    """The largest |phi| and |J u + sigma|; None where nothing closes or nobody measures it."""
+    """The largest |phi| and |J u + sigma|; None where nothing closes or it is not measured."""
     if projection is not None:
         gap, gap_rate = np.max(projection.open(t, x), axis=0, initial=0.0)
         return float(gap), float(gap_rate) if projection.speeds else None
@@ -178,10 +178,10 @@ def _vector(what: str, values: Any) -> np.ndarray:
 
 
 def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
-    """Refuses what makes no sense.
+    """Refuses options that make no sense.
 
     Raises:
-        UsageError: the time, a tolerance, the method, or how constraints are kept closed.
+        UsageError: the time, a tolerance, the method, or the stabilization of constraints.
     """
     if not (math.isfinite(start) and math.isfinite(end) and end >= start):
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", fix="give an end after the start")

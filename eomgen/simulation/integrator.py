@@ -166,7 +166,7 @@ class Lookout(Protocol):
 
 @dataclass(frozen=True)
 class _Watches:
-    """Both kinds of what ends a run."""
+    """Both kinds of conditions that end a run."""
 
     watch: EventSearch | None
     lookout: Lookout | None

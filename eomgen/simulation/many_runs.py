@@ -220,7 +220,7 @@ class ManyStarts:
         return self.phase.declared
 
     def _closed(self, x: np.ndarray, p: np.ndarray) -> np.ndarray:
-        """Moves what is sought in the states to where positions hold; whether everything holds there."""
+        """Moves the sought coordinates until the positions hold; True for each run in which all constraints hold."""
         sought = [self._system.symbols.q.index(q) for q in self._sought]
         moving = np.arange(len(x)) if sought else np.arange(0)
         best = np.full(len(x), np.inf)

@@ -59,7 +59,7 @@ class Plan:
 
 
 def through(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
-    """The phases of a motion, up to the first instant at which what ends it holds."""
+    """The phases of a motion, up to the first instant at which its end condition holds."""
     runs = passed(models, here, plan)
     return runs if plan.until is None else ended(runs, plan.until)
 
@@ -113,7 +113,7 @@ def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
 
 
 def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
-    """The run; where it came to a state without a value, with what has none there, or with what is too large."""
+    """The run; where it ended at a state without a value, with the quantity that has none there or is too large."""
     if run.status in ("step too small", "too many steps") and (large := phase.overlarge(run.end, run.last)):
         return replace(run, message=f"{run.message[:-1]}: {large.what}.")
     if run.status in ("step too small", "too many steps") and (jumping := signs_of_rates(phase.system)):
@@ -180,7 +180,7 @@ def _at_edge(phase: PhaseModel, run: Run) -> Run:
 
 
 def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
-    """The run, ended where the constraints do not say how it goes on, and it went astray."""
+    """The run, ended where the constraints do not determine its continuation and it went astray."""
     if run.status == "singular" or not phase.undetermined:
         return run
     finer = replace(how, rtol=_finer(how.rtol), atol=_finer(how.atol), most_steps=STEPS_AGAIN, breakpoints=())
@@ -324,7 +324,7 @@ FAIR = replace(SEARCH, rtol=FAIR_RUN, atol=FAIR_RUN)  # where the finer one does
 
 @dataclass(frozen=True)
 class FirstTime:
-    """A motion in one phase, and what is sought on it.
+    """A motion in one phase, and the condition sought on it.
 
     Args:
         equations, accelerations: the equations of motion.
@@ -342,7 +342,7 @@ class FirstTime:
     values: State
 
     def located(self) -> tuple[State, str]:
-        """(t, q and u at the instant, how they were found); t is nan where it is not known.
+        """(t, q and u at the instant, the method); t is nan where it is not known.
 
         Raises:
             RunFailed: the condition is not met.

@@ -139,7 +139,7 @@ def _closed_or_open(
 
 
 def after_jump(models: PhaseModels, here: PhaseStart) -> PhaseStart:
-    """The same state where forces have jumped: how the contacts are from here on."""
+    """The same state where forces have jumped, with the contact modes from here on."""
     if not has_phases(models.model):
         return here
     pieces = here.configuration.pieces
@@ -207,7 +207,7 @@ def _decided(
 def _contact(
     models: PhaseModels, t: float, values: Values, before: Configuration
 ) -> tuple[Values, frozenset[str], bool]:
-    """(values after an impact of what closes, the contacts that are apart, whether velocities jumped)."""
+    """(values after an impact of the closing contacts, the contacts that are apart, whether velocities jumped)."""
     gaps = models.without_contacts.gaps(t, values)
     touching = [name for name, (gap, _) in gaps.items() if name not in before.open or gap <= _length(values)]
     hit = any(gaps[name][1] < -smallest_speed(values) for name in touching if name in before.open)
@@ -253,7 +253,7 @@ def settled(
         pieces: of the paths, on which bodies are.
         apart: contacts that are open for certain: they do not touch, or move apart.
         ended: configurations that have just ended: taken only where there is no other.
-        before: the configuration so far; contacts keep what they can of it.
+        before: the configuration so far; contacts keep their modes where possible.
     Raises:
         Indeterminate: something moves, and the balance does not determine how the contacts share the load.
     """

@@ -51,7 +51,7 @@ class PhaseModel:
     """The model of one phase. Its state is x = (q, u), and after these the slack of each string that hangs loose.
 
     Args:
-        watch: its system, and what its contacts say.
+        watch: its system, with the signals of its contacts.
         declared: the system over the speeds that the model declares; the state may hold more (see `integrated_system`).
         equations: the equations of motion, friction included.
         p: the parameters' values.
@@ -234,7 +234,7 @@ class PhaseModel:
 
     @property
     def nearness(self) -> Nearness | None:
-        """A new measure of how near a motion comes to positions in which the constraints do not determine it."""
+        """A new measure of the nearness of a motion to positions in which the constraints do not determine it."""
         return None if self._nearness is None else replace(self._nearness)
 
     @cached_property

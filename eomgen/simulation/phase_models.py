@@ -93,7 +93,7 @@ class PhaseModels:
         target: of the emitted code.
         rates: alpha and beta of Baumgarte's rows; None: they do not pull.
         derived: the equations of the one phase of a model that has no other, where they are known.
-        origin: the same at other values of the parameters, whose phases these are, and what changes these values.
+        origin: the same at other values of the parameters, whose phases these are, and the function for new values.
     """
 
     def __init__(

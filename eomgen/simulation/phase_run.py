@@ -3,7 +3,7 @@
 One phase of a motion as it was run; where a run is to end, within a phase and where phases change.
 
 Within a phase the integrator finds the instant. That a phase ends, or another begins, in a state in which the condition
-holds is seen here: what slides comes to rest and sticks, what lands loses its speed.
+holds is seen here: sliding contacts come to rest and stick, landing ones lose their speed.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
     """Left side minus right side of an equation such as "theta = pi/2" or "reaction_n(wall) = 0".
 
     Raises:
-        UsageError: it is no equation, or names what the model does not have.
+        UsageError: it is no equation, or holds a name that the model does not have.
     """
     text = until.text if isinstance(until, WrittenEquation) else until
     try:
@@ -135,7 +135,7 @@ def _begins(before: PhaseRun, phase_run: PhaseRun, until: PhaseCondition) -> boo
 
 
 def _sizes(phase_run: PhaseRun, until: PhaseCondition) -> np.ndarray:
-    """The absolute values of what ought to be 0, at the instants of a phase and at its end."""
+    """The absolute values of the function that should become 0, at the instants of a phase and at its end."""
     run, phase = phase_run.run, phase_run.phase
     stops, after = phase_run.bound is not None and phase_run.bound.kind == "stops", phase_run.after
     last = phase.state(after.values) if stops and after is not None else run.last  # on a surface near to 0, then 0
@@ -215,7 +215,7 @@ def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
 
 
 def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
-    """The trajectory with its reactions as columns; what has none, and why, in its remark.
+    """The trajectory with its reactions as columns; its remark names those without a column and the reason.
 
     In each phase they are those of the phase's own equations; a contact that is open has the reaction 0. Where nothing
     but joints holds the bodies each has a value at every state: nothing is missing, and they wait to be read.
@@ -260,7 +260,7 @@ def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
 
 
 def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[str, Expression]) -> Trajectory:
-    """The trajectory with formulas as columns, in SI; what has none, and why, in its remark."""
+    """The trajectory with formulas as columns, in SI; its remark names those without a column and the reason."""
     if not formulas:
         return full
     made = {id(s.phase): OutputColumns(s.phase, formulas) for s in runs}
@@ -319,7 +319,7 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
 
 
 def _at_rows(table: Mapping[str, np.ndarray], kept: np.ndarray) -> Mapping[str, np.ndarray]:
-    """The columns at these rows; what waits to be read goes on waiting."""
+    """The columns at these rows; columns computed on demand stay so."""
 
     def found() -> dict[str, np.ndarray]:
         return {name: column[kept] for name, column in table.items()}

@@ -79,7 +79,7 @@ class ReactionColumns:
 
     @cached_property
     def _columns(self) -> list[int]:
-        """The components solved for: what is free whatever the state is taken as 0, and leaves no trace."""
+        """The components solved for: those free at all states are taken as 0, which changes no other."""
         return [j for j in range(len(self.reactions.components)) if j not in self.reactions.solution.free]
 
     @cached_property
@@ -230,7 +230,7 @@ def steps_of(A: np.ndarray, stands: np.ndarray, groups: Iterable[Sequence[int]])
     """The order for matrices of one pattern.
 
     Args:
-        A: one of them, rows x columns, which says what blocks are regular.
+        A: one of them, rows x columns, which decides the regular blocks.
         stands: True where an entry can be other than zero, rows x columns.
         groups: the rows of each body.
     """

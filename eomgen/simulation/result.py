@@ -37,7 +37,7 @@ RunStatus = Literal[
 
 
 class OnDemand(Mapping[str, np.ndarray]):
-    """Columns by name, worked out where somebody reads one of them; of a pickle they are all there."""
+    """Columns by name, computed when one of them is read; a pickle holds all of them."""
 
     def __init__(self, names: Sequence[str], make: Callable[[], Mapping[str, np.ndarray]]) -> None:
         self.names, self.make = dict.fromkeys(names), make
@@ -130,16 +130,16 @@ class Kept:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
-    """A motion. One that ended early holds what there is, and says why.
+    """A motion. One that ended early holds its results so far and the reason.
 
     Args:
         t: times, n [s], one row each: strictly later from row to row.
         x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
         coordinates, speeds: the names.
-        energies: -> `energy`, found on demand; None where nobody gave it.
+        energies: -> `energy`, found on demand; None where it is not given.
         measure: -> the errors of energy and constraints, found on demand.
         phases: in order.
-        ended: "finished" or what stopped it.
+        ended: "finished" or the reason of an earlier end.
         words: the same as a sentence.
         steps, evaluations: taken by the integrator.
         reactions: of joints and constraints, n each [N, N m]: nan where one has no single value; {} where there are
@@ -150,10 +150,10 @@ class Trajectory:
         gaps: -> the same of single states, found on demand.
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
         assembled: text on the changes of the start values by which the constraints hold there; or "".
-        proof: the run -> its certificate; None where nobody knows its equations.
-        whole: text -> its value over the whole run (a RunValue); None where nobody knows its equations.
+        proof: the run -> its certificate; None where its equations are not known.
+        whole: text -> its value over the whole run (a RunValue); None where its equations are not known.
         quantities: of the model's outputs those that are of the whole run, each a RunValue.
-        estimate: the run -> its Accuracy, by another run; None where nobody knows its equations.
+        estimate: the run -> its Accuracy, by another run; None where its equations are not known.
         watch: the run -> the checks of what it watches anyway: energy against power, constraints, norms; None: nobody
             does.
     """
@@ -191,7 +191,7 @@ class Trajectory:
 
     @cached_property
     def energy(self) -> np.ndarray | None:
-        """T + V, n [J]; None where nobody gave it."""
+        """T + V, n [J]; None where it is not given."""
         return None if self.energies is None else self.energies()
 
     @cached_property
@@ -221,7 +221,7 @@ class Trajectory:
 
     @cached_property
     def accuracy(self) -> Any:
-        """Its `Accuracy`: how many digits hold at the end, by a run with finer tolerances; None where none compares.
+        """Its `Accuracy`: the correct digits at the end, by a run with finer tolerances; None where none compares.
 
         Raises:
             UsageError: as of `certify`.
@@ -324,7 +324,7 @@ class Trajectory:
         Args:
             units: of the columns, "theta [deg]"; None: plain names, and SI.
         Raises:
-            WriteFailed: the file cannot be written; what was there before is then still there.
+            WriteFailed: the file cannot be written; the old file is then unchanged.
         """
         import csv
 
@@ -344,7 +344,7 @@ class Trajectory:
         """numpy's archive: t, x, coordinates, speeds, energy, reactions, outputs (n x names) and their names, status.
 
         Raises:
-            WriteFailed: the file cannot be written; what was there before is then still there.
+            WriteFailed: the file cannot be written; the old file is then unchanged.
         """
         arrays: dict[str, Any] = {"t": self.t, "x": self.x, "status": self.status, "message": self.message}
         arrays |= {"coordinates": np.array(self.coordinates, dtype=str), "speeds": np.array(self.speeds, dtype=str)}
@@ -379,7 +379,7 @@ class Trajectory:
         """The motion as a moving picture: .gif, .mp4, .png (a strip), .html; without a path its player shows itself.
 
         Args:
-            how: fps, speed, trail, forces, frames, as of `eomgen animate`.
+            how: options fps, speed, trail, forces, frames, as of `eomgen animate`.
         """
         return import_module("eomgen").animate(self, path, **how)  # the package's front door: pictures come later
 

@@ -1,6 +1,6 @@
 """Singular positions: runs that end there, and runs that are carried across.
 
-Run -> the same, ended where constraints no longer said how the motion goes on, and the constraint named.
+Run -> the same, ended where constraints no longer determine the motion, with the constraint named.
 
 Dependent coordinates follow the independent ones as long as det J_d is not zero. Across an instant where it vanishes
 (a change point, a dead centre) the integrator's own estimate of its error is useless. So a run that came by one
@@ -203,7 +203,7 @@ def march_across(
     """`march`, carried across singular positions; where that fails it ends.
 
     Args:
-        nearness: to these; None where nobody looks for them.
+        nearness: to these; None where they are not watched.
     """
     if nearness is None:
         return flow.march(span, x0, instants, events)
@@ -299,7 +299,7 @@ def _passed(
 
 
 def _time_to(flow: Flow, t: float, x: np.ndarray, nearness: Nearness) -> float | None:
-    """tau = s/|s'|: how soon the nearness would vanish; None where it does not fall."""
+    """tau = s/|s'|: the time in which the nearness would vanish; None where it does not fall."""
     dx = flow.f(t, x)
     step = WIDE_STEP * (1 + np.max(np.abs(x))) / (1 + np.max(np.abs(dx)))
     here, after = nearness.at(t, x), nearness.at(t + step * 1e-2, x + step * 1e-2 * dx)
@@ -310,7 +310,7 @@ def _time_to(flow: Flow, t: float, x: np.ndarray, nearness: Nearness) -> float |
 def _continued(
     flow: Flow, t: float, x: np.ndarray, window: float, degree: int, nearness: Nearness, near: float, tau: float
 ) -> tuple[SingularCrossing, np.ndarray] | None:
-    """The motion beyond by a polynomial through what it was before."""
+    """The motion beyond by a polynomial through its states before."""
     from numpy.polynomial.chebyshev import Chebyshev
 
     nodes, states = _before(flow, t, x, window, 2 * degree + 1)
@@ -352,7 +352,7 @@ def _before(flow: Flow, t: float, x: np.ndarray, window: float, many: int) -> tu
 
 
 def _joined(runs: Sequence[Run], carried: Sequence[SingularCrossing], instants: np.ndarray | None) -> Run:
-    """One run of several, with the instants inside what was carried across."""
+    """One run of several, with the instants inside the crossings."""
     last = runs[-1]
     if len(runs) == 1 and not carried:
         return last

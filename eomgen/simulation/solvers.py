@@ -1,6 +1,6 @@
 """scipy's integrators, one step at a time, and the number of correct digits of a run.
 
-scipy's integrators, one step at a time: how each is begun, never across a breakpoint, and how a state is replaced.
+scipy's integrators, one step at a time: the start of each, never across a breakpoint, and the replacement of a state.
 
 A step across a bend is a step of order one there, and a step from rest across a short pulse does not see it.
 """

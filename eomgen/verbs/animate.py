@@ -132,7 +132,7 @@ def animate_document(
     modes: int | None = None,
     virtual: str | None = None,
 ) -> Document:
-    """The picture is written; the document says what it holds.
+    """Writes the picture; the document describes its content.
 
     Args:
         time: the duration of the motion [s]; None: as `page_time` has it.
@@ -240,7 +240,7 @@ def _displacement_page(found: VirtualDisplacement) -> str:
 
 
 def _write_displacement(found: VirtualDisplacement, output: str, showing: Showing, progress: Progress | None) -> int:
-    """The file, and how many frames there are in a swing."""
+    """Writes the file and returns the number of frames in a swing."""
     movie = virtual_movie(found, showing.of_a_swing(output))
     if _ending(output) == ".html":
         files.write(output, _displacement_page(found))
@@ -296,7 +296,7 @@ def animate(
 
     Args:
         motion: a run; or a model, which is simulated.
-        time: of a model how long, 10 s where nothing is said.
+        time: the duration of a model's motion, 10 s by default.
         parameters, start: of a model, values that replace its own, each as `model_at` takes it.
     Raises:
         UsageError: another ending, a point that is not there; of a run a time or values.

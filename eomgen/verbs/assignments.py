@@ -20,7 +20,7 @@ EXAMPLES = {"--set": "--set m=2", "--start": "--start theta=1", "--from-rest": '
 
 
 def typed(model: Model, options: Mapping[str, Any]) -> tuple[Valued, dict[str, Any]]:
-    """The model with the values that were typed, and what was taken; the other options, equations in SI.
+    """The model with the values that were typed, and their record; the other options, equations in SI.
 
     Raises:
         UsageError: a name that there is not; a value, a unit or an equation that is none.
@@ -52,7 +52,7 @@ def split_words(given: Iterable[str]) -> list[str]:
 
 
 def refuse_no_place(model: Model, names: Iterable[str]) -> None:
-    """Refuses a start from rest of what is no free coordinate.
+    """Refuses a start from rest of a name that is no free coordinate.
 
     Raises:
         UsageError: it is named.

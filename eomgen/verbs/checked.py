@@ -49,7 +49,7 @@ class Checked:
 
     Args:
         open: the contacts that do not touch at the start.
-        mobility, structure: of what has no coordinates; None of all else.
+        mobility, structure: of a model without coordinates; None of all others.
         cautions: warnings of what other commands will refuse, or of what is probably a mistake.
         modes: the contact modes at the start.
     """
@@ -79,7 +79,7 @@ class Checked:
 
     @cached_property
     def unbuilt(self) -> tuple[tuple[str, str], ...]:
-        """(where it is declared, kind) of what is not derived yet."""
+        """(place of its declaration, kind) of each part that is not derived yet."""
         return unbuilt(self.model)
 
     @property

@@ -25,7 +25,7 @@ def refuse_strange_endings(output: str) -> None:
 
 
 def export_document(model: Model, *, output: str) -> Document:
-    """The URDF, written, and read again by another program; what URDF cannot say.
+    """The URDF, written, and read again by another program; with the features that URDF lacks.
 
     Raises:
         DerivationError: a joint that URDF does not have.

@@ -1,4 +1,4 @@
-"""Freedom, assembly modes -> lines of text: degrees of freedom, what closes, reacts or follows, the ways to close."""
+"""Freedom, assembly modes -> lines of text: degrees of freedom, closing, reacting and redundant rows, the modes."""
 
 from __future__ import annotations
 
@@ -88,7 +88,7 @@ MOST_REPORTED = 5  # other ways
 
 
 def branch_lines(model: Model, branches: Branches | None) -> list[str]:
-    """The way at the start, the others, and what (+), (-), left and right are of."""
+    """The way at the start, the others, and the meaning of (+), (-), left and right."""
     if branches is None:
         return []
     sided = _sided(branches)

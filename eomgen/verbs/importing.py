@@ -1,4 +1,4 @@
-"""eomgen import: a robot of another program's file as a model file; what was left out is said."""
+"""eomgen import: a robot of another program's file as a model file, with a list of omissions."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def refuse_other_endings(output: str | None) -> None:
 def import_document(
     file: str, *, output: str | None = None, floating: bool = False, model: str | None = None
 ) -> Document:
-    """The model file, written where an output is given; and what of the robot's file has no counterpart in it.
+    """The model file, written where an output is given; and the parts of the robot's file without a counterpart in it.
 
     Raises:
         ModelError: no robot can be read from the file.

@@ -1,4 +1,4 @@
-"""Result -> its document, with notes of what was changed in its start."""
+"""Result -> its document, with notes on the changes of its start."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
 
 
 def with_start_reported(document: Document, model: Model, run: Trajectory | None = None) -> Document:
-    """The document with a note of what was changed where its model could not start as it is written; a warning where
+    """The document with a note on the changes where its model could not start as it is written; a warning where
     nothing closes its constraints.
 
     Args:
@@ -49,7 +49,7 @@ def with_start_reported(document: Document, model: Model, run: Trajectory | None
 
 
 def with_constraints_closed(document: Document, system: System) -> Document:
-    """The document of what needs no start; with a warning where nothing closes the constraints near it."""
+    """The document of a result that needs no start; with a warning where nothing closes the constraints near it."""
     try:
         start_of_motion(system)
     except OpenConstraints as error:

@@ -27,7 +27,7 @@ def play_document(
     speed: float,
     certify: bool = True,
 ) -> Document:
-    """The page, written, and what it holds."""
+    """Writes the page; the document describes its content."""
     ranges, taken = slider_ranges(model, sliders)
     options = PlayerOptions(ranges, True, trail, forces, speed)
     found = played(model, time, options)
@@ -45,7 +45,7 @@ def play_document(
 
 
 def refuse_other_endings(output: str) -> None:
-    """Refuses what is no page.
+    """Refuses a file name that is no page's.
 
     Raises:
         UsageError: the name does not end in .html.

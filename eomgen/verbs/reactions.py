@@ -58,7 +58,7 @@ class FoundReactions(dict[str, Quantity]):
 
     Args:
         equations: None where unknowns in the loads hold the system.
-        proof: of what stands in it.
+        proof: of its reactions.
         sums: {"reaction_x(A) + reaction_x(B)": its value} of indeterminate ones that have one value together.
         proof_of_sums: of these.
     """
@@ -210,7 +210,7 @@ def _formulas(equations: Equations, requested: list[NamedReaction]) -> dict[str,
 
 
 def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
-    """({name: value}, why there are none, or None): what has no single value at the start is left out."""
+    """({name: value}, the reason if there are none, or None), only of reactions with a single value at the start."""
     try:
         p = parameter_vector(equations.model)
         system = equations.graph.system

@@ -95,7 +95,7 @@ class Subject:
 
     @cached_property
     def main(self) -> tuple[str, Document]:
-        """(section, document) of what is mainly found: of a motion its derivation, of a structure its reactions, of a
+        """(section, document) of the main result: of a motion its derivation, of a structure its reactions, of a
         mechanism its velocities, of bodies that nothing holds their inertia.
 
         Raises:
@@ -180,7 +180,7 @@ def report(
     without: Sequence[str] = (),
     certify: bool = True,
 ) -> Report:
-    """A model and what is found of it, as a page (.html), a paper (.pdf, .tex), text (.md) or an executed notebook.
+    """A model and the results for it, as a page (.html), a paper (.pdf, .tex), text (.md) or an executed notebook.
 
     Args:
         path: the file that is written; None: nothing is.
@@ -190,7 +190,7 @@ def report(
         certify: its results are proven.
     Raises:
         UsageError: no format has that ending; there is no such section.
-        ToolMissing: what runs notebooks is not installed.
+        ToolMissing: the program that runs notebooks is not installed.
     """
     form = None if path is None else form_of(str(path))
     is_file = not isinstance(model, Model)
@@ -206,7 +206,7 @@ def report(
 
 
 def _read_back(subject: Subject, found: Report, form: str, name: str) -> tuple[Report, FilesByName]:
-    """(the report, with what its files, read again, contradict; its files)."""
+    """(the report with the contradictions of its files, read again; its files)."""
     texts = written_as(found, form, name)
     if found.certificate is None:
         return found, texts
@@ -260,7 +260,7 @@ def report_document(
     text: str = "",
     certify: bool = True,
 ) -> Document:
-    """The report in its file, and what was written."""
+    """Writes the report; the document names its files."""
     form = form_of(output)
     subject = Subject(model, time, certify, origin, text)
     found, texts = _read_back(subject, report_of(subject, with_, without), form, Path(output).name)
@@ -320,7 +320,7 @@ def replaced(subject: Subject) -> dict[str, dict[str, str]]:
 
 
 def _other(before: Mapping[str, Any], after: Mapping[str, Any], field: str) -> dict[str, str]:
-    """{name: text} of what has another value in a field."""
+    """{name: text} of the parts that have another value in a field."""
     pairs = ((name, getattr(before[name], field), getattr(part, field)) for name, part in after.items())
     return {name: new.text for name, old, new in pairs if new is not None and new != old}
 
@@ -368,7 +368,7 @@ def _steps(key: str) -> Callable[[Subject], ReportSection]:
 
 
 def _pictures(subject: Subject, key: str) -> tuple[ReportFigure, ...]:
-    """The picture of a result of the plane; none of what has none, as where parameters have no values."""
+    """The picture of a result of the plane; none if it has none, as where parameters have no values."""
     if key == "derivation" or subject.model.space == "space":
         return ()
     try:

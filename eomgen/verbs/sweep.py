@@ -66,7 +66,7 @@ def sweep_document(
     units: bool = False,
     certify: bool = True,
 ) -> Document:
-    """The runs that the folder lacks are made; the document says what they gave."""
+    """The runs that the folder lacks are made; the document states their results."""
     valued, _ = typed(model, {"set_": requested.set_, "start": requested.start})
     ranges = [range_of(valued.model, word, starts=True) for word in requested.over]
     spreads = [spread_of(valued.model, word) for word in requested.random]
@@ -275,7 +275,7 @@ def _rows_proven(found: Sweep) -> Iterator[Check]:
 
 
 def replay_document(folder: str, run: int, *, output: str | None, samples: int | None) -> Document:
-    """One run of a sweep once more; what it gives is what stands in the table, bit for bit."""
+    """One run of a sweep once more; its results are those of the table, bit for bit."""
     if output is not None and Path(output).suffix.lower() not in (".csv", ".npz"):
         raise UsageError(f"no trajectory can be written as '{output}'", fix="endings are .csv, .npz")
     found = sweep_at(folder)

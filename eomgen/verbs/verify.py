@@ -1,4 +1,4 @@
-"""eomgen verify: are the equations of somebody right for a model?"""
+"""eomgen verify: decides whether equations derived by hand are right for a model."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ LARGEST = 1_000_000  # bytes of a file of answers
 
 @dataclass(frozen=True)
 class Answered:
-    """One equation of somebody.
+    """One equation to be judged.
 
     Args:
         text: the equation as it was written.
@@ -52,7 +52,7 @@ def verify_document(
     hint: int | None = None,
     certify: bool = True,
 ) -> Document:
-    """The verdicts, each with what it is up to or why it is wrong.
+    """The verdicts, each with the relations used or the reason why it is wrong.
 
     Args:
         equations: as they were typed; "-" reads them from stdin, one a line.

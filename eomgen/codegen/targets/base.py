@@ -23,7 +23,7 @@ class Address:
 
     Args:
         evaluate: of the function (t, x, p, c, inputs, dx).
-        p, c: of its parameters and of what they determine.
+        p, c: of its parameters and of the constants that they determine.
         constants: of the function (p, c) that makes the latter.
     """
 
@@ -39,7 +39,7 @@ class Functions:
     """A program in memory.
 
     Args:
-        constants: p, an array -> what the parameters determine, p included, in a form that only `one` reads.
+        constants: p, an array -> the constants of the parameters, p included, in a form that only `one` reads.
         one: (t, x, constants, inputs or None) -> a new array of the outputs; x with a after it, where a is an argument.
         many: the same of n instants at once: t n, x n x states, p, inputs None or n x inputs -> n x outputs.
         address: constants -> where all of it lies in memory, for other compiled functions; None where that is nowhere.
@@ -121,7 +121,7 @@ class Description:
 
     Args:
         title: the model's name.
-        origin: who made the file from what, one line.
+        origin: the program that made the file and its source, one line.
         remarks: of the name of an argument or output: its unit and what it is.
         vectors: right answers, for the self-test.
         role: of the program.
@@ -167,7 +167,7 @@ class Target:
 
     Args:
         name: its name on the command line.
-        about: the language, and what its files need.
+        about: the language, and the requirements of its files.
         text: (program, stem, role) -> its functions in the language.
         files: (stem, what is emitted, the right-hand side first) -> {path: content}, ready to be used by others.
         use: commands by which they are used and tested, a line each, with {stem}.
@@ -319,7 +319,7 @@ class FileForm:
     def statements(
         self, program: Program, stem: str, role: Role, remarks: Mapping[str, str] | None = None
     ) -> tuple[Statements, dict[str, Any]]:
-        """The functions of a program, and the words with what they give."""
+        """The functions of a program, and the words with their results."""
         words = self.words(program, stem, role)
         made = statements(program, self.language, role.result, self.prefix.format(**words), remarks)
         words |= {"constants": made.constants, "size": max(made.constants, 1)}
@@ -394,7 +394,7 @@ class FileForm:
         return self.vector.format(**{**words, **own})
 
     def number(self, value: float) -> str:
-        """A double, or what has no value."""
+        """A double, or the text of a missing value."""
         return self.nan if value != value else self.real(value)
 
     def array(self, values: Sequence[float]) -> str:

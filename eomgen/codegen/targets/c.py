@@ -214,7 +214,7 @@ FORM = FileForm(
 
 
 def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or what its role says."""
+    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or the names of its role."""
     return FORM.text(program, stem, role, remarks)
 
 
@@ -240,7 +240,7 @@ def apart(program: Program, stem: str, role: Role) -> str:
 
 
 def _apart(made: Statements, words: Mapping[str, Any]) -> str:
-    """The functions of a program, what is hidden in them under names of its own."""
+    """The functions of a program, with its own names for the hidden ones."""
     hidden = [C.called(op, ["0"] * 3).partition("(")[0] for op in sorted(made.ops & C.defined.keys())]
     hidden += [*(table.name for table in made.tables), *(function.name for function in made.kernels)]
     before = (f"#define {name} {words['others']}_hidden_{name}" for name in hidden)

@@ -120,7 +120,7 @@ def integrator_files(
 
     Args:
         start, values: of the states and parameters in `main`, None where one is missing.
-        rtol: there, where nobody says another.
+        rtol: the default there.
     """
     n, constants = len(program.states), max(statements(program, C, "dx", f"{stem}_").constants, 1)
     states = [x.name for x in program.states]

@@ -26,7 +26,7 @@ class _Buffers(threading.local):
 
 @dataclass(frozen=True)
 class _Constants:
-    """Parameters and what they determine, and where they lie."""
+    """Parameters and the constants that they determine, with their addresses."""
 
     p: np.ndarray
     c: np.ndarray

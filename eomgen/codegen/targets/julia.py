@@ -1,7 +1,7 @@
 """Program -> a Julia module NAME_rhs: `rhs(t, x, p, inputs=Float64[])`, over any real numbers.
 
 With it comes a test over the test vectors. No Julia runs here: the text is written to the same rules as the others',
-and nobody has run it; its head says so.
+and it has not been run by Julia; its head says so.
 """
 
 from __future__ import annotations

@@ -116,13 +116,13 @@ class Inertia(Result):
 
     @property
     def moments(self) -> dict[str, list[float]]:
-        """The three principal moments in numbers, by "plate" or "O", of what has them [kg m^2]."""
+        """The three principal moments in numbers, by "plate" or "O", of the bodies that have them [kg m^2]."""
         found = {of: [self.results.get(f"I_{k}({of})") for k in (1, 2, 3)] for of in self.axes}
         known = {of: [x.value for x in each if x is not None and x.value is not None] for of, each in found.items()}
         return {of: each for of, each in known.items() if len(each) == 3}
 
     def certify(self) -> Certificate:
-        """Check shapes, parts and all that is stated of them against quadratures of what the shapes fill."""
+        """Check shapes, parts and all that is stated of them against quadratures over the volumes of the shapes."""
         checks = mass_checks(self.system.motion, self.stated, self.start or tried(self.system.scope))
         return Certificate((*checks, *other_parameters(self.system.scope)))
 

@@ -116,7 +116,7 @@ def grid(section: Section, head: tuple[Cell, ...], rows: Sequence[Sequence[str |
 
 
 def _bounded(x: Scalar, most: int) -> Scalar | Omitted:
-    """A formula of at most so many characters; of a longer one how large it is."""
+    """A formula of at most so many characters; of a longer one its size."""
     return x if text_size(x) <= most else Omitted(((x,),))
 
 
@@ -319,7 +319,7 @@ class InertiaRow:
         return matrix_times(self.sign, self.mass.I)
 
     def shift(self, point: Vector) -> Matrix:
-        """m (d.d 1 - d d^T), what the parallel axes add, as it counts."""
+        """m (d.d 1 - d d^T), the parallel-axis term, with the sign of the piece."""
         without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
         return matrix_times(self.sign, about(without, point))
 

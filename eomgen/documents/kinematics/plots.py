@@ -226,7 +226,7 @@ class _Panels:
             arrow(panel, at, (scale * x, scale * y), color=REACTION, outward=True)
 
     def _centers(self, panel: Any) -> list[str]:
-        """Centres in sight as crosses; what is said of the others."""
+        """Centres in sight as crosses; words on the others."""
         places: dict[tuple[float, float], list[str]] = {}
         far = []
         for center in self.mechanism.centers.values():
@@ -281,7 +281,7 @@ class _Panels:
         return found
 
     def _blocks(self) -> list[tuple[str, str, tuple[str, ...]]]:
-        """(colour, name, bodies) of what moves."""
+        """(colour, name, bodies) of the moving blocks."""
         moved = [(name, bodies) for name, bodies in self.mechanism.blocks.items() if name != FIXED]
         return [(COLORS[k % len(COLORS)], name, bodies) for k, (name, bodies) in enumerate(moved)]
 

@@ -212,7 +212,7 @@ def _place_cells(place: Vector | None, shown: Shown) -> tuple[Cell, Cell]:
 
 
 def centrodes_step(found: Sequence[Centrodes], positive: frozenset[Node]) -> tuple[Step, ...]:
-    """The curves on which centres of rotation run, and what they are where they are simple."""
+    """The curves on which centres of rotation run, and their names where they are simple curves."""
     statements: list[Statement] = []
     for centrodes in found:
         words = f"{centrodes.body}: its centre of rotation in the axes of the ground, and in its own:"
@@ -376,7 +376,7 @@ def _is_particle(system: System, owner: str | None, point: str) -> bool:
 
 
 def _in_frame(system: System, particle: str, body: str, readable: Readable) -> tuple[Step, ...]:
-    """m a_r = F - m a_t - m a_C in the axes of the body; F: what is applied, and reactions."""
+    """m a_r = F - m a_t - m a_C in the axes of the body; F: applied forces and reactions."""
     parts = composition_of(system.motion, f"{particle}.origin", body)
     m, letters = mass_properties(system.scope, particle).m, axes(system)
     ground = {
@@ -400,7 +400,7 @@ def _in_frame(system: System, particle: str, body: str, readable: Readable) -> t
 
 
 def applied_force(system: System, body: str) -> Vector:
-    """The sum of what is applied to a body, drives and springs of its joint included, ground axes."""
+    """The sum of the forces applied to a body, drives and springs of its joint included, ground axes."""
     motion, loads = system.motion, system.loads
     found = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
     found += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]

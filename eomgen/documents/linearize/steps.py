@@ -450,7 +450,7 @@ def printed_modes(derivation: Document) -> PrintedModes:
 
 
 def _named(statements: list[Any]) -> Iterator[tuple[str, Side]]:
-    """(M, what it is) of formulas that begin with a letter."""
+    """(M, its meaning) of formulas that begin with a letter."""
     for statement in statements:
         if isinstance(statement, Formula) and isinstance(statement.sides[0], Law) and len(statement.sides) == 2:
             yield statement.sides[0].text, statement.sides[1]
@@ -525,7 +525,7 @@ def _near(reference: ReferenceMotion) -> str:
 
 
 def _family(modes: Modes, family: Family) -> list[Statement]:
-    """Its conditions, what follows from what is held, and all motions with the same values held."""
+    """Its conditions, the dependent values, and all motions with the same given values."""
     found: list[Statement] = []
     if family.conditions and max(map(text_size, family.conditions)) <= LONG_CONDITION:
         words = "it rests where" if _at_rest(modes) else "a motion is steady where"

@@ -118,7 +118,7 @@ class StaticScene:
                 yield self.sketch.position(load.place), (x, y), LOAD, self._named(acting.name, math.hypot(x, y), "N")
 
     def _named(self, load: str, size: float, unit: str) -> str:
-        """A load by its name, and how large it is."""
+        """A load by its name, with its size."""
         return f"{load} = {self.scale.text(size, unit)}" if self.known else load
 
     def _vector(self, vector: Any, axes: str | None) -> PagePoint:
@@ -156,7 +156,7 @@ class StaticScene:
                 yield acting.load, self._spread_label(acting.load, acting.name)
 
     def _spread_label(self, load: SpreadLoad, name: str) -> str:
-        """Its name, and how large it is: at both ends where it changes."""
+        """Its name, with its size: at both ends where it changes."""
         sizes = [math.hypot(*self.sketch.numbers(q[:2])) for q in (load.at_start, load.at_end)]
         texts = list(dict.fromkeys(self.scale.number(size) for size in sizes))
         return f"{name} = {' to '.join(texts)} {self.scale.unit('N/m')}" if self.known else name
@@ -281,7 +281,7 @@ def _spread(panel: Any, scene: StaticScene, load: SpreadLoad, name: str) -> None
 
 
 def _members(panel: Any, scene: StaticScene) -> None:
-    """The force of every member of a truss, along it, and what the colours say."""
+    """The force of every member of a truss, along it, and the meaning of the colours."""
     drawn = False
     for truss, member, (first, second) in members_of(scene.statics.system):
         reaction = scene.statics.by_name.get(f"tension({truss}, {member})")

@@ -56,7 +56,7 @@ def sections_of(reactions: Reactions) -> Sections:
 
 
 def section_steps(sections: Sections) -> tuple[Step, ...]:
-    """A step for each body, pieces as rows of a table; what has none, with the reason."""
+    """A step for each body, pieces as rows of a table; bodies without section forces with the reason."""
     steps = [
         Step(f"section_{body}", f"Section forces of {body}", tuple(_of_body(forces, number)))
         for number, (body, forces) in enumerate(sections.found.items())

@@ -69,7 +69,7 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
 
 
 def _named(statics: StaticReactions) -> tuple[dict[str, Node], dict[str, Symbol]]:
-    """(a symbol for each reaction by its name, how they are set in LaTeX where that is declared)."""
+    """(a symbol for each reaction by its name, their LaTeX symbols where declared)."""
     letters = lettered(statics.balance, statics.system.scope.names)
     graph, taken = statics.system.scope.graph, {*statics.system.scope.names, *letters.names}
     found: dict[str, Node] = {}
@@ -200,7 +200,7 @@ def sum_name(statics: StaticReactions, each: StaticSum) -> str:
 
 
 def static_reactions_step(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str, float]) -> Step:
-    """All reactions: what each is, exact and in numbers."""
+    """All reactions: the meaning of each, exact and in numbers."""
     rows: list[tuple[Cell, ...]] = []
     for reaction in statics.reactions:
         value = reaction.value
