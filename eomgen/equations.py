@@ -10,16 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.certificate import certify
-from eomgen.codegen.program import Program, right_hand_side
+from eomgen.codegen.program import Program
 from eomgen.codegen.programs import (
     InverseDynamics,
     RateSlopes,
     ReactionFunction,
     RequestedOutputs,
-    determinate,
-    outputs_of_state,
-    reactions_program,
-    slopes_of,
 )
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.documents.derivation import derivation_of, printed_formulas
@@ -32,29 +28,28 @@ from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.dynamics.formulations import derived_by
+from eomgen.mechanics.dynamics.formulations import derived_by, reported_of_nodes
 from eomgen.mechanics.dynamics.matrices import coriolis_of, gravity_of, jacobian_of_point
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
-from eomgen.mechanics.dynamics.wellposed import refuse_massless
-from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_rest
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.reactions.inverse import inverse_of
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.start.state import start_state
 from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.printed import Printed
+from eomgen.study import Study
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.text import as_expression
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.work import Work, doing, growing
+from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import text_size
 
 if TYPE_CHECKING:
-    from eomgen.mechanics.linearization.first_order import FirstOrder
+    pass
 
 FEW = 200  # operations of a matrix that a person reads
 
@@ -73,14 +68,22 @@ class Equations(Result):
         model: the model.
         method: by which they are derived: one of `formulations.METHODS`. `derived` has them by the method's own way;
             `graph` the same functions in their shortest form, the recursion over the tree, which code runs.
-        graph: the equations as graph scalars.
-        assumptions: what had to be assumed of contacts: "floor assumed closed: h has no value".
+        study: what is derived of the model with its contacts in one mode, `graph` among it.
     """
 
     model: Model
     method: str
-    graph: EquationsOfMotion
-    assumptions: tuple[str, ...] = ()
+    study: Study
+
+    @property
+    def graph(self) -> EquationsOfMotion:
+        """The equations as graph scalars."""
+        return self.study.derived
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """What had to be assumed of massless nodes and of contacts: "floor assumed closed: h has no value"."""
+        return (*reported_of_nodes(self.model), *self.study.assumptions)
 
     def __repr__(self) -> str:
         names = self.coordinates[:SHOWN] + ("...",) * (len(self.coordinates) > SHOWN)
@@ -90,7 +93,7 @@ class Equations(Result):
     @property
     def system(self) -> System:
         """Motion, loads and constraints."""
-        return self.graph.system
+        return self.study.system
 
     @property
     def coordinates(self) -> tuple[str, ...]:
@@ -180,13 +183,7 @@ class Equations(Result):
         nodes = (s.t, *s.parameters.values(), *s.q, *s.u)
         known: dict[Any, Any] = dict(zip(nodes, map(float, values), strict=True))
         own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
-        return slopes_at(self._first_order, known | dict(zip(s.inputs.values(), own, strict=True)), single=single)
-
-    @cached_property
-    def _first_order(self) -> FirstOrder:
-        from eomgen.mechanics.linearization.first_order import FirstOrder
-
-        return FirstOrder(self.system, ())
+        return slopes_at(self.study.first_order, known | dict(zip(s.inputs.values(), own, strict=True)), single=single)
 
     def to_sympy_system(self) -> Any:
         """A SymbolicSystem of sympy.physics.mechanics: q' by q and u, M and forcing; theta' is theta_dot(t).
@@ -232,68 +229,52 @@ class Equations(Result):
         """The equations by the method's own way, friction left out: what the derivation writes."""
         return derived_by(self.method, self.system)
 
-    @cached_property
+    @property
     def program(self) -> Program:
         """The right-hand side as a straight-line program.
 
         Raises:
             ModelError: a free coordinate moves no mass.
         """
-        refuse_massless(self.graph)
-        with growing():
-            return right_hand_side(self._explicit)
+        return self.study.program
 
-    @cached_property
+    @property
     def reactions(self) -> Reactions:
         """Every reaction of joints and constraints, in q, u and the accelerations.
 
         Raises:
             DerivationError: a body is unsupported; a force has no point of application.
         """
-        return reactions_of(self.system)
+        return self.study.reactions
 
-    @cached_property
+    @property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
-        refuse_massless(self.graph)
-        return reactions_program(self.reaction_values, self._explicit)
+        return self.study.reactions_program
 
-    @cached_property
+    @property
     def reaction_values(self) -> dict[str, Scalar]:
         """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
-        values = determinate(self.reactions)
-        return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
+        return self.study.reaction_values
 
-    @cached_property
+    @property
     def requested_outputs(self) -> RequestedOutputs:
         """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
-        found = outputs_of_state(self.system)
-        values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
-        return replace(found, values=values)
+        return self.study.requested_outputs
 
-    @cached_property
+    @property
     def outputs_program(self) -> Program:
         """The outputs that are functions of the state; accelerations as in the right-hand side."""
-        refuse_massless(self.graph)
-        return reactions_program(self.requested_outputs.values, self._explicit)[1]
+        return self.study.outputs_program
 
-    @cached_property
+    @property
     def slopes(self) -> RateSlopes:
         """A = d x'/d x, B = d x'/d inputs as graph scalars, and the systems behind the unknowns that they hold.
 
         Raises:
             DerivationError: the mass matrix is singular whatever the state.
         """
-        refuse_massless(self.graph)
-        return slopes_of(self._explicit)
-
-    @property
-    def _explicit(self) -> EquationsOfMotion:
-        """The equations of motion as code has them: explicit where that is shorter, finite where nothing slides."""
-        equations = with_accelerations(self.graph)
-        if not equations.friction or equations.accelerations is None:
-            return equations
-        return replace(equations, accelerations=with_rest(self.system, equations.accelerations))
+        return self.study.slopes
 
     def certify(self, target: str | None = "numpy", printed: Printed | None = None) -> Certificate:
         """Check the equations by independent routes, and the code that `target` emits against the symbols.

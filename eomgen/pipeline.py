@@ -13,17 +13,14 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import recalled
 from eomgen.mechanics.constraints.rows import limits_passed
-from eomgen.mechanics.dynamics.formulations import METHODS, reported_of_nodes, with_nodes_balanced
-from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.dynamics.formulations import METHODS, with_nodes_balanced
 from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs
 from eomgen.model.samples import left_tables
 from eomgen.model.unknowns import refuse_motion
+from eomgen.study import Study, study_of, study_of_modes
 from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import doing, growing
@@ -63,17 +60,18 @@ def derive(
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", fix=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
+    study = study_of(model) if contacts is None else study_of_modes(model, contacts)
     if contacts is None:
-        return recalled(model, method, lambda: _derived(model, method, contacts_at_start(model)))
-    return _derived(model, method, ContactsAtStart(contacts))
+        return recalled(model, method, lambda: _derived(model, method, study))
+    return _derived(model, method, study)
 
 
-def _derived(model: Model, method: str, at_start: ContactsAtStart) -> Equations:
-    system = system_of(model, at_start.modes)
+def _derived(model: Model, method: str, study: Study) -> Equations:
     if method == "kinetostatic":
-        reactions_of(system)  # refuses joints and constraints that cannot carry the motion
-    equations = equations_of_motion(system)
-    return Equations(model, method, equations, (*reported_of_nodes(model), *at_start.assumptions))
+        _ = study.reactions  # refuses joints and constraints that cannot carry the motion
+    equations = Equations(model, method, study)
+    _ = equations.graph
+    return equations
 
 
 def inverse_dynamics(

@@ -13,8 +13,8 @@ from eomgen.documents.kinematics.plots import centrode_panel
 from eomgen.documents.kinematics.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
 from eomgen.questions.at_instant import parameters_of
-from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.study import Study
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.text import parse
 
@@ -58,7 +58,7 @@ def rows_of(steps, key: str) -> dict[str, tuple[str, ...]]:
     return {row[0]: tuple(row[1:]) for grid in grids for row in grid["rows"]}
 
 
-def same(phase: PhaseEquations, *texts: str) -> bool:
+def same(phase: Study, *texts: str) -> bool:
     """Whether two texts are one function."""
     first, second = (parse(text).evaluate(phase.system.scope.names) for text in texts)
     return equal(first, second)

@@ -25,6 +25,7 @@ CHAIN = (
     ("mechanics",),
     ("codegen",),
     ("simulation",),
+    ("study",),
     ("proof",),
     ("certificate",),
     ("scene",),

@@ -17,14 +17,13 @@ from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.pieces import Extent
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, per_speed, system_of
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, per_speed
 from eomgen.mechanics.equilibrium.search import Equilibrium, all_equilibria
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.integrals.first_integrals import where_momenta_hold
 from eomgen.mechanics.integrals.speeds import rates_and_extent, relations_of
 from eomgen.mechanics.kinematics.scene import let_go
 from eomgen.mechanics.start.exact import ExactStart, known_parameters
-from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.model.fields import AtRest, Table, WrittenEquation
@@ -32,9 +31,9 @@ from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model, Output
 from eomgen.questions import answers
 from eomgen.questions.answers import Answer
-from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.simulation.contacts import has_phases
+from eomgen.study import Study, study_of
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.formula import Call, Expression, Reference, inner
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
@@ -61,11 +60,11 @@ class Case:
         return MotionFromStart(self.model, self.at_rest)
 
     @cached_property
-    def phase(self) -> PhaseEquations:
+    def phase(self) -> Study:
         """The equations as `derive` gives them; of a motion that has begun those of its first phase."""
         if self.begun or not self.model.coordinates or not has_phases(self.model):
             return self.motion.phase
-        return PhaseEquations(system_of(self.model, contacts_at_start(self.model).modes))
+        return study_of(self.model)
 
     @cached_property
     def start(self) -> Mapping[Node, Scalar]:

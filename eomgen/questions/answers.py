@@ -35,8 +35,7 @@ from eomgen.mechanics.instant.quantities import requests_motion, requests_of
 from eomgen.mechanics.instant.velocity_analysis import InstantKinematics, instant_kinematics_of
 from eomgen.mechanics.integrals.first_integrals import stay_constant
 from eomgen.mechanics.integrals.speeds import rates_and_extent
-from eomgen.mechanics.start.exact import known_exactly, known_parameters
-from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.start.exact import known_parameters
 from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import SMALL_MOTIONS
@@ -46,10 +45,10 @@ from eomgen.model.replaced import Values
 from eomgen.model.units import units_of_outputs
 from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
-from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart, leaves_at
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
+from eomgen.study import Study, exact_numbers
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Call
@@ -155,7 +154,7 @@ class _Solver:
         return {at_rest: MotionFromStart(self.model, at_rest) for at_rest in (False, True)}
 
     @property
-    def phase(self) -> PhaseEquations:
+    def phase(self) -> Study:
         """The first phase: contacts as they are at the start."""
         return self.motions[False].phase
 
@@ -284,18 +283,18 @@ class _Solver:
             return answer
         symbols = phase.system.symbols
         try:
-            state = start_state(phase.system)
+            state = phase.state_at_start
             numbers = {x: state[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
             return self._defined(answer, output, phase, numbers)
         except (KeyError, MissingValues):
             return answer
 
-    def _defined(self, answer: Answer, output: Output, phase: PhaseEquations, numbers: Mapping[Node, float]) -> Answer:
+    def _defined(self, answer: Answer, output: Output, phase: Study, numbers: Mapping[Node, float]) -> Answer:
         """Answer with the value of the formula itself at the start, instead of that of its closed form.
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
-        found = phase.number(output.value, {**known_exactly(phase.system.scope), **numbers})
+        found = phase.number(output.value, {**phase.parameters, **numbers})
         value = found if output.unit is None else float(output.unit.from_si(found, math.pi))
         message = None if answer.value is None else answer.message
         return _valued(replace(answer, value=None, message=message), value, "at the start")
@@ -398,14 +397,14 @@ class _Solver:
     @cached_property
     def _begun(self) -> dict[str, Scalar | float]:
         """Coordinates and speeds at the start, exact where they have a closed form, so that zeros are exact."""
-        values: dict[str, Scalar | float] = {**start_state(self.phase.system)}
+        values: dict[str, Scalar | float] = {**self.phase.state_at_start}
         exact = {**self.motions[False].begun.exact, **self.phase.system.loads.begun}
         closed = zip(exact, substituted(tuple(exact.values()), self._parameters), strict=True)
         return values | {x.name: value for x, value in closed if x.name in values and not symbols_of((value,))}
 
     @cached_property
     def _parameters(self) -> dict[Node, Scalar]:
-        return known_exactly(self.phase.system.scope)
+        return self.phase.parameters
 
     # -- at an instant -------------------------------------------------------------------------
 
@@ -477,11 +476,11 @@ class _Solver:
                 fix="give every parameter a value in [parameters]",
             )
         phase = moment.phase
-        value = phase.number(output.value, {**known_exactly(phase.system.scope), **moment.numbers})
+        value = phase.number(output.value, {**phase.parameters, **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 
-def _jump(phase: PhaseEquations, output: Output, numbers: Mapping[Node, float]) -> str:
+def _jump(phase: Study, output: Output, numbers: Mapping[Node, float]) -> str:
     """Message if accelerations and reactions have no number at the start: a force jumps with the sign of a rate."""
     if not signs_of_rates(phase.system) or not phase.needs_equations(output.value):
         return ""

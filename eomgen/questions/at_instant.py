@@ -12,8 +12,8 @@ from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.integrals.laws import ClosedInstant
 from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.model.values import exact_parameters, numeric_parameters
-from eomgen.questions.in_phase import PhaseEquations
 from eomgen.simulation.motion import FirstTime, values_of
+from eomgen.study import Study
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, transplanted
@@ -30,13 +30,13 @@ class StateAtInstant:
         method: name of the method by which the instant was found.
     """
 
-    phase: PhaseEquations
+    phase: Study
     exact: Mapping[Node, Scalar]
     numbers: Mapping[Node, float]
     method: str
 
 
-def carried(moment: StateAtInstant, phase: PhaseEquations) -> dict[Node, Scalar]:
+def carried(moment: StateAtInstant, phase: Study) -> dict[Node, Scalar]:
     """Exact end of a phase as the start of the next; {} where it is not exact.
 
     A displacement that the phase before did not have is 0.
@@ -61,7 +61,7 @@ def _with_rates(moment: StateAtInstant, known: dict[str, Scalar]) -> dict[str, S
     return {f"{q.name}'": rate for q, rate in zip(scope.symbols.q, rates, strict=True)} | known
 
 
-def placed(phase: PhaseEquations, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
+def placed(phase: Study, known: Mapping[Node, Scalar], numbers: Mapping[Node, float]) -> dict[Node, Scalar]:
     """Known values of a state, with the coordinates that the constraints then fix, where they have a closed form.
 
     Args:
@@ -99,7 +99,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
     exact = {**place.exact, **_still(system)}
     numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}
-    return StateAtInstant(PhaseEquations(system), exact, numbers, f"balance of all forces at rest{held}")
+    return StateAtInstant(Study(system), exact, numbers, f"balance of all forces at rest{held}")
 
 
 def _held(system: System) -> StateAtInstant:
@@ -108,16 +108,14 @@ def _held(system: System) -> StateAtInstant:
 
     holding = holding_of(system)
     system = holding.statics.system
-    return StateAtInstant(
-        PhaseEquations(system), {**holding.place, **holding.unknowns, **_still(system)}, {}, "virtual work"
-    )
+    return StateAtInstant(Study(system), {**holding.place, **holding.unknowns, **_still(system)}, {}, "virtual work")
 
 
 def _still(system: System) -> dict[Node, Scalar]:
     return {system.symbols.t: 0, **dict.fromkeys(system.symbols.u, 0)}
 
 
-def parameters_of(phase: PhaseEquations) -> dict[Node, float]:
+def parameters_of(phase: Study) -> dict[Node, float]:
     """The values of the parameters."""
     values = numeric_parameters(phase.model)
     return {phase.system.symbols.parameters[name]: float(x) for name, x in values.items()}
@@ -133,7 +131,7 @@ TRIALS = (1.3, 3, 8, 20)  # how far from 1 values are tried for parameters that 
 
 
 def reached(
-    phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
+    phase: Study, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
 ) -> StateAtInstant:
     """State at the first instant after the start at which the condition is 0; the start itself does not count.
 
@@ -149,7 +147,7 @@ def reached(
 
 
 def closed_form(
-    phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
+    phase: Study, condition: Scalar, start: Mapping[Node, Scalar], numbers: Mapping[Node, float]
 ) -> tuple[State, str]:
     """State in closed form where the condition holds, and the name of the method.
 
@@ -161,13 +159,13 @@ def closed_form(
     return _search(phase, condition, start).closed(dict(numbers), _values(phase))
 
 
-def _search(phase: PhaseEquations, condition: Scalar, start: Mapping[Node, Scalar]) -> _Search:
+def _search(phase: Study, condition: Scalar, start: Mapping[Node, Scalar]) -> _Search:
     own = {node: phase.system.inputs[name] for name, node in phase.system.symbols.inputs.items()}
     *accelerations, condition = substituted((*phase.accelerations, condition), own)
     return _Search(phase, tuple(accelerations), condition, dict(start))
 
 
-def _values(phase: PhaseEquations) -> State:
+def _values(phase: Study) -> State:
     return values_of(phase.system.symbols.parameters, exact_parameters(phase.model))
 
 
@@ -175,7 +173,7 @@ def _values(phase: PhaseEquations) -> State:
 class _Search:
     """Search for an instant; arguments as of `reached`, inputs replaced by their own functions of time."""
 
-    phase: PhaseEquations
+    phase: Study
     accelerations: tuple[Scalar, ...]
     condition: Scalar
     start: State

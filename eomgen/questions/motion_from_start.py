@@ -24,17 +24,16 @@ from eomgen.mechanics.dynamics.pieces import Extent
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.start.exact import ExactStart, known_exactly
-from eomgen.mechanics.statics.contacts import contacts_at_start, modes_at_rest
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.run import RunProof
 from eomgen.simulation.constraint_drift import nearness_of, projection_of
 from eomgen.simulation.contacts import by_the_law, has_phases
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.phase_run import PhaseRun, joined
 from eomgen.simulation.result import Trajectory
+from eomgen.study import Study, study_at_rest, study_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -96,13 +95,13 @@ class MotionFromStart:
         return {f"{q}'": 0.0 for q in free} if self.at_rest else None
 
     @cached_property
-    def phase(self) -> PhaseEquations:
+    def phase(self) -> Study:
         """The first phase: contacts as they are at the start; bodies without coordinates rest on theirs."""
         if not self.model.coordinates:
-            return phase_equations_of(self.model, modes_at_rest(self.model))
+            return study_at_rest(self.model)
         if self.models is None:
-            return phase_equations_of(self.model, contacts_at_start(self.model).modes)
-        return PhaseEquations(self.models.of(by_the_law(self.model, self._first.configuration)).system)
+            return study_of(self.model)
+        return Study(self.models.of(by_the_law(self.model, self._first.configuration)).system)
 
     @property
     def failure(self) -> str:
@@ -117,7 +116,7 @@ class MotionFromStart:
     @cached_property
     def begun(self) -> ExactStart:
         """The start at which the constraints hold."""
-        return ExactStart(self.phase.system, self.at_rest)
+        return self.phase.start_from_rest if self.at_rest else self.phase.start
 
     @cached_property
     def start(self) -> dict[Node, Scalar]:
@@ -181,7 +180,7 @@ class MotionFromStart:
 
     def _within(
         self,
-        phase: PhaseEquations,
+        phase: Study,
         condition: WrittenEquation,
         start: Mapping[Node, Scalar],
         numbers: Mapping[Node, float],
@@ -195,7 +194,7 @@ class MotionFromStart:
             self._refuse_ended(moment)
         return moment
 
-    def _starts_in_balance(self, phase: PhaseEquations) -> bool:
+    def _starts_in_balance(self, phase: Study) -> bool:
         """True if the motion stays at the start: it is at rest there, and in equilibrium."""
         symbols = phase.system.symbols
         first = self._numeric_first
@@ -252,7 +251,7 @@ class MotionFromStart:
         assert self.models is not None
 
         def until(phase: PhaseModel) -> Scalar:
-            return difference_of(PhaseEquations(phase.system), condition)
+            return difference_of(Study(phase.system), condition)
 
         for horizon in HORIZONS:
             runs = list(through(self.models, self._first, Plan(horizon, fine_stepping(), None, until)))
@@ -271,7 +270,7 @@ class MotionFromStart:
         """State at the end of the last phase; the end of every phase is sought in closed form."""
         moment = StateAtInstant(self.phase, self.start, {}, "")
         for k, run in enumerate(runs):
-            phase = PhaseEquations(run.phase.system)
+            phase = Study(run.phase.system)
             exact = {} if k and _jumps(runs[k - 1].end, run.here.values) else carried(moment, phase)
             ended_by = difference_of(phase, condition) if run.bound is None else run.bound.value
             moment = _end_of(phase, run, ended_by, exact)
@@ -279,7 +278,7 @@ class MotionFromStart:
         if side != "after" or after is None:
             return moment
         assert self.models is not None
-        phase = PhaseEquations(self.models.of(after.configuration).system)
+        phase = Study(self.models.of(after.configuration).system)
         exact = {} if _jumps(runs[-1].end, after.values) else carried(moment, phase)
         return StateAtInstant(phase, exact, _numbers(phase, after.t, after.values), moment.method)
 
@@ -291,9 +290,7 @@ def fine_stepping() -> Stepping:
     return Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=MOST_STEPS)
 
 
-def _end_of(
-    phase: PhaseEquations, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]
-) -> StateAtInstant:
+def _end_of(phase: Study, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]) -> StateAtInstant:
     """State at the end of a phase: in numbers as it was run, exact where the closed form agrees with them.
 
     Args:
@@ -314,7 +311,7 @@ def _end_of(
     return replace(by_time, exact=placed(phase, exact, numbers), method=way or by_time.method)
 
 
-def _numbers(phase: PhaseEquations, t: float, values: Mapping[str, float]) -> dict[Node, float]:
+def _numbers(phase: Study, t: float, values: Mapping[str, float]) -> dict[Node, float]:
     """State by the symbols of a phase; a displacement that does not exist yet is 0."""
     symbols = phase.system.symbols
     return {symbols.t: t} | {node: values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)}
@@ -326,7 +323,7 @@ def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
     return any(abs(end[name] - start[name]) > CARRIED * (1 + abs(end[name])) for name in common)
 
 
-def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
+def _is_moved_by_time(first: PhaseModel, phase: Study) -> bool:
     """True if a given motion, or a force that changes with time, can end a state of rest."""
     symbols, coordinates = phase.system.symbols, phase.model.coordinates
     moving = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
@@ -334,7 +331,7 @@ def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
     return any(depends_on(scalar, moving) for scalar in (*phase.accelerations, *bounds))
 
 
-def difference_of(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
+def difference_of(phase: Study, condition: WrittenEquation) -> Scalar:
     """Left side minus right side as a function of q, u and t."""
     return phase.of_state(condition.left) - phase.of_state(condition.right)
 
@@ -455,7 +452,7 @@ def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
     assert condition is not None and not isinstance(condition, AtRest)
     for run in runs:
         phase = run.phase
-        scalar = difference_of(PhaseEquations(phase.system), condition)
+        scalar = difference_of(Study(phase.system), condition)
         if type(scalar) is not Node:
             continue
         track = run.run.tracks[0] if run.run.tracks else None

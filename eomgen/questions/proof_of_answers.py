@@ -41,10 +41,10 @@ from eomgen.proof.instant import instant_checks, second_definition, values_of
 from eomgen.proof.parameters import other_data
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.questions.at_instant import StateAtInstant
-from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart, parameters_in_numbers, run_from_start, wrong_way
 from eomgen.questions.velocities import state_of
 from eomgen.simulation.result import Trajectory
+from eomgen.study import Study
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.formula import Call
 from eomgen.symbolic.expression.node import Node, Scalar, holds_op
@@ -257,7 +257,7 @@ class _Proof:
             return self.solver.at_rest
         return self.solver.motions[output.from_ == "rest"].until(output.at, output.side)
 
-    def _state(self, phase: PhaseEquations, numbers: Mapping[Node, float]) -> NumericState:
+    def _state(self, phase: Study, numbers: Mapping[Node, float]) -> NumericState:
         key = id(phase), tuple(numbers.values())
         if key not in self._states:
             state = {phase.system.symbols.t: 0.0, **numbers}

@@ -353,7 +353,7 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
         UsageError: see `stabilized`.
     """
     pulled = stabilized(assembled_by_recursion(equations.graph.system), rates)
-    return replace(equations, graph=with_friction(pulled))
+    return replace(equations, study=replace(equations.study, replaced=with_friction(pulled)))
 
 
 def _reported(found: Trajectory, until: str | None) -> Trajectory:

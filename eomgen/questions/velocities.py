@@ -26,8 +26,8 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, equation_typed
 from eomgen.model.values import exact_parameters
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
-from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.study import Study, exact_numbers
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.node import Node, State, is_zero
@@ -148,7 +148,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     return replace(found, accelerated=accelerated, rounded=rounded, equations=equations)
 
 
-def _sees_time(phase: PhaseEquations) -> bool:
+def _sees_time(phase: Study) -> bool:
     """True if poses or velocities of bodies depend on time explicitly."""
     links, t = phase.system.motion.links, phase.system.symbols.t
     return any(depends_on(x, (t,)) for link in links for x in (*link.pose.p, *link.twist.w, *link.twist.v, *link.s))
@@ -161,7 +161,7 @@ def _moment(motion: MotionFromStart, at: WrittenEquation | None) -> StateAtInsta
     return StateAtInstant(motion.phase, motion.start, motion.numbers, "at the start")
 
 
-def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
+def _with_accelerations(phase: Study, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
     """State with the accelerations of the equations of motion, {} without them; True if they are numbers.
 
     They are numbers where their formulas would be long, and missing where no motion follows or no values are known.

@@ -9,9 +9,8 @@ from collections.abc import Iterable, Iterator
 from itertools import combinations, pairwise
 
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.shapes.forms import ArcForm, PolygonForm
 from eomgen.model.trusses import is_node
@@ -27,6 +26,7 @@ from eomgen.scene.connections import (
 )
 from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
+from eomgen.study import study_of
 from eomgen.symbolic.expression.derivative import derivative
 from eomgen.symbolic.expression.node import Node, collected, is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -65,7 +65,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
 def scene_of(model: ModelOrPath) -> Scene:
     """Scene of a model: its drawable elements at a state, forces left out."""
     model = with_nodes_balanced(model_at(model))
-    return scene_of_system(system_of(model, contacts_at_start(model).modes))
+    return scene_of_system(study_of(model).system)
 
 
 def named_points(system: System) -> Iterator[tuple[str, Vector]]:

@@ -24,10 +24,10 @@ from eomgen.model.values import numeric_parameters, start_values
 from eomgen.pipeline import simulator
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.answers import solve
-from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.of_a_run import requested_of
 from eomgen.simulation.contacts import changing, has_phases
 from eomgen.simulation.solvers import breakpoints_of, solver_of, step
+from eomgen.study import Study
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.node import Node, Scalar
@@ -71,7 +71,7 @@ class ChangingRun:
 
 
 def changing_run(
-    phase: PhaseEquations,
+    phase: Study,
     start: tuple[np.ndarray, Mapping[str, np.ndarray]],
     changes: Mapping[str, Seeds],
     formulas: Mapping[str, Expression],
@@ -109,7 +109,7 @@ def changing_run(
     return ChangingRun(instants, dict(zip(formulas, columns, strict=False)), slopes)
 
 
-def _rates(phase: PhaseEquations) -> tuple[Scalar, ...]:
+def _rates(phase: Study) -> tuple[Scalar, ...]:
     """x' as functions of t, x and the parameters."""
     equations, a = phase.equations, phase.system.symbols.a
     known = equations.accelerations if not equations.J and equations.accelerations else phase.accelerations
@@ -173,7 +173,7 @@ class ChangingState:
         seeds: how they change.
     """
 
-    phase: PhaseEquations
+    phase: Study
     numbers: Mapping[Node, Any]
     seeds: Seeds
 

@@ -28,7 +28,6 @@ from eomgen.mechanics.linearization.modes import MATRICES
 from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes
 from eomgen.mechanics.start.exact import Seeds, parameter_seeds, start_seeds
 from eomgen.mechanics.start.state import start_state
-from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.fields import AtRest, Table
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, names_of
 from eomgen.model.parts import Model, Output
@@ -37,10 +36,10 @@ from eomgen.model.replaced import Values
 from eomgen.model.units import units_of
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Certificate, Check, Tally, checked, differing
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.of_a_run import requested_of
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation.integrate import instants_of
+from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import jacobian, substituted, tangent
@@ -154,7 +153,7 @@ class Sensitivity(Result):
         """The text at the parameters, and where the motion starts."""
         formula, known = parse(text), {**numeric_parameters(self.model), "pi": math.pi, "t": 0.0}
         if formula.names - known.keys():
-            known |= start_state(_Asking(self.model).phase.system)
+            known |= _Asking(self.model).phase.state_at_start
         if missing := formula.names - known.keys():
             raise NoValue(f"no value of {', '.join(sorted(missing))}")
         return differing(float(formula.evaluate(known)), due)
@@ -299,8 +298,8 @@ class _Asking:
     model: Model
 
     @cached_property
-    def phase(self) -> PhaseEquations:
-        return phase_equations_of(self.model, contacts_at_start(self.model).modes)
+    def phase(self) -> Study:
+        return study_of(self.model)
 
     @cached_property
     def small(self) -> Linearization:
@@ -375,7 +374,7 @@ class _Asking:
             return self._of_small_motions(output.value, name)
         return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
 
-    def _changed(self, name: str, phase: PhaseEquations | None = None) -> Seeds:
+    def _changed(self, name: str, phase: Study | None = None) -> Seeds:
         """Derivatives of the parameters by a name; {} where the name is no parameter."""
         scope = (phase or self.phase).system.scope
         return parameter_seeds(scope, name) if name in self.model.parameters else {}
@@ -416,7 +415,7 @@ class _Asking:
     def _at_rest(self, formula: Expression, name: str) -> Derived:
         """Value and derivative at the equilibrium, which moves with the parameter."""
         reference = self.small.small.reference
-        phase = PhaseEquations(reference.system)
+        phase = Study(reference.system)
         changed = self._changed(name, phase)
         if not changed and not self._rests_alone:
             raise DerivationError(
@@ -447,7 +446,7 @@ class _Asking:
     def _of_small_motions(self, formula: Expression, name: str) -> Derived:
         """A formula of frequencies and entries of M, C and K."""
         small = self.small.small
-        phase = PhaseEquations(small.reference.system)
+        phase = Study(small.reference.system)
         scope, changed = phase.system.scope, self._changed(name, phase)
         changing = ParameterSlopes(small, changed)
         found: dict[Node, tuple[float, float, Scalar | None]] = {}
@@ -518,12 +517,12 @@ def _refused(call: Call) -> Scalar:
     raise DerivationError(f"'{call}' has no closed form", fix="give every parameter a value in [parameters]")
 
 
-def _own_inputs(phase: PhaseEquations) -> dict[Node, Scalar]:
+def _own_inputs(phase: Study) -> dict[Node, Scalar]:
     """The inputs by the model's own expressions."""
     return {node: phase.system.inputs[name] for name, node in phase.system.symbols.inputs.items()}
 
 
-def _seeds_of_inputs(phase: PhaseEquations, numbers: Mapping[Node, Any], seeds: Seeds) -> dict[Node, Fraction]:
+def _seeds_of_inputs(phase: Study, numbers: Mapping[Node, Any], seeds: Seeds) -> dict[Node, Fraction]:
     inputs = _own_inputs(phase)
     found = evaluate(tangent(tuple(inputs.values()), seeds), numbers, fifty_digits())
     return {x: Fraction(float(rate)) for x, rate in zip(inputs, found, strict=True)}

@@ -32,10 +32,8 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
-from eomgen.mechanics.statics.contacts import modes_at_rest
 from eomgen.mechanics.statics.virtual_work import released_in
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
@@ -49,6 +47,7 @@ from eomgen.scene.phase_frames import picture_reported
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
+from eomgen.study import study_at_rest
 from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.verbs.outcome import with_start_reported
@@ -256,7 +255,7 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
         UsageError: there is no such reaction.
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
-    system = system_of(model, modes_at_rest(model))
+    system = study_at_rest(model).system
     stands = not has_degrees_of_freedom(system)
     structure = structure_of(with_drives_held(system)[0] if stands else system)
     if stands:

@@ -10,10 +10,10 @@ from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
 from eomgen.errors import DerivationError, ModelError, OpenConstraints, Problem
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.start.state import Start, start_of_motion
-from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.parts import Model
+from eomgen.study import study_of
 
 if TYPE_CHECKING:
     from eomgen.simulation.result import Trajectory
@@ -76,7 +76,7 @@ def named_open(model: Model, error: OpenConstraints) -> OpenConstraints:
 
 
 def _begun(model: Model) -> Start:
-    return start_of_motion(system_of(model, contacts_at_start(model).modes))
+    return start_of_motion(study_of(model).system)
 
 
 def listed(names: Iterable[str]) -> str:

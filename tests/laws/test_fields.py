@@ -28,8 +28,8 @@ from eomgen.mechanics.kinematics.motion import (
 )
 from eomgen.model.outputs.points import curvature_radius
 from eomgen.questions import answers
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus
@@ -75,9 +75,9 @@ joint = { kind = "prismatic", on = "arm", at = [0, 0.3, 0.2], axis = [2, 1, 2], 
 
 
 @cache
-def instant(text: str) -> tuple[PhaseEquations, dict[Node, float]]:
+def instant(text: str) -> tuple[Study, dict[Node, float]]:
     """The phase of a driven model, and its state at t = 0.7."""
-    phase = phase_equations_of(eomgen.loads(text))
+    phase = study_of(eomgen.loads(text))
     scope = phase.system.scope
     state = {scope.symbols.parameters[n]: float(x.value.literal) for n, x in scope.model.parameters.items()}
     state |= {scope.symbols.t: 0.7}

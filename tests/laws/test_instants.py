@@ -22,9 +22,9 @@ from eomgen.mechanics.start.exact import declared_start
 from eomgen.mechanics.start.state import start_state
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant, reached
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
+from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.text import parse
@@ -168,9 +168,9 @@ def bar(start: str, speed: str = "0") -> str:
     return HEAD + BAR.replace("START", start).replace("SPEED", speed)
 
 
-def requested(text: str, condition: str) -> tuple[PhaseEquations, StateAtInstant]:
+def requested(text: str, condition: str) -> tuple[Study, StateAtInstant]:
     """The instant at which the condition (= 0) holds."""
-    each = phase_equations_of(eomgen.loads(text))
+    each = study_of(eomgen.loads(text))
     symbols = each.system.symbols
     start = declared_start(each.system, at_rest=False)
     numbers: dict = {}
@@ -182,7 +182,7 @@ def requested(text: str, condition: str) -> tuple[PhaseEquations, StateAtInstant
     return each, reached(each, scalar, start, numbers)
 
 
-def exact_places(each: PhaseEquations, start: dict, numbers: dict) -> dict:
+def exact_places(each: Study, start: dict, numbers: dict) -> dict:
     """Dependent coordinates at the start in closed form."""
     symbols = each.system.symbols
     values = numeric_parameters(each.model)
@@ -191,7 +191,7 @@ def exact_places(each: PhaseEquations, start: dict, numbers: dict) -> dict:
     return places_of(gaps, [q for q in symbols.q], located)
 
 
-def is_exactly(each: PhaseEquations, found: Any, expected: str) -> bool:
+def is_exactly(each: Study, found: Any, expected: str) -> bool:
     """Whether a scalar is the function that a text says."""
     names = {**each.system.symbols.parameters, "pi": each.system.symbols.graph.pi}
     return equal_at_random_states([(found, parse(expected).evaluate(names))]).equal
@@ -397,7 +397,7 @@ def test_what_never_holds_is_refused(condition):
 def test_two_freedoms_at_rest_are_refused():
     """An upright double pendulum could fall either way, and energy alone does not say how."""
     model = eomgen.load("models/double_pendulum.toml")
-    each = phase_equations_of(model)
+    each = study_of(model)
     symbols = each.system.symbols
     start = {**dict.fromkeys(symbols.q, symbols.graph.pi), **dict.fromkeys(symbols.u, 0)}
     numbers = {**dict.fromkeys(symbols.q, math.pi), **dict.fromkeys(symbols.u, 0.0)}

@@ -18,7 +18,7 @@ from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum
 from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.integrals.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
+from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.text import parse
@@ -227,11 +227,11 @@ ONE_WAY = {  # name -> (model, how far along the motion is followed: no speed ch
 MODELS = Path(__file__).parents[2] / "models"
 
 
-def phase(text: str) -> PhaseEquations:
-    return phase_equations_of(eomgen.loads(text))
+def phase(text: str) -> Study:
+    return study_of(eomgen.loads(text))
 
 
-def motion(each: PhaseEquations, end: float) -> tuple[np.ndarray, list[dict]]:
+def motion(each: Study, end: float) -> tuple[np.ndarray, list[dict]]:
     """(times, states by node with the parameters) of a run by scipy, to 1e-11."""
     system = each.system
     rhs = compiled(right_hand_side(with_accelerations(each.equations)), "numpy")
@@ -249,7 +249,7 @@ def motion(each: PhaseEquations, end: float) -> tuple[np.ndarray, list[dict]]:
     ]
 
 
-def exact_start(each: PhaseEquations) -> dict:
+def exact_start(each: Study) -> dict:
     scope = each.system.scope
     part = each.model.coordinates
     start = {q: scope.value(part[q.name].start) for q in scope.symbols.q}
@@ -322,7 +322,7 @@ def test_speeds_by_the_integrals_are_those_of_the_motion(name):
 
 def test_two_freedoms_without_momenta_have_no_speeds():
     """A double pendulum's speeds are no functions of its angles."""
-    each = phase_equations_of(eomgen.load("models/double_pendulum.toml"))
+    each = study_of(eomgen.load("models/double_pendulum.toml"))
     assert rates_of(each.equations, exact_start(each)) is None
 
 

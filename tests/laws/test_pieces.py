@@ -16,7 +16,7 @@ from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum
 from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.start.exact import declared_start
 from eomgen.proof.trials import Trials
-from eomgen.questions.in_phase import phase_equations_of
+from eomgen.study import study_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
 
@@ -267,7 +267,7 @@ def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
     """x'' = -w^2 x + f max(0, t - t0): after t0 a vibration is added that no particular solution by pieces has."""
     spring = 'joint = { kind = "prismatic", axis = [0, 1], displacement = "y", stiffness = "k" }'
     text = BALL.replace('joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }', spring) + MOTOR
-    phase = phase_equations_of(eomgen.load(at(text, tmp_path)))
+    phase = study_of(eomgen.load(at(text, tmp_path)))
     assert laws_of_motion(phase.system, phase.accelerations, declared_start(phase.system)) == {}
 
 

@@ -41,11 +41,10 @@ from eomgen.documents.result import Result
 from eomgen.documents.statements import Law, Prose, Quantity, Statement, Step, prose
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.mass_properties import flat_bodies, in_ground, numbers_in, shapeless
 from eomgen.mechanics.start.state import start_state
-from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.diagnostics import nearest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
@@ -58,6 +57,7 @@ from eomgen.scene.connections import ordered
 from eomgen.scene.forms import LabelForm, PointForm
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
+from eomgen.study import study_of
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.node import Node, State, is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -155,7 +155,7 @@ def inertia(
         DerivationError: a model without bodies.
     """
     model = model_at(model, parameters, start)
-    return _Report(system_of(model, contacts_at_start(model).modes), tuple(bodies), about, axis).made()
+    return _Report(study_of(model).system, tuple(bodies), about, axis).made()
 
 
 @dataclass(frozen=True)

@@ -23,7 +23,6 @@ from eomgen.documents.statements import Quantity
 from eomgen.errors import DerivationError, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import reported_of_nodes, with_nodes_balanced
-from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.linearization.first_order import Entries
 from eomgen.mechanics.linearization.linearization import SmallMotions, small_motions_of
 from eomgen.mechanics.linearization.modes import Frequency, Mode, Modes, Spectrum
@@ -32,7 +31,6 @@ from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.linearization.reference import Family
 from eomgen.mechanics.linearization.transfer import StateMatrices, exact_state_space, with_outputs
 from eomgen.mechanics.start.exact import known_exactly
-from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
@@ -48,6 +46,7 @@ from eomgen.proof.small_motions_reported import (
     roots_drawn,
     small_motions_reported,
 )
+from eomgen.study import study_of
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -468,9 +467,9 @@ def linearize(
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", fix=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
-    contacts = contacts_at_start(model)
-    modes = Modes(small_motions_of(system_of(model, contacts.modes), about, wanted))
-    return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *contacts.assumptions))
+    study = study_of(model)
+    modes = Modes(small_motions_of(study.system, about, wanted))
+    return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *study.assumptions))
 
 
 # -------- state space -----------------------------------------------------------------------------------------

@@ -22,11 +22,11 @@ from eomgen.documents.statics.section_steps import (
 from eomgen.documents.statics.steps import contacts_step, reported_work, statics_derivation, sum_name
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of
 from eomgen.mechanics.start.exact import known_exactly, shown_numbers
-from eomgen.mechanics.statics.contacts import RestCondition, conditions_of, modes_at_rest
+from eomgen.mechanics.statics.contacts import RestCondition, conditions_of
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions, WorkEquation, static_reactions_of
 from eomgen.model.contacts import contacts_of
@@ -39,6 +39,7 @@ from eomgen.proof.parameters import other_data
 from eomgen.proof.reports_read import DrawnPanel
 from eomgen.proof.sections_reported import ReportedWork, sections_reported, works_reported
 from eomgen.proof.structure import diagrams_drawn, state_of, structure_checks
+from eomgen.study import study_at_rest
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import doing
@@ -266,7 +267,7 @@ def statics(
         DerivationError: bodies can move; a force acts at no place.
     """
     model = model_at(model, parameters, start)
-    system = system_of(model, modes_at_rest(model))
+    system = study_at_rest(model).system
     if has_degrees_of_freedom(system):
         from eomgen.documents.statics.equilibrium import resting_places
 

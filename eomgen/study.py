@@ -1,32 +1,55 @@
-"""Model -> PhaseEquations: the equations of one phase, and the exact value of a formula of the model in it.
+"""Model -> Study: everything that is derived of a model while its contacts stay as they are, each once, by its name.
 
-A formula may contain coordinates, rates, accelerations, and functions of the motion and of the reactions. As a function
-of the state, its accelerations and multipliers are replaced by the equations of motion. At one instant the state is
-substituted into the equations first, and these are solved there: so nothing is divided by a pivot of the general
-solution that vanishes at this state.
+    study_of(model)                     contacts as they are at the start; one study a model and process
+    study_at_rest(model)                contacts as they are at rest
+    study_of_modes(model, modes)        contacts as they are named
+
+A verb is a study, one question, one document: the system, its equations of motion, reactions, start and program are
+taken from here, and nowhere made again. What is never asked for is never derived.
+
+A study also evaluates formulas of the model exactly. A formula may hold coordinates, rates, accelerations, functions
+of the motion and of the reactions. As a function of the state, accelerations and multipliers are replaced by the
+equations of motion. At one instant the instant's values are put into the equations first, and these are solved there:
+so nothing is divided by what vanishes only in between.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen.programs import accelerations_and_multipliers
+from eomgen.codegen.program import Program, right_hand_side
+from eomgen.codegen.programs import (
+    RateSlopes,
+    RequestedOutputs,
+    accelerations_and_multipliers,
+    determinate,
+    outputs_of_state,
+    reactions_program,
+    slopes_of,
+)
 from eomgen.errors import MissingValues
-from eomgen.frozen import dataclass
+from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rank import degrees_of_freedom
 from eomgen.mechanics.constraints.rows import holds_identically
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
 from eomgen.mechanics.dynamics.pieces import refuse_jump, signs_of_rates
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
 from eomgen.mechanics.dynamics.wellposed import refuse_massless
 from eomgen.mechanics.free_bodies.balance import still
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_rest
 from eomgen.mechanics.free_bodies.solution import values_at_a_state
 from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.kinematics.scene import ContactModes
+from eomgen.mechanics.linearization.first_order import FirstOrder
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.start.exact import ExactStart, known_exactly
+from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start, modes_at_rest
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
@@ -38,7 +61,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.numeric.work import Work, growing
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import LinearSystem, general_solution
 
@@ -47,31 +70,135 @@ NO_FORMULA = 10 * LONG  # characters of an unreadable formula: rows are shortene
 
 
 @dataclass(frozen=True)
-class PhaseEquations:
-    """The equations of motion of one phase.
+class Study:
+    """Lazy value of a model in one configuration of its contacts: what is derived of it, once, by name.
 
     Args:
         system: motion, loads and constraints.
+        assumptions: what had to be assumed of contacts: "floor assumed closed: h has no value".
+        replaced: equations of motion in place of those of the system, with rows that pull back what has opened.
     """
 
     system: System
+    assumptions: tuple[str, ...] = ()
+    replaced: EquationsOfMotion | None = None
 
     @property
     def model(self) -> Model:
         return self.system.scope.model
 
     @cached_property
+    def derived(self) -> EquationsOfMotion:
+        """The equations of motion as they stand, friction included, also where a coordinate moves no mass."""
+        return self.replaced or equations_of_motion(self.system)
+
+    @cached_property
     def equations(self) -> EquationsOfMotion:
-        """The equations of motion, friction included.
+        """The equations of motion of what can move.
 
         Raises:
             ModelError: a free coordinate moves no mass.
             DerivationError: a load contains an unknown.
         """
         refuse_motion(self.model)
-        equations = equations_of_motion(self.system)
-        refuse_massless(equations)
-        return equations
+        refuse_massless(self.derived)
+        return self.derived
+
+    @cached_property
+    def explicit(self) -> EquationsOfMotion:
+        """The equations of motion as code has them: explicit where that is shorter, finite where nothing slides."""
+        equations = with_accelerations(self.derived)
+        if not equations.friction or equations.accelerations is None:
+            return equations
+        return replace(equations, accelerations=with_rest(self.system, equations.accelerations))
+
+    @cached_property
+    def program(self) -> Program:
+        """The right-hand side x' = f(t, x, p, inputs) as a straight-line program.
+
+        Raises:
+            ModelError: a free coordinate moves no mass.
+        """
+        refuse_massless(self.derived)
+        with growing():
+            return right_hand_side(self.explicit)
+
+    @cached_property
+    def slopes(self) -> RateSlopes:
+        """A = d x'/d x, B = d x'/d inputs as graph scalars, and the systems behind the unknowns that they hold.
+
+        Raises:
+            DerivationError: the mass matrix is singular whatever the state.
+        """
+        refuse_massless(self.derived)
+        return slopes_of(self.explicit)
+
+    @cached_property
+    def first_order(self) -> FirstOrder:
+        """The linearized equations beside any motion, for numbers at a state."""
+        return FirstOrder(self.system, ())
+
+    # -- reactions and outputs ---------------------------------------------------------------------
+
+    @cached_property
+    def reactions(self) -> Reactions:
+        """Every reaction of joints and constraints, in q, u and the accelerations.
+
+        Raises:
+            DerivationError: an unsupported body; a force that acts at no place.
+        """
+        return reactions_of(self.system)
+
+    @cached_property
+    def reaction_values(self) -> dict[str, Scalar]:
+        """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
+        values = determinate(self.reactions)
+        return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
+
+    @cached_property
+    def reactions_program(self) -> tuple[tuple[str, ...], Program]:
+        """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
+        refuse_massless(self.derived)
+        return reactions_program(self.reaction_values, self.explicit)
+
+    @cached_property
+    def requested_outputs(self) -> RequestedOutputs:
+        """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
+        found = outputs_of_state(self.system)
+        values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
+        return replace(found, values=values)
+
+    @cached_property
+    def outputs_program(self) -> Program:
+        """The outputs that are functions of the state; accelerations as in the right-hand side."""
+        refuse_massless(self.derived)
+        return reactions_program(self.requested_outputs.values, self.explicit)[1]
+
+    # -- parameters and the start --------------------------------------------------------------------
+
+    @cached_property
+    def parameters(self) -> dict[Node, Scalar]:
+        """The parameters that have a value, exactly."""
+        return known_exactly(self.system.scope)
+
+    @cached_property
+    def start(self) -> ExactStart:
+        """The start at which the constraints hold: exact where it has a closed form, in numbers else."""
+        return ExactStart(self.system)
+
+    @cached_property
+    def start_from_rest(self) -> ExactStart:
+        """The same with all speeds 0."""
+        return ExactStart(self.system, True)
+
+    @cached_property
+    def state_at_start(self) -> dict[str, float]:
+        """q and u at the start, in numbers.
+
+        Raises:
+            MissingValues: a parameter that it needs has no value.
+        """
+        return start_state(self.system)
 
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
@@ -96,7 +223,8 @@ class PhaseEquations:
         return any(depends_on(x, t) for x in (*entries, *e.forcing, *e.gamma, *inputs))
 
     @cached_property
-    def _quantities(self) -> Quantities:
+    def quantities(self) -> Quantities:
+        """The values of output functions, accelerations and multipliers as symbols."""
         return Quantities(self.system)
 
     # -- as functions of the state ---------------------------------------------------------------
@@ -109,9 +237,9 @@ class PhaseEquations:
         """The formula as a function of q, u and t; each function of the motion in it is simplified by itself."""
 
         def value(call: Call) -> Scalar:
-            return self.simple(self.eliminated(self._quantities.value(call)))
+            return self.simple(self.eliminated(self.quantities.value(call)))
 
-        return self.eliminated(self._quantities.of(formula, value))
+        return self.eliminated(self.quantities.of(formula, value))
 
     def eliminated(self, scalar: Scalar) -> Scalar:
         """Scalar with accelerations and multipliers replaced by the equations of motion, unknown loads by statics."""
@@ -283,9 +411,24 @@ class PhaseEquations:
         return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
 
 
-def phase_equations_of(model: Model, modes: ContactModes | None = None) -> PhaseEquations:
-    """The equations of a model in one configuration of its contacts."""
-    return PhaseEquations(system_of(model, modes))
+def study_of(model: Model) -> Study:
+    """The study of a model with its contacts as they are at the start; of one frozen model it is made once."""
+
+    return recalled(model, study_of, lambda: _with_contacts(model, contacts_at_start(model)))
+
+
+def study_at_rest(model: Model) -> Study:
+    """The study of a model with its contacts as they are at rest; of one frozen model it is made once."""
+    return recalled(model, study_at_rest, lambda: Study(system_of(model, modes_at_rest(model))))
+
+
+def study_of_modes(model: Model, modes: ContactModes | None = None) -> Study:
+    """The study of a model with its contacts as they are named, what is not named closed."""
+    return _with_contacts(model, ContactsAtStart(modes or {}))
+
+
+def _with_contacts(model: Model, contacts: ContactsAtStart) -> Study:
+    return Study(system_of(model, contacts.modes), contacts.assumptions)
 
 
 def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:
