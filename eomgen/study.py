@@ -231,7 +231,7 @@ class Study:
 
     def raw(self, formula: Expression) -> Scalar:
         """Scalar of the formula, in which accelerations and multipliers are still symbols."""
-        return self._quantities.of(formula)
+        return self.quantities.of(formula)
 
     def of_state(self, formula: Expression) -> Scalar:
         """The formula as a function of q, u and t; each function of the motion in it is simplified by itself."""
@@ -243,7 +243,7 @@ class Study:
 
     def eliminated(self, scalar: Scalar) -> Scalar:
         """Scalar with accelerations and multipliers replaced by the equations of motion, unknown loads by statics."""
-        scalar = self._known(scalar, self._quantities)
+        scalar = self._known(scalar, self.quantities)
         if self._stands_still:
             (scalar,) = substituted((scalar,), still(self.system))
         if not depends_on(scalar, (*self.system.symbols.a, *self.system.symbols.lam)):
