@@ -23,8 +23,8 @@ def run() -> NoReturn:
     code: Any = 0
     try:
         main()
-    except SystemExit as reported:
-        code = reported.code
+    except SystemExit as ended:
+        code = ended.code
     if threading.active_count() > 1 or _is_watched() or not isinstance(code, int):
         sys.exit(code)
     atexit._run_exitfuncs()

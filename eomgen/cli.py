@@ -167,8 +167,8 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
 
     A cached derivation and proof are reported again if the equations, derived anew, are the same.
     """
-    reported = options["diff"] is None, "is of one model, and --diff compares two"
-    refuse_idle(units=reported, full=reported)
+    of_one = options["diff"] is None, "is of one model, and --diff compares two"
+    refuse_idle(units=of_one, full=of_one)
     if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
         wants = form_requested(options["wants_json"], options["format_"], options["output"])
         return write_requested(partial(_derived, data=wants == "json"), **options)

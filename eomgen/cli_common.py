@@ -309,7 +309,7 @@ def write_result(
     def made(declared: Model, **requested: Any) -> Document:
         with growing():
             document = shown(found(declared, **requested), plot=plot, certify=certify)
-        reported = with_start_reported(document, declared)
-        return reported if at_start else replace(document, cautions=reported.cautions)
+        with_start = with_start_reported(document, declared)
+        return with_start if at_start else replace(document, cautions=with_start.cautions)
 
     return write_requested(made, **options)

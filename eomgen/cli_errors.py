@@ -134,16 +134,16 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
 def _internal(error: Exception, words: Sequence[str]) -> tuple[int, tuple[Problem, ...], str]:
     """An internal error as (exit code, problem, text); its report is written to a file that the user can send."""
     what = f"internal error: {type(error).__name__}: {error}".splitlines()[0][:LONGEST]
-    reported = "".join(traceback.format_exception(error))
+    trace = "".join(traceback.format_exception(error))
     about = f"eomgen {__version__}, Python {platform.python_version()}, {platform.platform()}"
     fix = "this is a mistake of eomgen, not of your model; "
     try:
         handle, path = tempfile.mkstemp(prefix="eomgen-report-", suffix=".txt")
         with open(handle, "w", encoding="utf-8", errors="backslashreplace") as file:
-            file.write(f"{about}\neomgen {' '.join(words)}\n\n{reported}")
+            file.write(f"{about}\neomgen {' '.join(words)}\n\n{trace}")
         fix += f"please send the report {path} and the model file"
     except OSError as full:
-        fix += f"its report cannot be written ({full.strerror}), it is: {reported}"
+        fix += f"its report cannot be written ({full.strerror}), it is: {trace}"
     problem = Problem("", what, fix=fix)
     return INTERNAL, (problem,), str(problem)
 

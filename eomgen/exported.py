@@ -67,7 +67,7 @@ class _Writing:
         model = system.scope.model
         self.remarks = {q: remarked(part.about) for q, part in model.coordinates.items()}
         self.link_names = _apart({name: remarked(body.about).get("name", name) for name, body in model.bodies.items()})
-        self.joint_names = _apart({q: reported.get("name", q) for q, reported in self.remarks.items()})
+        self.joint_names = _apart({q: remark.get("name", q) for q, remark in self.remarks.items()})
         self.world = LegalNames(set(self.link_names.values())).new("world")
         self.joints = LegalNames(set(self.joint_names.values()))
         self.followed = self._followed()
@@ -271,12 +271,12 @@ def _apart(wanted: dict[str, str]) -> dict[str, str]:
     return {key: name if taken.count(name) == 1 else key for key, name in wanted.items()}
 
 
-def _limit(kind: str, reported: dict[str, str]) -> str:
+def _limit(kind: str, limits: dict[str, str]) -> str:
     """The limits of a joint; a slide or hinge with ends must have all four."""
-    if kind == "continuous" and not reported:
+    if kind == "continuous" and not limits:
         return ""
     ends = {} if kind == "continuous" else {"lower": f"-{UNLIMITED}", "upper": UNLIMITED}
-    said = {**ends, "effort": UNLIMITED, "velocity": UNLIMITED, **reported}
+    said = {**ends, "effort": UNLIMITED, "velocity": UNLIMITED, **limits}
     return f"<limit {' '.join(f'{key}={quoteattr(value)}' for key, value in said.items())}/>"
 
 

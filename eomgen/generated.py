@@ -172,8 +172,8 @@ class Generated:
         if not self.slopes or not self.equations.graph.symbols.q:
             return None
         found = self.equations.slopes
-        program, reported = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
-        return program, replace(reported, vectors=tuple(v for v in reported.vectors if self._are_single(v)))
+        program, described = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
+        return program, replace(described, vectors=tuple(v for v in described.vectors if self._are_single(v)))
 
     @cached_property
     def regressor(self) -> Emitted | None:
@@ -189,8 +189,8 @@ class Generated:
         program = program_of(entries_of(blocks), graph.symbols, inputs=graph.inputs, accelerations=graph.symbols.a)
         sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
         columns = {"Y": found.parameters, "Y_base": tuple(group.formula for group in found.base.groups)}
-        reported = replace(self.motion[1], vectors=self._answers(program), role=REGRESSOR, blocks=sizes)
-        return program, replace(reported, columns=tuple(columns.get(name, ()) for name in blocks))
+        described = replace(self.motion[1], vectors=self._answers(program), role=REGRESSOR, blocks=sizes)
+        return program, replace(described, columns=tuple(columns.get(name, ()) for name in blocks))
 
     @cached_property
     def _regressor(self) -> Regressor:
@@ -217,7 +217,7 @@ class Generated:
         if not self.float32:
             return self._in_doubles
         found = self._texts(
-            [(p, replace(reported, vectors=single_vectors(p, reported.vectors))) for p, reported in self.emitted]
+            [(p, replace(described, vectors=single_vectors(p, described.vectors))) for p, described in self.emitted]
         )
         for target in self.targets:
             single, folder = target_named(target).single, self._folder(target)
@@ -292,7 +292,7 @@ class Generated:
             found = judged[emitted[1].role].shipped(self._written(self.targets[0], emitted))
             yield from () if found is None else (found,)
         for target in self.targets:
-            own = [reported.vectors for _, reported in self.emitted if target_named(target).writes(reported.role)]
+            own = [described.vectors for _, described in self.emitted if target_named(target).writes(described.role)]
             yield from unwritten(_inside(self.texts, self._folder(target)), chain.from_iterable(own))
         yield from self._packed()
         for target in self.targets if self.float32 else ():
@@ -311,14 +311,14 @@ class Generated:
 
     def _single(self, target: str, emitted: Emitted) -> Check:
         """The text in single precision, run, against its test vectors and their tolerances."""
-        program, reported = emitted
+        program, described = emitted
         stem, single = stem_of(self.stem), target_named(target).single
         assert single is not None
         how, texts = "the code in single precision, run", _inside(self.texts, self._folder(target))
-        what = f"{reported.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
+        what = f"{described.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
         try:
             error = single_error(
-                single.run(texts, program, stem, reported.role), single_vectors(program, reported.vectors)
+                single.run(texts, program, stem, described.role), single_vectors(program, described.vectors)
             )
         except (RunFailed, ToolMissing) as failure:
             refused = isinstance(failure, RunFailed) and self._runs(target, emitted)
@@ -344,9 +344,9 @@ class Generated:
         }
 
     def _written(self, target: str, emitted: Emitted) -> Written:
-        program, reported = emitted
+        program, described = emitted
         texts = _inside(self._in_doubles if self.float32 else self.texts, self._folder(target))
-        return Written(target, texts, program, stem_of(self.stem), reported.role, reported.vectors)
+        return Written(target, texts, program, stem_of(self.stem), described.role, described.vectors)
 
     @cached_property
     def _start(self) -> RightHandSide:
@@ -355,7 +355,7 @@ class Generated:
     @cached_property
     def _reactions(self) -> tuple[Emitted | None, str]:
         """(the program of the reactions, described; a line on those that are not in it)."""
-        equations, reported = self.equations, self.motion[1]
+        equations, described = self.equations, self.motion[1]
         try:
             names, program = equations.reactions_program
             answers = vectors(program, x0=self._start.x0, p0=self._start.p0, held=self._held) if names else ()
@@ -366,8 +366,8 @@ class Generated:
         requested = named_reactions(equations.reactions.balance)
         left = ", ".join(named.name for named in requested if named.name not in names)
         note = f"not in the code, statically indeterminate: {left}" if left else ""
-        remarks = {**reported.remarks, **{named.name: f"[{named.unit}]" for named in requested}}
-        return (program, replace(reported, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)), note
+        remarks = {**described.remarks, **{named.name: f"[{named.unit}]" for named in requested}}
+        return (program, replace(described, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)), note
 
 
 @doing("the code")

@@ -17,8 +17,8 @@ def begun_speeds(speeds: Mapping[str, Any]) -> dict[str, frozenset[str]]:
         joined = [group for group in groups if group[1] & rates]
         groups = [group for group in groups if group not in joined]
         groups.append(({name}.union(*(g[0] for g in joined)), rates.union(*(g[1] for g in joined))))
-    reported = [group for group in groups if any(_begins(speeds[name]) for name in group[0])]
-    return {name: frozenset(rates) for names, rates in reported for name in names}
+    begun = [group for group in groups if any(_begins(speeds[name]) for name in group[0])]
+    return {name: frozenset(rates) for names, rates in begun for name in names}
 
 
 def _names(part: Any) -> frozenset[str]:

@@ -139,6 +139,6 @@ def unknown_keys(
             fix, guess = f"write '{only}': it is needed here ({fix})", (only,)
         instead = guess[0] if guess and guess[0] not in (*raw, *read) else ""
         read |= {instead: key} if instead else {}
-        reported = f"unknown key '{key}' in {what}"
-        found.append(Diagnostic((*path, key), reported, fix, key=True, raw=raw[key], instead=instead))
+        wrong = f"unknown key '{key}' in {what}"
+        found.append(Diagnostic((*path, key), wrong, fix, key=True, raw=raw[key], instead=instead))
     return read

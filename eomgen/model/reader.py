@@ -150,12 +150,12 @@ def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Pro
         return tomllib.loads(text, parse_float=_decimal), []
     except (ValueError, RecursionError) as error:
         failure = error
-    reported = index.twice[:MOST_DIAGNOSTICS]
-    twice = [_problem(_again(path, index), span, index, name) for path, span, _ in reported]
+    repeated = index.twice[:MOST_DIAGNOSTICS]
+    twice = [_problem(_again(path, index), span, index, name) for path, span, _ in repeated]
     if not twice:
         raise ModelError((_not_toml(failure, index, name),)) from failure
     try:
-        return tomllib.loads(_without(text, [s for _, _, s in reported if s]), parse_float=_decimal), twice
+        return tomllib.loads(_without(text, [s for _, _, s in repeated if s]), parse_float=_decimal), twice
     except (ValueError, RecursionError):
         raise ModelError(tuple(twice)) from failure
 

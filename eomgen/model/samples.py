@@ -123,8 +123,8 @@ def _plain(value: Any) -> Any:
 def _pairs(raw: Any, path: DocumentPath, found: list[Diagnostic]) -> list[tuple[Fraction, Fraction]] | None:
     """The samples as exact numbers, times ascending."""
     if not isinstance(raw, (list, tuple)) or not 2 <= len(raw) <= MOST:
-        reported = f"{len(raw)}" if isinstance(raw, (list, tuple)) else shown(raw)
-        found.append(Diagnostic(path, f"a list of 2 to {MOST} samples is needed here, not {reported}", EXAMPLE))
+        given = f"{len(raw)}" if isinstance(raw, (list, tuple)) else shown(raw)
+        found.append(Diagnostic(path, f"a list of 2 to {MOST} samples is needed here, not {given}", EXAMPLE))
         return None
     pairs: list[tuple[Fraction, Fraction]] = []
     for i, pair in enumerate(raw):

@@ -18,7 +18,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import nearest
 from eomgen.model.dimensions import Inferred, inferred
 from eomgen.model.fields import WrittenEquation
-from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, quoted, reported
+from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, in_words, quoted
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import Typed, Unit, is_plain, read_typed, unit_for_name
@@ -135,7 +135,7 @@ class Typing:
         for clash in walk.clashes:
             what = clash.what
             if clash.other is None and not clash.in_function:
-                what = f"{quoted(clash.one)} is {reported(clash.one_is)}, but '{of.text}' is {reported(clash.needed)}"
+                what = f"{quoted(clash.one)} is {in_words(clash.one_is)}, but '{of.text}' is {in_words(clash.needed)}"
             raise ExpressionError(what, clash.one.column, clash.fix, len(clash.one.text))
 
 

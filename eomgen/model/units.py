@@ -73,22 +73,22 @@ def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, s
     found = inferred(Catalog(model, ()))
     known, reduced = found.names, found.names.inference.reduced
 
-    def reported(dimension: Dimension) -> str:
+    def unit_text(dimension: Dimension) -> str:
         dimension = reduced(dimension)
         return "?" if dimension.unknowns else str(dimension)
 
     walk, of_outputs = known.walk(), units_of_outputs(model)
     outputs = {
-        name: of_outputs[part].text if part in of_outputs else reported(walk.of(part.value))
+        name: of_outputs[part].text if part in of_outputs else unit_text(walk.of(part.value))
         for name, part in model.outputs.items()
     }
     names = {
-        name: known.declared[name].text if name in known.declared else reported(x) for name, x in found.found.items()
+        name: known.declared[name].text if name in known.declared else unit_text(x) for name, x in found.found.items()
     }
     power = dimension_of_unit(parse_unit("W"))
     return {
         "names": names,
-        "equations": {u: reported(power.times(known.of(u), -1)) for u in speeds},
+        "equations": {u: unit_text(power.times(known.of(u), -1)) for u in speeds},
         "outputs": outputs,
     }
 

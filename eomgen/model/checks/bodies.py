@@ -66,8 +66,8 @@ def _sharing(path: DocumentPath, name: str, body: Any) -> Iterator[Diagnostic]:
             yield Diagnostic((*path, k), what, "give its mass (what it takes away), or the net mass of the body")
     kinds = {body.parts[k].shape.dimension: body.parts[k].shape.kind for k in sharing}
     if body.mass is not None and len(kinds) > 1 and 0 not in kinds:
-        reported = " and ".join(f"{kind} ({MEASURES[d]})" for d, kind in sorted(kinds.items()))
-        what = f"the parts of body '{name}' have no common density: {reported}"
+        listed = " and ".join(f"{kind} ({MEASURES[d]})" for d, kind in sorted(kinds.items()))
+        what = f"the parts of body '{name}' have no common density: {listed}"
         yield Diagnostic(path, what, "give a mass to the parts of one kind: the others share the rest", key=True)
 
 
@@ -125,9 +125,9 @@ def _rings(catalog: Catalog) -> Iterator[Diagnostic]:
             name = parents[name]
         if name in trail:
             ring = trail[trail.index(name) :]
-            reported = " -> ".join([*ring, ring[0]])
+            listed = " -> ".join([*ring, ring[0]])
             what = f"body '{name}' hangs on itself"
-            what = what if len(ring) == 1 else f"bodies hang on one another in a ring: {reported}"
+            what = what if len(ring) == 1 else f"bodies hang on one another in a ring: {listed}"
             yield Diagnostic(("bodies", ring[0], "joint", "on"), what, "one of them must hang on the ground")
         done.update(trail)
 
@@ -246,8 +246,8 @@ def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Di
     moments = [_float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
     size = max(abs(_float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)
     if not possible(moments, size):
-        reported = ", ".join(f"{x:g}" for x in moments)
-        what = f"no body has the inertia of '{name}': [{reported}] breaks the triangle inequality"
+        listed = ", ".join(f"{x:g}" for x in moments)
+        what = f"no body has the inertia of '{name}': [{listed}] breaks the triangle inequality"
         yield Diagnostic(
             path, what, "a hole lies inside the other parts, and is no heavier than what it is cut out of", key=True
         )
@@ -322,8 +322,8 @@ def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Diagnosti
         return
     what = "negative" if number < 0 else "zero"
     key = next((str(k) for k in reversed(leaf.path) if isinstance(k, str)), "")
-    reported = shown(expression.text) if expression.literal is None else expression.text
-    valued = f"{reported} = {float(number):g}" if expression.literal is None else reported
+    text = shown(expression.text) if expression.literal is None else expression.text
+    valued = f"{text} = {float(number):g}" if expression.literal is None else text
     where = whereabouts(leaf.path[:-1] if len(leaf.path) > 2 else leaf.path)
     yield Diagnostic(leaf.path, f"'{key}' in {where} is {what}: {valued}")
 

@@ -194,8 +194,8 @@ def _declared(table: str, what: str) -> Callable[[Catalog, Leaf], Iterator[Diagn
     def check(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
         known = catalog.table(table)
         if leaf.value not in known:
-            reported = f"unknown {what} '{leaf.value}' in {whereabouts(leaf.path)}"
-            yield Diagnostic(leaf.path, reported, nearest(leaf.value, known), 0, len(leaf.value))
+            wrong = f"unknown {what} '{leaf.value}' in {whereabouts(leaf.path)}"
+            yield Diagnostic(leaf.path, wrong, nearest(leaf.value, known), 0, len(leaf.value))
 
     return check
 
@@ -403,8 +403,8 @@ def _free(catalog: Catalog, body: str, names: tuple[str, ...]) -> Iterator[Diagn
 
 def _starts(catalog: Catalog) -> Iterator[Diagnostic]:
     """Diagnostics of a start speed of a coordinate whose rate is combined in speeds that have a start of their own."""
-    reported = set[str]().union(*begun_speeds(catalog.table("speeds")).values())
+    begun = set[str]().union(*begun_speeds(catalog.table("speeds")).values())
     for name, part in catalog.table("coordinates").items():
-        if part is not None and part.speed is not None and f"{name}'" in reported and not part.driven:
+        if part is not None and part.speed is not None and f"{name}'" in begun and not part.driven:
             what = f"coordinate '{name}' has a 'speed' at the start, and the speeds of its rate have a 'start' too"
             yield Diagnostic(("coordinates", name, "speed"), what, "keep `start` of the speeds", key=True)

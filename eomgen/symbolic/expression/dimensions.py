@@ -193,10 +193,10 @@ class Clash:
     @property
     def what(self) -> str:
         if self.in_function and self.other is None:
-            return f"{self.in_function} of {kind_of(self.one_is)}: {quoted(self.one)} is {reported(self.one_is)}"
+            return f"{self.in_function} of {kind_of(self.one_is)}: {quoted(self.one)} is {in_words(self.one_is)}"
         if self.other is None:
-            return f"{quoted(self.one)} is {reported(self.one_is)}, and {reported(self.needed)} is needed"
-        two = f"{quoted(self.other)} is {reported(self.needed)}, {quoted(self.one)} {reported(self.one_is)}"
+            return f"{quoted(self.one)} is {in_words(self.one_is)}, and {in_words(self.needed)} is needed"
+        two = f"{quoted(self.other)} is {in_words(self.needed)}, {quoted(self.one)} {in_words(self.one_is)}"
         joined = f"do not fit together in {self.in_function}" if self.in_function else "have no sum"
         return f"{kind_of(self.needed)} and {kind_of(self.one_is)} {joined}: {two}"
 
@@ -205,7 +205,7 @@ def quoted(place: Place) -> str:
     return f"'{place.text}'"
 
 
-def reported(dimension: Dimension) -> str:
+def in_words(dimension: Dimension) -> str:
     """ "in N*m", "a number"."""
     return f"in {dimension}" if dimension else "a number"
 

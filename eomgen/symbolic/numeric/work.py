@@ -61,7 +61,7 @@ class _Clock:
 
     Args:
         end: on the monotonic clock [s].
-        reported: the activities under way, the outermost first.
+        activities: the activities under way, the outermost first.
         done: the finished ones.
         kept: what remains of the work.
         closed: set when nothing is to be stopped any more; thrown: True if something was stopped from outside.
@@ -69,7 +69,7 @@ class _Clock:
 
     seconds: float
     end: float
-    reported: list[str] = field(default_factory=list)
+    activities: list[str] = field(default_factory=list)
     done: list[str] = field(default_factory=list)
     kept: str = "nothing is kept"
     closed: threading.Event = field(default_factory=threading.Event)
@@ -78,7 +78,7 @@ class _Clock:
 
     def error(self) -> OutOfPatience:
         """The error that says what was done, what was given up, and how to go on."""
-        given_up = ", ".join(self.reported[-2:]) or "the work"
+        given_up = ", ".join(self.activities[-2:]) or "the work"
         before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
         what = f"given up after {self.seconds:g} s, {self.kept}: {given_up}{before}"
         return OutOfPatience(what, fix="ask for less, or wait longer: --patience SECONDS, --patience none")
@@ -139,7 +139,7 @@ def doing(what: str) -> Iterator[None]:
     if clock is None:
         yield
         return
-    clock.reported.append(what)
+    clock.activities.append(what)
     over = False
     try:
         yield
@@ -149,7 +149,7 @@ def doing(what: str) -> Iterator[None]:
         raise
     finally:
         if not over:
-            clock.reported.pop()
+            clock.activities.pop()
 
 
 @contextmanager
