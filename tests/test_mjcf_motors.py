@@ -196,9 +196,9 @@ def test_a_weld_that_cannot_close_is_told(tmp_path):
     [
         (
             '<asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/></asset><worldbody/>',
-            "<hfield> asks for",
+            "<hfield> requests",
         ),
-        ('<size nuser_body="1000000000"/><worldbody/>', "<size> asks for"),
+        ('<size nuser_body="1000000000"/><worldbody/>', "<size> requests"),
         (
             '<worldbody><replicate count="20000"><body><joint/></body></replicate></worldbody>',
             "replicas make more than",

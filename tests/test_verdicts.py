@@ -406,14 +406,14 @@ def turned(model: eomgen.Model, equation: str) -> list[tuple[str, str]]:
 def test_a_verdict_that_is_turned_round_is_seen_by_numbers(text, equation):
     """Both sides in doubles at consistent states: they agree where it is right, and nowhere else."""
     (own, _), (other, why) = turned(eomgen.loads(text), equation)
-    assert (own, other) == ("holds", "fails") and "it is told" in why
+    assert (own, other) == ("holds", "fails") and "it is judged" in why
 
 
 def test_a_judge_that_errs_fails_its_certificate(monkeypatch):
     """A decision that takes everything for right: exit code 3, and what differs is said."""
     monkeypatch.setattr("eomgen.judge.judge.truth_of", lambda *_: Decided(True))
     result = CliRunner().invoke(main, ["verify", "-", "l*theta'' = g*sin(theta)"], input=PENDULUM)
-    assert result.exit_code == 3 and "it is told right, and its sides differ" in result.output
+    assert result.exit_code == 3 and "it is judged right, and its sides differ" in result.output
 
 
 @each("equation", ["V = -m*g*l*cos(theta) + 7*m", "T + V = E", "omega = sqrt(g/l)", "theta = 0"])

@@ -104,7 +104,7 @@ def contradicted(text: str) -> str:
 def test_the_declared_work_of_every_kind_of_force_is_that_of_the_equations():
     """sum F . dr + sum tau . w + sum Q_i dq_i + sum f ds - dV = Q . d"""
     found = proven(SPACE)
-    assert found.ok and any("its fields declare" in c.name and c.ok for c in found.checks)
+    assert found.ok and any("their fields declare" in c.name and c.ok for c in found.checks)
 
 
 def turned(load):
@@ -135,7 +135,7 @@ def test_a_load_that_is_made_otherwise_is_contradicted(kind, wrong, monkeypatch)
     """Sign, axes, place: both routes start from the load, its fields do not."""
     right = kind.loads
     monkeypatch.setattr(kind, "loads", lambda self, scene: tuple(map(wrong, right(self, scene))))
-    assert "its fields declare" in contradicted(SPACE)
+    assert "their fields declare" in contradicted(SPACE)
 
 
 def test_the_ends_of_a_line_load_are_not_exchanged(monkeypatch):
@@ -147,14 +147,14 @@ def test_the_ends_of_a_line_load_are_not_exchanged(monkeypatch):
         return (replace(line, at_start=line.at_end, at_end=line.at_start),)
 
     monkeypatch.setattr(distributed.Distributed, "spread", wrong)
-    assert "its fields declare" in contradicted(SPACE)
+    assert "their fields declare" in contradicted(SPACE)
 
 
 def test_given_energies_are_those_of_the_file(monkeypatch):
     """V with the other sign moves Q, T counted twice moves T."""
     with monkeypatch.context() as patch:
         patch.setattr(potential.Potential, "potential", lambda self, scene: -scene.value(self.energy))
-        assert "its fields declare" in contradicted(SPACE)
+        assert "their fields declare" in contradicted(SPACE)
     monkeypatch.setattr(kinetic.Kinetic, "kinetic", property(lambda self: self.energy * 2))
     assert "energies of the bodies" in contradicted(SPACE)
 
