@@ -150,3 +150,30 @@ def test_the_page_and_python_begin_there_too(typed):
     found = eomgen.simulate(path, time=0.01, start=start, target="numpy")
     live = PlayedRun(found, PlayerOptions(moves=True)).live
     assert live is not None and set(live.reported()["typed"]) >= set(start) & set(names)
+
+
+def test_a_closed_form_of_the_start_has_a_value_at_the_values_of_the_file():
+    """phi = atan((d + r sin alpha)/(r cos alpha)) at alpha = pi/2 divides by 0: the number serves; w = r n/(r + d)."""
+    model = eomgen.loads(
+        HEAD
+        + """parameters = { r = 0.2, d = 0.1, L = 0.5, n = 12, alpha = "pi/2" }
+[coordinates]
+theta = { motion = "alpha + n*t" }
+phi = { dependent = true, near = "atan2(d + r*sin(alpha), r*cos(alpha))" }
+[bodies.crank]
+points = { P = ["r", 0] }
+joint = { kind = "revolute", angle = "theta" }
+[bodies.lever]
+shape = { kind = "rod", mass = 4, length = "L" }
+line = ["start", "end"]
+joint = { kind = "revolute", at = [0, "-d"], angle = "phi" }
+[constraints.block]
+kind = "slider"
+point = "crank.P"
+on = "lever"
+[outputs]
+w = "omega(lever)"
+"""
+    )
+    answers = eomgen.solve(model)
+    assert answers["w"].value == pytest.approx(0.2 * 12 / 0.3) and answers.certify().ok

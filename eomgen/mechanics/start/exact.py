@@ -205,7 +205,20 @@ class _Sought:
         known = dict(zip(known, substituted(tuple(known.values()), known), strict=True))
         speeds = [u for u in symbols.u if u.name in moved]
         known |= self._speeds(known, speeds) if speeds and not open_ else {}
-        return {x: value for x, value in known.items() if x is symbols.t or self.located.agrees(value, x)}
+        agreeing = {x: value for x, value in known.items() if x is symbols.t or self.located.agrees(value, x)}
+        return {x: value for x, value in agreeing.items() if self._is_defined(value)}
+
+    def _is_defined(self, form: Scalar) -> bool:
+        """False if a form has no value at the exact values of the parameters: tan(alpha) at pi/2 has one in doubles."""
+        try:
+            substituted((form,), self._parameters)
+        except DerivationError:
+            return False
+        return True
+
+    @cached_property
+    def _parameters(self) -> dict[Node, Scalar]:
+        return known_exactly(self.system.scope)
 
     def _places(self, known: Mapping[Node, Scalar], unknown: Sequence[Node]) -> dict[Node, Scalar]:
         """The coordinates that the constraints place, or move; none where these are fewer than all coordinates."""
