@@ -243,7 +243,7 @@ def page(command: str, with_sympy: bool) -> str:
                 "",
                 "## Right-hand sides in C",
                 "",
-                "Speeds and closing rows; operations of one evaluation, the solve with its second pass included;",
+                "Speeds and constraint rows; operations of one evaluation, the solve with its second pass included;",
                 "instructions by valgrind; ratios against the seven-axis arm.",
                 "",
                 *table(

@@ -82,12 +82,12 @@ class Equations(Result):
 
     @property
     def assumptions(self) -> tuple[str, ...]:
-        """What had to be assumed of massless nodes and of contacts: "floor assumed closed: h has no value"."""
+        """Assumptions about massless nodes and contacts: "floor assumed closed: h has no value"."""
         return (*reported_of_nodes(self.model), *self.study.assumptions)
 
     def __repr__(self) -> str:
         names = self.coordinates[:SHOWN] + ("...",) * (len(self.coordinates) > SHOWN)
-        size = f"{len(self.speeds)} equations of motion, {len(self.graph.J)} closing rows"
+        size = f"{len(self.speeds)} equations of motion, {len(self.graph.J)} constraint rows"
         return f"<equations of {self.model.name!r} ({self.method}): {size}; coordinates {', '.join(names) or 'none'}>"
 
     @property

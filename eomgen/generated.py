@@ -394,7 +394,7 @@ def generate(
         actuated: inverse dynamics too, of these coordinates, speeds, inputs or joints; () for all speeds.
         jacobian: the slopes of the right-hand side in x and inputs too.
         regressor: Y and y0 of tau = Y pi + y0, and the columns of the base parameters, too.
-        baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
+        baumgarte: alpha and beta of constraint rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator of its own in C too, with a program that writes a motion as CSV.
         float32: single precision, of c, cpp, rust, fortran, wasm and jax; the tolerances of its tests are measured.
         parameters, start: values that replace the model's, each as `model_at` takes it.

@@ -27,7 +27,7 @@ def difference(first: Path, second: Path, *more: str) -> dict:
 
 @pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "atwood", "rolling_disc"])
 def test_a_model_does_not_differ_from_itself(name):
-    """R - R = 0 along every speed and in every closing row."""
+    """R - R = 0 along every speed and in every constraint row."""
     found = difference(MODELS / f"{name}.toml", MODELS / f"{name}.toml", "--no-certify")
     assert found["same"] and found["declared"] == found["values"] == {}
     assert found["equations"] and {x["status"] for x in found["equations"]} == {"same"}

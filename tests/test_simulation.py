@@ -279,7 +279,7 @@ def test_senseless_questions_are_refused(message):
 
 
 def test_a_run_is_carried_across_a_change_point():
-    """Four equal cranks in line with their coupler: the closing rows lose rank, and the motion stays on its branch."""
+    """Four equal cranks in line with their coupler: the rows lose rank, and the motion stays on its branch."""
     with pytest.warns(RuntimeWarning, match="Statically indeterminate"):
         result = eomgen.simulate(eomgen.load(MODELS / "four_cranks.toml"), time=0.3, target="numpy")
     assert result.ok and result.drift < 1e-6

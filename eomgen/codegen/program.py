@@ -58,7 +58,7 @@ class Solve:
 
     @property
     def kind(self) -> Literal["dense", "kkt"]:
-        """Kind of the system: "kkt" with closing rows, "dense" without; a small one without them is no `Solve`."""
+        """Kind of the system: "kkt" with constraint rows, "dense" without; a small one without them is no `Solve`."""
         return "kkt" if self.border else "dense"
 
     @property
@@ -160,7 +160,7 @@ class Program:
 def right_hand_side(equations: EquationsOfMotion) -> Program:
     """The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations.
 
-    M a = forcing, or with closing rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
+    M a = forcing, or with constraint rows  [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma].
 
     Raises:
         DerivationError: the mass matrix is singular at all states.

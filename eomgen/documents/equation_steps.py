@@ -250,7 +250,7 @@ def _piece(x: Scalar) -> Piece:
 
 
 def closing(reader: Reader, equations: EquationsOfMotion) -> list[Statement]:
-    """J a + gamma = 0, for each closing row."""
+    """J a + gamma = 0, for each constraint row."""
     rows = []
     for row, gamma in zip(equations.J, equations.gamma, strict=True):
         rows.append(sum((j * a for j, a in zip(row, equations.symbols.a, strict=True)), start=gamma))

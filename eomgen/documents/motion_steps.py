@@ -149,7 +149,7 @@ def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:
 
 
 def _held(system: System) -> list[Pair]:
-    """Equation of each closing row, of its gap or its rate, with every coordinate free."""
+    """Equation of each constraint row, of its gap or its rate, with every coordinate free."""
     free = system.free or system
     return [_closing(row) for row in free.constraints.closing]
 
@@ -251,7 +251,7 @@ def _in_unit(value: Any, part: Quantified) -> str:
 
 
 def _freedom(system: System) -> Step:
-    """Step with the numbers of coordinates, driven coordinates, closing rows and degrees of freedom."""
+    """Step with the numbers of coordinates, driven coordinates, constraint rows and degrees of freedom."""
     symbols, closing = system.symbols, system.constraints.closing
     dependent = len(dependent_coordinates(system.scope))
     driven = sum(part.driven for part in system.scope.model.coordinates.values())

@@ -227,7 +227,7 @@ class Case:
 
     @cached_property
     def closing(self) -> ScalarRow:
-        """J a + gamma, one for each closing row."""
+        """J a + gamma, one for each constraint row."""
         e = self.equations
         if e is None:
             return ()
@@ -368,7 +368,7 @@ class Case:
 
     @cached_property
     def _linear(self) -> tuple[list[ScalarRow], list[ScalarRow]]:
-        """Slopes and rests of the equations of motion, and of the closing rows."""
+        """Slopes and rests of the equations of motion, and of the constraint rows."""
         rows, closing = ([linear_row(x, self.forced)[0] for x in some] for some in (self.rows, self.closing))
         return rows, closing
 

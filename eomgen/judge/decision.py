@@ -491,7 +491,7 @@ def _constrained(system: System, state: dict[Node, Any], gaps: Sequence[Scalar])
 
 
 def _at_constrained_speeds(system: System, state: dict[Node, Any]) -> dict[Node, Any] | None:
-    """The state with speeds that the closing rows allow: J u + sigma = 0."""
+    """The state with speeds that the constraint rows allow: J u + sigma = 0."""
     constraints, u = system.constraints, system.symbols.u
     if not constraints.J:
         return state

@@ -32,7 +32,7 @@ LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_for
 """letter -> the function that it stands for"""
 FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
 """the letter of a frequency of small motions"""
-MULTIPLIER = "lam"  # of a closing row: lam(constraint, 1)
+MULTIPLIER = "lam"  # of a constraint row: lam(constraint, 1)
 
 
 @dataclass(frozen=True)

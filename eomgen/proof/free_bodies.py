@@ -69,7 +69,7 @@ class Demand:
     Args:
         forces: M a + c - Q - J^T lam, one a speed.
         sizes: of each the sum of the sizes of its terms.
-        rates: d/dt (J u + sigma) of every closing row, by (constraint, number).
+        rates: d/dt (J u + sigma) of every constraint row, by (constraint, number).
     """
 
     forces: list[Any]
@@ -311,7 +311,7 @@ class _Formulas:
 
     @cached_property
     def pushes(self) -> list[tuple[str, Wrench, Node | None]]:
-        """(body, wrench about its origin in its axes, lam by which it goes): loads and weights, then closing rows."""
+        """(body, wrench about its origin in its axes, its lam): loads and weights, then constraint rows."""
         constraints, loads = self.system.constraints, self.system.loads
         found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
         rows = zip(constraints.closing, self.system.symbols.lam, strict=True)
@@ -328,12 +328,12 @@ class _Formulas:
 
     @cached_property
     def rates(self) -> tuple[Scalar, ...]:
-        """Velocities of closing rows."""
+        """Velocities of constraint rows."""
         return tuple(row.velocity for row in self.system.constraints.closing)
 
     @cached_property
     def slopes(self) -> tuple[Scalar, ...]:
-        """Derivatives by every speed of the parts of closing rows that are not functions of twists."""
+        """Derivatives by every speed of the parts of constraint rows that are not functions of twists."""
         u = self.system.scope.symbols.u
         return tuple(x for row in self.system.constraints.closing for x in gradient(row.direct, u))
 
@@ -413,7 +413,7 @@ class _Bodies(InNumbers):
 
     @cached_property
     def _pushes(self) -> list[tuple[str, Wrench]]:
-        """(body, load, weight or push of a closing row on it, about its origin in its axes)."""
+        """(body, load, weight or push of a constraint row on it, about its origin in its axes)."""
         pushes = self.formulas.pushes
         values = _in_parts(self.at([x for _, wrench, _ in pushes for x in (*wrench.tau, *wrench.f)]), 6)
         sizes = [1 if lam is None else self.state[lam] for *_, lam in pushes]

@@ -193,4 +193,4 @@ def closing_rows(equations: EquationsOfMotion) -> Claim:
         second = sum((x * a for x, a in zip(equations.J[i], symbols.a, strict=True)), start=equations.gamma[i])
         pairs.append((second, scope.with_accelerations((row,))[0]))
         labels.append(f"J a + gamma of row {i + 1}")
-    return Claim("the closing rows are the derivatives of their gaps", pairs, labels)
+    return Claim("the constraint rows are the derivatives of their gaps", pairs, labels)

@@ -369,7 +369,7 @@ SHARE = 0.1  # of a row's part in the combination that vanishes, above which its
 
 @dataclass(frozen=True)
 class ConstraintRank:
-    """The closing rows J of a system.
+    """The constraint rows J of a system.
 
     Args:
         rows: (t n, x n x states) -> J, n x (k nu).

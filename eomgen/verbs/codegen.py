@@ -37,7 +37,7 @@ def codegen_document(
         inverse: write inverse dynamics too, of the actuated coordinates, speeds, inputs or joints.
         jacobian: write the slopes of the right-hand side too.
         regressor: write Y, y0 and the columns of the base parameters too.
-        baumgarte: alpha and beta of the feedback of gaps in the closing rows [1/s]; None: without feedback.
+        baumgarte: alpha and beta of the feedback of gaps in the constraint rows [1/s]; None: without feedback.
         integrator: an integrator in C too.
         float32: single precision.
     """

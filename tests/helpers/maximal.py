@@ -3,7 +3,7 @@
 Every body has its own acceleration A_i = (wd, acc) of its origin, its own Newton-Euler equations and an
 unknown wrench F_i from its joint; the joints say how A_i may differ from that of the parent:
 
-    I_i A_i + p_i = W_i + F_i - sum over children X^T F_c + sum over closing rows W lam
+    I_i A_i + p_i = W_i + F_i - sum over children X^T F_c + sum over constraint rows W lam
     A_i = X A_parent + b_i + C_i a
     C_i^T F_i summed over joints + rotors = what acts on joints and coordinates at no place
     J a + gamma = 0
@@ -150,7 +150,7 @@ def _transfer(numbers: BodyNumbers, link: BodyLink) -> np.ndarray:
 
 
 def _close(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, multipliers: slice) -> None:
-    """Columns of the closing rows' wrenches, and the rows W^T A + d/dt(W^T) xi ... = 0 as J a + gamma = 0."""
+    """Columns of the constraint rows' wrenches, and the rows W^T A + d/dt(W^T) xi ... = 0 as J a + gamma = 0."""
     system = numbers.system
     n = len(system.motion.links)
     for j, row in enumerate(system.constraints.closing):

@@ -199,7 +199,7 @@ def test_torques_come_back_from_the_accelerations_that_they_give(name, target):
 
 
 def test_a_platform_on_six_legs_gives_back_the_forces_of_its_drives():
-    """Inputs are the actuators: six drives, eighteen closing rows."""
+    """Inputs are the actuators: six drives, eighteen constraint rows."""
     model = load("stewart_platform")
     equations = eomgen.derive(model)
     inverse = equations.inverse_dynamics(list(model.inputs))

@@ -1,4 +1,4 @@
-"""A platform on six legs: eighteen closing rows, against the textbook's one freedom and the laws that hold for all."""
+"""A platform on six legs: eighteen constraint rows, against the textbook's one freedom and the general laws."""
 
 from __future__ import annotations
 

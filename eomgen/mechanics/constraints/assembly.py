@@ -202,7 +202,7 @@ class Fork:
 
 
 def fork_at(constraints: Constraints, state: State) -> Fork | None:
-    """The fork at a state where the rank of the closing rows is less than elsewhere; None where it is not.
+    """The fork at a state where the rank of the constraint rows is less than elsewhere; None where it is not.
 
     Raises:
         MissingValues, DerivationError: the constraints cannot be satisfied near.

@@ -152,7 +152,7 @@ def _open(constraints: Constraints, known: Mapping[str, Any]) -> EomgenError:
 
 
 def rows_where_closed(constraints: Constraints, state: State) -> np.ndarray:
-    """J of the closing rows at a state in which they hold, k x nu; entries that vanish there are 0, not what is left.
+    """J of the constraint rows at a state in which they hold, k x nu; entries that vanish there are exactly 0.
 
     Raises:
         NoValue: it has none there.

@@ -136,7 +136,7 @@ def elimination_of(constraints: Constraints) -> Elimination:
 
 
 def _numbers(constraints: Constraints) -> np.ndarray:
-    """J of the closing rows at a generic state in which they hold, or where none is near at any state.
+    """J of the constraint rows at a generic state in which they hold, or where none is near at any state.
 
     Raises:
         DerivationError: it has no finite value there.
@@ -153,7 +153,7 @@ def _numbers(constraints: Constraints) -> np.ndarray:
 
 
 def _determining_rows(constraints: Constraints, J_d: np.ndarray) -> list[int]:
-    """The simplest closing rows that are independent in the dependent speeds, in their order."""
+    """The simplest constraint rows that are independent in the dependent speeds, in their order."""
     speeds = _dependent_speeds(constraints)
     chosen: list[int] = []
     for i in sorted(range(len(constraints.closing)), key=lambda i: (*_difficulty(constraints, i, speeds), i)):
@@ -220,7 +220,7 @@ class _LinearRows:
     Args:
         constraints: all of them.
         numbers: J at a state in which they hold.
-        rows: of the closing rows.
+        rows: of the constraint rows.
         dependent, kept: indices of the speeds that are solved for, and of those that are not.
         vanishing: (row, speed) of entries that vanish wherever the constraints hold.
         are_squared: whether they are taken together, J_d^T (J_d u_d + J_i u_i + sigma) = 0.

@@ -69,7 +69,7 @@ class Freedom:
         by_rank: nu - rank J, None where it was not counted.
         by_formula: 3 Nb + 2 Np - the components, None where it was not counted.
         formula: the same as text.
-        redundant: closing rows that follow from those declared before them; then rows that only react, and hold what
+        redundant: constraint rows that follow from those declared before them; then rows that only react, and hold what
             joints or other constraints hold already.
         identical_rows: rows that the coordinates satisfy by themselves: they only carry a reaction.
         closing_rows: the others.
@@ -199,12 +199,12 @@ def degrees_of_freedom(constraints: Constraints, state: State | None = None) -> 
 
 
 def rank_of_constraints(constraints: Constraints, state: State | None = None) -> int:
-    """rank J, how many closing rows are independent; the state and the errors are those of `redundant_rows`."""
+    """rank J, how many constraint rows are independent; the state and the errors are those of `redundant_rows`."""
     return len(constraints.closing) - len(redundant_rows(constraints, state))
 
 
 def redundant_rows(constraints: Constraints, state: State | None = None) -> tuple[Redundant, ...]:
-    """The closing rows that follow from those before them, at a generic configuration in which the constraints hold.
+    """The constraint rows that follow from those before them, at a generic configuration in which the constraints hold.
 
     Args:
         state: such a configuration, where one is known already.
@@ -229,7 +229,7 @@ def redundant_rows(constraints: Constraints, state: State | None = None) -> tupl
 
 
 def rows_alike(constraints: Constraints) -> tuple[int, ...]:
-    """Number of the group of each closing row; rows of one group depend linearly on one another.
+    """Number of the group of each constraint row; rows of one group depend linearly on one another.
 
     The row of a group that is redundant may change along a motion: d cos q = 0 and d sin q = 0 determine d in turns.
     Rows are of one kind where their lengths are, at a generic state, within LONGER of one another.
@@ -253,13 +253,13 @@ def rows_alike(constraints: Constraints) -> tuple[int, ...]:
 
 
 def rows_held_twice(constraints: Constraints, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:
-    """The rows that the coordinates satisfy and that joints, closing rows or such rows before them hold already.
+    """The rows that the coordinates satisfy and that joints, constraint rows or such rows before them hold already.
 
     W^T xi of such a row depends on those of the others in all ways that the joints leave the bodies: where it carries
     a reaction, they share it.
 
     Args:
-        redundant: closing rows that follow from others.
+        redundant: constraint rows that follow from others.
         state: a generic configuration in which the constraints hold.
     """
     dropped = {(row.constraint, row.number) for row in redundant}
@@ -460,7 +460,7 @@ class _Forms:
 
 
 def integrability_of(constraints: Constraints) -> Integrability | None:
-    """Integrability of the closing rows of velocities alone; None where there are none.
+    """Integrability of the constraint rows of velocities alone; None where there are none.
 
     Args:
         constraints: over the rates, before any elimination.

@@ -128,7 +128,7 @@ class Constraints:
 
     @cached_property
     def J(self) -> tuple[tuple[Scalar, ...], ...]:
-        """J u + sigma = 0: one row for each closing row."""
+        """J u + sigma = 0: one row for each constraint row."""
         velocities = tuple(row.velocity for row in self.closing)
         return jacobian(velocities, self.motion.scope.symbols.u) if velocities else ()
 

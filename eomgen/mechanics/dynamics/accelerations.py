@@ -170,7 +170,7 @@ def with_accelerations(equations: EquationsOfMotion) -> EquationsOfMotion:
 
 
 def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, ...]:
-    """a of the tree under its loads, closing rows left out."""
+    """a of the tree under its loads, constraint rows left out."""
     motion = loads.motion
     size = len(motion.scope.symbols.u)
     direct = zip(joint_forces(loads), placeless_forces(loads), armature_bias(motion, size), strict=True)
@@ -329,7 +329,7 @@ def _turn(branch: Branch, a: Vector) -> Vector:
 
 
 # -------- stabilization ---------------------------------------------------------------------------------------
-# Equations of motion, rates -> the same with closing rows that pull back what has opened, after Baumgarte.
+# Equations of motion, rates -> the same with constraint rows that pull back what has opened, after Baumgarte.
 #
 #     J a + gamma + 2 alpha (J u + sigma) + beta^2 phi = 0
 #

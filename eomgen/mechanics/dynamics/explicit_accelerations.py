@@ -28,7 +28,7 @@ def by_determinants(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[N
     """a and lam of the bordered equations at once; redundant rows are left out, their lam 0.
 
     Args:
-        kept: the closing rows that do not follow from others.
+        kept: the constraint rows that do not follow from others.
     Raises:
         DerivationError: too many unknowns hang together.
     """
@@ -82,7 +82,7 @@ def _entries(row: ScalarRow) -> dict[int, Scalar]:
 
 
 def regular_rows(system: System) -> list[int]:
-    """The closing rows that do not follow from others."""
+    """The constraint rows that do not follow from others."""
     dropped = {(row.constraint, row.number) for row in redundant_rows(system.constraints)}
     return [i for i, row in enumerate(system.constraints.closing) if (row.constraint, row.number) not in dropped]
 
@@ -90,7 +90,7 @@ def regular_rows(system: System) -> list[int]:
 def by_short_rows(equations: EquationsOfMotion, simple: Callable[[Scalar], Scalar]) -> dict[Node, Scalar] | None:
     """a and lam by determinants of entries at their simplest, where constraints hold fixed ratios of rates; else None.
 
-    A closing row is divided by that entry which leaves it shortest: a gear's row then holds two ratios of radii, and no
+    A constraint row is divided by the entry which leaves it shortest: a gear's row then holds two ratios of radii, no
     factor of it comes back squared in every minor.
     """
     symbols, kept = equations.symbols, regular_rows(equations.system)

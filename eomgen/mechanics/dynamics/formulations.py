@@ -50,7 +50,7 @@ from eomgen.symbolic.print.text import text_size, to_text
 
 
 def assembled_by_energies(system: System) -> EquationsOfMotion:
-    """The equations of motion from the energies; closing rows by multipliers."""
+    """The equations of motion from the energies; constraint rows by multipliers."""
     if system.free is not None:
         return _reduced(system, system.free)
     T = kinetic_energy(system.motion)
@@ -128,7 +128,7 @@ def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...
 
 
 def assembled_by_wrenches(system: System) -> EquationsOfMotion:
-    """The equations of motion from wrenches and twists; closing rows by multipliers."""
+    """The equations of motion from wrenches and twists; constraint rows by multipliers."""
     M, c = inertia_by_twists(system.motion)
     return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
 
@@ -231,7 +231,7 @@ def applied_to_bodies(loads: Loads) -> dict[str, Wrench]:
 
 
 def assembled_by_recursion(system: System) -> EquationsOfMotion:
-    """The equations of motion by recursion over the tree; closing rows by multipliers."""
+    """The equations of motion by recursion over the tree; constraint rows by multipliers."""
     motion = system.motion
     branches = branches_of(motion)
     return assembled(

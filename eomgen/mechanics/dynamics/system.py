@@ -85,7 +85,7 @@ class System:
 
     @cached_property
     def symbols(self) -> Symbols:
-        """The symbols of the model, one multiplier for each closing row included."""
+        """The symbols of the model, one multiplier for each constraint row included."""
         symbols = self.scope.symbols
         lam = tuple(symbols.graph.symbol(row.label) for row in self.constraints.closing)
         return replace(symbols, lam=lam)
@@ -281,12 +281,12 @@ class EquationsOfMotion:
         c: inertia terms left when a = 0, nu.
         Q: generalized forces of everything applied, nu.
         forcing: Q - c, nu (of its own: it can be cheaper than the difference).
-        J, sigma, gamma: closing rows, k rows of nu entries; velocity bias, k; acceleration bias, k.
+        J, sigma, gamma: constraint rows, k rows of nu entries; velocity bias, k; acceleration bias, k.
         phi: gaps, k (None for a row that has none).
         T, V: kinetic and potential energy [J].
         accelerations: a as explicit expressions where the formulation gives them (articulated body), else None.
         friction: the part of Q that contacts with friction make, nu; () where there is no friction.
-        alike: of each closing row a number that it has with those that share what they hold (`rows_alike`); () of few.
+        alike: of each constraint row the number of its group of alike rows (`rows_alike`); () of few.
     """
 
     system: System
@@ -308,7 +308,7 @@ class EquationsOfMotion:
 
     def __repr__(self) -> str:
         name = self.system.scope.model.name
-        return f"<equations of motion of {name!r}: {len(self.M)} speeds, {len(self.J)} closing rows>"
+        return f"<equations of motion of {name!r}: {len(self.M)} speeds, {len(self.J)} constraint rows>"
 
     @property
     def symbols(self) -> Symbols:
@@ -335,7 +335,7 @@ class EquationsOfMotion:
 def assembled(
     system: System, *, M: tuple[ScalarRow, ...], c: ScalarRow, Q: ScalarRow, T: Scalar, forcing: ScalarRow | None = None
 ) -> EquationsOfMotion:
-    """The formulation's M, c, Q and T with what all formulations share: kinematics, closing rows, V."""
+    """The formulation's M, c, Q and T with what all formulations share: kinematics, constraint rows, V."""
     scope, constraints = system.scope, system.constraints
     if forcing is None:
         forcing = tuple(force - inertia for force, inertia in zip(Q, c, strict=True))

@@ -66,7 +66,7 @@ class StaticEquations:
         q: the coordinates sought.
         given: what stands in place of speeds, time, inputs and driven coordinates.
         Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
-        J: of each closing row its coefficients, lam its multiplier.
+        J: of each constraint row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
         sigma: what remains of the velocity rows at zero speed; it vanishes at rest.
         norms: how many of the rows of J, the last ones, are those of the norms of quaternions.

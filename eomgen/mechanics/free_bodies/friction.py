@@ -36,7 +36,7 @@ from eomgen.symbolic.solve.linear import LinearSystem, Solution, ValuesAt, uniqu
 #
 #     M a + c = Q + J^T lam + sum f_r |N_r|,   J a + gamma = 0,   f_r = factor_r dv_r/du
 #
-# N_r of a closing row is its multiplier; of a row or joint that only reacts it follows from the balance of the bodies
+# N_r of a constraint row is its multiplier; of one that only reacts it follows from the equilibrium of the bodies
 # across what the coordinates allow, friction a load of it: N_r = n_r + m_r a + sum k_rs N_s. A bilateral contact on a
 # line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations are not linear (see `round_contacts`). What comes out
 # is friction as a generalized force of q, u and t.

@@ -365,7 +365,7 @@ class GivenRow:
 
 
 def constraint_lines(system: System, state: Mapping[Node, Scalar], *, accelerations: bool = False) -> list[GivenRow]:
-    """J u = - sigma, or J a = - gamma, of every closing row at a state."""
+    """J u = - sigma, or J a = - gamma, of every constraint row at a state."""
     constraints, symbols = system.constraints, system.symbols
     rates, right = (symbols.a, constraints.gamma) if accelerations else (symbols.u, constraints.sigma)
     width = len(rates)

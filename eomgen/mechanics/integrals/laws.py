@@ -477,7 +477,7 @@ def _integrated_relations(system: System, start: Mapping[Node, Scalar], relation
 def _integrated_rates(system: System, start: Mapping[Node, Scalar]) -> list[Scalar]:
     """q - q0 - sum of A_k (q_k - q_k0) of q' = sum of A_k q_k' with numbers A_k, or one A_k that is a function of q_k.
 
-    Of closing rows J u = 0 without a gap, with a J that does not move, J (q - q0). Dependent coordinates that gaps
+    Of constraint rows J u = 0 without a gap, with a J that does not move, J (q - q0). Dependent coordinates that gaps
     determine are where these say, and their q0 may be a guess.
     """
     symbols, scope = system.symbols, system.scope

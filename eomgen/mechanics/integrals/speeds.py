@@ -30,7 +30,7 @@ from eomgen.symbolic.solve.solving import vanishes
 # -------- speeds ----------------------------------------------------------------------------------------------
 # First integrals, start -> every speed as a function of the coordinates, without time.
 #
-# Momenta and closing rows are linear in the speeds and leave one of them (`relations`), which the energy gives, or
+# Momenta and constraint rows are linear in the speeds and leave one of them (`relations`), which the energy gives, or
 # the equation of its path (`free_speed`).
 
 
@@ -251,7 +251,7 @@ def exponential_of(x: Scalar) -> Scalar:
 
 
 # -------- speeds from momenta ---------------------------------------------------------------------------------
-# Momenta, closing rows -> every speed by one of them, without time: both are linear in the speeds.
+# Momenta, constraint rows -> every speed by one of them, without time: both are linear in the speeds.
 
 
 MOST_SPEEDS = 12  # of a system whose speeds are sought from its integrals
@@ -280,7 +280,7 @@ class Relations:
 def relations_of(
     equations: EquationsOfMotion, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
 ) -> Relations | None:
-    """Relations between the speeds from momenta and closing rows, all linear in them; None if several stay free.
+    """Relations between the speeds from momenta and constraint rows, all linear in them; None if several stay free.
 
     Args:
         start: q and u at the start, scalars of the parameters.

@@ -99,7 +99,7 @@ class Reducing:
 
     @cached_property
     def J(self) -> Entries:
-        """The independent closing rows; the others follow from them."""
+        """The independent constraint rows; the others follow from them."""
         return at(self.field, [self.first.equations.J[i] for i in self.choice.constraints])
 
     @cached_property

@@ -396,7 +396,7 @@ def by_independent(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[No
     """a and lam, where the constraints leave few degrees of freedom; redundant rows are left out, their lam 0.
 
     Args:
-        kept: the closing rows that do not follow from others.
+        kept: the constraint rows that do not follow from others.
     Raises:
         DerivationError: too many unknowns hang together.
         MissingValues: the constraints do not close without values.

@@ -40,7 +40,7 @@ def exact_power(base: Number, exponent: int) -> Number:
 
 
 def root_of(c: Number) -> tuple[Number, int]:
-    """(outside, inside) with sqrt(c) = outside * sqrt(inside), inside a whole number; squares taken out."""
+    """(outside, inside) with sqrt(c) = outside * sqrt(inside), inside a whole number; squares extracted."""
     c = Fraction(c)
     inside = c.numerator * c.denominator  # sqrt(p/q) = sqrt(p q) / q
     outside = Fraction(1, c.denominator)

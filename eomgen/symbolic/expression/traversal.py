@@ -113,7 +113,7 @@ class Symbols:
         q: generalized coordinates, nq, named `theta`.
         u: generalized speeds, nu, named `theta'` where u is a rate, else by the speed's name.
         a: accelerations u', nu, named `theta''` or `w1'`.
-        lam: multipliers of the closing rows, k, named `lam(constraint, row)`, row from 1.
+        lam: multipliers of the constraint rows, k, named `lam(constraint, row)`, row from 1.
         unknowns: numbers that are requested, by name, in the model's order.
     """
 
