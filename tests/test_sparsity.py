@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import runpy
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -74,28 +75,44 @@ def at(made: EquationsOfMotion, t: float, x: tuple[float, ...], p: tuple[float, 
     return M.reshape(n, n), J.reshape(k, n), f, -gamma
 
 
-@each_target
-@each_case
-def test_accelerations_are_those_of_the_whole_system(target, case):
-    """[[M, -J^T], [J, 0]] [a; lam] = [f; g] by numpy's least squares, no zeros used."""
-    made = legs_under_a_plate(**case)
+@cache
+def whole_systems(case: str):
+    """(program, states, accelerations there by numpy's least squares of the whole system), for all languages once."""
+    made = legs_under_a_plate(**CASES[case])
     n, k = len(made.M), len(made.J)
-    rhs = compiled(right_hand_side(made), target)
-    for seed in range(5):
-        x = np.random.default_rng(seed).uniform(-0.6, 0.6, size=2 * n)
+    states = [np.random.default_rng(seed).uniform(-0.6, 0.6, size=2 * n) for seed in range(5)]
+    found = []
+    for x in states:
         M, J, f, g = at(made, 0.0, x, [1.7])
         whole = np.block([[M, -J.T], [J, np.zeros((k, k))]])
-        a = np.linalg.lstsq(whole, np.concatenate([f, g]), rcond=1e-11)[0][:n]
-        assert rhs(0.0, x, [1.7])[n:] == pytest.approx(a, rel=1e-8, abs=1e-8)
+        found.append(np.linalg.lstsq(whole, np.concatenate([f, g]), rcond=1e-11)[0][:n])
+    return right_hand_side(made), states, found
 
 
 @each_target
-@each_case
+@pytest.mark.parametrize("case", CASES)
+def test_accelerations_are_those_of_the_whole_system(target, case):
+    """[[M, -J^T], [J, 0]] [a; lam] = [f; g] by numpy's least squares, no zeros used."""
+    program, states, expected = whole_systems(case)
+    rhs = compiled(program, target)
+    for x, a in zip(states, expected, strict=True):
+        assert rhs(0.0, x, [1.7])[len(a) :] == pytest.approx(a, rel=1e-8, abs=1e-8)
+
+
+@cache
+def with_vectors(case: str):
+    """(program, its vectors), for all languages once."""
+    program = whole_systems(case)[0]
+    return program, vectors(program)
+
+
+@each_target
+@pytest.mark.parametrize("case", CASES)
 def test_emitted_solves_agree_with_fifty_digits(target, case):
     """dx of every case."""
-    program = right_hand_side(legs_under_a_plate(**case))
+    program, told = with_vectors(case)
     function = compiled(program, target)
-    for v in vectors(program):
+    for v in told:
         assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
 
 
@@ -109,21 +126,29 @@ def turning_bars(n: int = 13) -> EquationsOfMotion:
 MANY = {"a full matrix": turning_bars, "massless legs": lambda: legs_under_a_plate(2, massless=True)}
 
 
-@marked(name for name in RUN_HERE if name not in ("jax", "numba", "fmu"))  # which take long, by the texts of others
-@pytest.mark.parametrize("name", MANY)
-def test_many_right_sides_have_one_factorization(target, name):
-    """A = df/dx by the solve of the motion, factored once in the text, in every language: the differences of f."""
+@cache
+def slopes_by_differences(name: str):
+    """(program of A = df/dx, a state, parameters, the differences of f there), for all languages once."""
     made = MANY[name]()
     found = slopes_of(made)
     assert len(found.solves) > 1
     program = program_of_blocks(found.blocks, made, found.motion, found.solves)
+    rhs, n = compiled(right_hand_side(made), "numpy"), 2 * len(made.M)
+    x, h, p = np.random.default_rng(1).uniform(-0.3, 0.3, n), 1e-5, [1.7] * len(made.symbols.parameters)
+    moved = [(rhs(0.0, x + h * e, p) - rhs(0.0, x - h * e, p)) / (2 * h) for e in np.eye(n)]
+    return program, x, p, np.transpose(moved)
+
+
+@marked(name for name in RUN_HERE if name not in ("jax", "numba", "fmu"))  # which take long, by the texts of others
+@pytest.mark.parametrize("name", MANY)
+def test_many_right_sides_have_one_factorization(target, name):
+    """A = df/dx by the solve of the motion, factored once in the text, in every language: the differences of f."""
+    program, x, p, moved = slopes_by_differences(name)
     once = re.findall(r"^ +solve_(?:factors|plain)\(", c_text(program, "m"), flags=re.MULTILINE)
     assert len(once) == 1
-    function, rhs, n = compiled(program, target), compiled(right_hand_side(made), "numpy"), 2 * len(made.M)
-    x, h, p = np.random.default_rng(1).uniform(-0.3, 0.3, n), 1e-5, [1.7] * len(made.symbols.parameters)
+    function, n = compiled(program, target), len(x)
     A = function(0.0, x, p).reshape(n, n)
-    moved = [(rhs(0.0, x + h * e, p) - rhs(0.0, x - h * e, p)) / (2 * h) for e in np.eye(n)]
-    assert np.transpose(moved) == pytest.approx(A, rel=1e-7, abs=1e-7)
+    assert moved == pytest.approx(A, rel=1e-7, abs=1e-7)
     assert function.many([0.0, 0.0], [x, x], p)[1].reshape(n, n) == pytest.approx(A, rel=1e-11, abs=1e-11)
 
 
@@ -291,15 +316,22 @@ def long_row(n: int) -> EquationsOfMotion:
     return equations_of(made.symbols, made.M, [0] * n, forcing)
 
 
+@cache
+def long_program(n: int):
+    """(program in parts, its vectors), for all languages once."""
+    program = right_hand_side(long_row(n))
+    assert pieces(program) > 2
+    assert any(isinstance(s, Solve) for s in program.statements) is (n == 20)
+    return program, vectors(program, count=2)
+
+
 @each_target
 @pytest.mark.parametrize("n", [3, 20], ids=["written out", "solve"])
 def test_a_long_program_in_parts_returns_what_its_graph_does(target, n):
     """Parts hand each other what they share: dx against 50 digits."""
-    program = right_hand_side(long_row(n))
-    assert pieces(program) > 2
-    assert any(isinstance(s, Solve) for s in program.statements) is (n == 20)
+    program, told = long_program(n)
     function = compiled(program, target)
-    for v in vectors(program, count=2):
+    for v in told:
         assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
 
 

@@ -265,7 +265,12 @@ def in_time(equations: Equations) -> Document:
     """The derivation with what is driven as functions of time, in the symbols of the equations."""
     if equations.in_print is equations.graph:
         return equations.derivation
-    return derivation_of(equations.graph, equations.method)
+    if id(equations) not in _IN_TIME:
+        _IN_TIME[id(equations)] = equations, derivation_of(equations.graph, equations.method)
+    return _IN_TIME[id(equations)][1]
+
+
+_IN_TIME: dict[int, tuple[Equations, Document]] = {}  # equations are told apart by what they are: no hash looks at all
 
 
 def free_system(equations: Equations) -> System:
