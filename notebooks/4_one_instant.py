@@ -39,6 +39,8 @@ motion = eomgen.kinematics(linkage)
 motion.picture
 
 # %% [markdown]
+# ## Velocities, centres, accelerations
+#
 # The picture shows the velocities, the centres about which the bodies turn at this instant, and beside them how
 # the velocity changes along x and along y. The numbers with their equations:
 

@@ -90,6 +90,15 @@ def test_a_page_of_the_gallery_tells_what_eomgen_finds(site):
     assert all(name == picture for name, picture in cards) and {name for name, _ in cards} == found.keys() - {"index"}
 
 
+def test_a_notebook_is_a_page_with_what_it_showed(site):
+    """Its code, formulas, and each of its pictures; the page of all leads there."""
+    found = {path.stem: path.read_text("utf-8") for path in site.glob("notebooks/*.html")}
+    kept = {path.stem: path.read_text("utf-8") for path in (ROOT / "notebooks").glob("*.ipynb")}
+    assert found.keys() == kept.keys() | {"index"} and all(f'href="{name}.html"' in found["index"] for name in kept)
+    assert all(found[name].count("<img") == text.count('"image/png": "') for name, text in kept.items())
+    assert "<math" in found["1_first_motion"] and "eomgen.derive" in re.sub("<[^>]+>", "", found["1_first_motion"])
+
+
 def test_a_search_asks_for_no_other_page(site):
     """A browser lets no page of a file fetch another: what is found is listed by its title."""
     assert "SHOW_SEARCH_SUMMARY: false" in (site / "_static" / "documentation_options.js").read_text("utf-8")

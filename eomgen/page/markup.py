@@ -186,7 +186,7 @@ def mathml(tex: str, *, display: bool = False) -> Html:
     from math_core import LatexError
 
     try:
-        found = converter.convert_with_local_state(_words_apart(tex), displaystyle=display)
+        found = converter.convert_with_local_state(words_apart(tex), displaystyle=display)
     except LatexError:
         return element("code", tex, class_="unset")
     for long, short in (ROWS, LEFT, OVERLINE):
@@ -194,7 +194,7 @@ def mathml(tex: str, *, display: bool = False) -> Html:
     return Html(found)
 
 
-def _words_apart(tex: str) -> str:
+def words_apart(tex: str) -> str:
     r"""Words with formulas among them as words, formula, words: \text{N$\cdot$m} -> \text{N}\cdot\text{m}."""
     return _WORDS.sub(lambda found: _parted(found[1]), tex)
 
