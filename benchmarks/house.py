@@ -10,7 +10,7 @@ import re
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "eomgen"
@@ -19,6 +19,15 @@ SEAMS = ("joints", "forces", "constraints", "shapes", "outputs", "targets", "ver
 LOWER = ("symbolic", "model", "mechanics", "codegen", "simulation")
 LAZY = re.compile(r"^(?:functools\.)?(?:cached_property|cache|lru_cache)\b")
 MOST_KEPT = 2  # things derived of a model that a class may cache before it counts as a bundle
+
+
+@cache
+def door_of(package: str) -> dict[str, str]:
+    """{name: module} of what a package gives to others by its stub; {} of one without a door."""
+    stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi")
+    if package == "eomgen" or not stub.exists():
+        return {}
+    return {name: home for home, name in re.findall(r"^from (\S+) import (\w+) as \2$", stub.read_text("utf-8"), re.M)}
 
 
 @dataclass(frozen=True)
@@ -71,7 +80,7 @@ class Module:
         """(module, name) of every import from the package, wherever it stands."""
         froms = (n for n in ast.walk(self.tree) if isinstance(n, ast.ImportFrom) and n.module and not n.level)
         return tuple(
-            (node.module.removeprefix("eomgen").removeprefix("."), alias.name)
+            (door_of(node.module).get(alias.name, node.module).removeprefix("eomgen").removeprefix("."), alias.name)
             for node in froms
             if node.module and node.module.split(".")[0] == "eomgen"
             for alias in node.names
@@ -181,6 +190,8 @@ def figures(whole: House) -> Iterator[tuple[str, str]]:
     )
     for room in ("documents", "questions", "verbs", "proof", "judge"):
         yield f"foreign names in {room}", str(len(whole.taken_by(room)))
+    doors = {m.name: len(door_of(f"eomgen.{m.name}")) for m in modules if m.is_init and m.name}
+    yield "rooms with a door (names)", ", ".join(f"{name} {k}" for name, k in sorted(doors.items()) if k)
     yield f"classes that cache more than {MOST_KEPT} properties", str(len(whole.bundles))
     yield "the largest of them", ", ".join(f"{name} {k}" for name, k in whole.bundles[:6])
     yield "public names in more than one module", str(sum(k > 1 for k in homes.values()))

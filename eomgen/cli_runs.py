@@ -179,7 +179,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     DIR/table.csv, a failed one with its message. The same command continues where it was stopped. `--replay RUN DIR`
     repeats one run.
     """
-    from eomgen.sweeps.design import Stepped
+    from eomgen.sweeps import Stepped
     from eomgen.verbs.sweep import SweepRequested, replay_document, sweep_document
 
     form, drawn = form_requested(wants_json, None), bool(options["random"])

@@ -21,7 +21,7 @@ from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
 from eomgen.model.forces.load import UniformField
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
-from eomgen.robots.tables import UNLIMITED, LeftOut, LegalNames, remarked
+from eomgen.robots import UNLIMITED, LeftOut, LegalNames, remarked
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import Pose, minus

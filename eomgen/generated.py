@@ -35,8 +35,7 @@ from eomgen.codegen.vectors import single_error, single_vectors, texts_of, vecto
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.identification.proof_of_groups import groups_checked
-from eomgen.identification.regressor import Regressor, regressor_of
+from eomgen.identification import Regressor, groups_checked, regressor_of
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.mechanics.free_bodies.named_reactions import named_reactions
 from eomgen.model.contacts import contacts_of
@@ -54,7 +53,7 @@ from eomgen.proof.emitted_code import (
     unwritten,
 )
 from eomgen.proof.states import consistent_states
-from eomgen.questions.run import pulling
+from eomgen.questions import pulling
 from eomgen.simulation.contacts import paths_of
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import BEST, RUN, SINGLE

@@ -27,7 +27,7 @@ from eomgen.symbolic.numeric.work import doing, growing
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
     from eomgen.model.parts import Model
-    from eomgen.questions.simulator import Runs, Simulator
+    from eomgen.questions import Runs, Simulator
     from eomgen.simulation.result import Trajectory
 
 
@@ -99,7 +99,7 @@ def simulator(
     Args:
         rtol, atol, target, method, stabilization: as of `simulate`.
     """
-    from eomgen.questions.simulator import Simulator
+    from eomgen.questions import Simulator
     from eomgen.simulation.integrator import Stepping
 
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
@@ -132,7 +132,7 @@ def simulate_many(
         samples, rtol, atol, method, target: as of `simulate`.
         threads: among which the runs are divided.
     """
-    from eomgen.questions.many_runs import many_runs
+    from eomgen.questions import many_runs
 
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method)
     requested = {"parameters": parameters, "start": start, "inputs": inputs}
@@ -173,7 +173,7 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    from eomgen.questions.simulator import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
+    from eomgen.questions import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
     from eomgen.simulation.integrate import SAMPLES
 
     model = with_nodes_balanced(model_at(model, parameters, start))

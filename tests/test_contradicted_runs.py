@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.frozen import with_fields
-from eomgen.questions import many_runs
+from eomgen.questions import batch_of_runs as many_runs
 from eomgen.simulation.solvers import accuracy_of
 
 pytestmark = pytest.mark.slow

@@ -22,7 +22,7 @@ from eomgen.identification.base_parameters import Group
 from eomgen.identification.constrained_rows import sampled_rows
 from eomgen.identification.fit import _begun_checked, noise_of, numbers_of
 from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, samples_checked, spread_checked
-from eomgen.identification.regressor import Regressor, regressor_of
+from eomgen.identification.regressors import Regressor, regressor_of
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.equality import equal_at_random_states

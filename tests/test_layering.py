@@ -15,7 +15,7 @@ TESTS = Path(__file__).parent
 PACKAGE = TESTS.parent / "eomgen"
 IMPORTED = re.compile(r"^(?:from|import) eomgen\.(\w+)", re.M)
 CHAIN = (
-    ("version", "frozen"),
+    ("version", "frozen", "doors"),
     ("errors",),
     ("files",),
     ("disk_cache",),
@@ -221,6 +221,45 @@ def test_an_import_to_the_right_is_seen(tmp_path):
 def test_a_ring_is_seen():
     """a -> b -> c -> a is a ring."""
     assert ring({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == ["a", "b", "c", "a"]
+
+
+DOORS = {  # rooms that are imported through what their stub names, and how many names that is: it may only fall
+    "robots": 9,
+    "scene": 28,
+    "questions": 22,
+    "sensitivities": 6,
+    "sweeps": 17,
+    "identification": 6,
+    "page": 29,
+    "judge": 9,
+}
+
+
+def given(package: str) -> set[str]:
+    """The names in the stub of a package, each with the module that it comes from."""
+    stub = PACKAGE.joinpath(*package.split(".")[1:], "__init__.pyi").read_text("utf-8")
+    return set(re.findall(r"^from \S+ import (\w+) as \1$", stub, re.M))
+
+
+@pytest.mark.parametrize("own", DOORS)
+def test_a_room_with_a_door_is_entered_by_its_door(own):
+    """Other rooms import from the package alone, only what its stub names; and all that it names is used."""
+    used = given("eomgen")
+    for name, path in module_names(PACKAGE).items():
+        if room(name) == own or name == "eomgen":
+            continue
+        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+            if isinstance(node, ast.ImportFrom) and room(node.module or "") == own:
+                names = {alias.name for alias in node.names}
+                assert node.module == f"eomgen.{own}" and names <= given(node.module), f"{name}:{node.lineno}"
+                used |= names
+    assert given(f"eomgen.{own}") <= used
+    assert len(given(f"eomgen.{own}")) <= DOORS[own]
+
+
+def test_all_rooms_with_a_stub_have_a_door_here():
+    """A stub beside `__init__` is a door, and a door is kept."""
+    assert {path.parent.name for path in PACKAGE.glob("*/__init__.pyi")} == DOORS.keys()
 
 
 def test_the_page_of_the_house_names_every_room_and_no_module_that_is_gone():

@@ -28,8 +28,8 @@ from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm
+from eomgen.scene.frames_of_phases import phase_frames
 from eomgen.scene.making import scene_of_system
-from eomgen.scene.phase_frames import phase_frames
 from eomgen.scene.scene import frames_along, scalars_of
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers

@@ -24,8 +24,8 @@ from eomgen.page.player import (
     player_reported,
 )
 from eomgen.proof.pictures_reported import pictures_reported, states_shown
+from eomgen.scene.frames_of_phases import picture_reported
 from eomgen.scene.making import scene_of
-from eomgen.scene.phase_frames import picture_reported
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.animate import movie_read_back
 from tests.test_shapes import EXAMPLES as SHAPES

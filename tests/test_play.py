@@ -17,8 +17,8 @@ from tools import needs
 
 import eomgen
 from eomgen.cli import main
-from eomgen.page.play import play
-from eomgen.scene.phase_frames import phase_frames
+from eomgen.page.playing import play
+from eomgen.scene.frames_of_phases import phase_frames
 
 pytestmark = [pytest.mark.slow, needs("chromium")]
 

@@ -19,8 +19,8 @@ from eomgen.documents.figures import mathtext, over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import stabilized
-from eomgen.questions.run import page_time, run_of_a_page
-from eomgen.questions.run import run as run_equations
+from eomgen.questions.single_run import page_time, run_of_a_page
+from eomgen.questions.single_run import run as run_equations
 from eomgen.simulation.integrate import drift_of, integrate
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_model import slope_of

@@ -32,7 +32,7 @@ from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
 from eomgen.sweeps import workers
 from eomgen.sweeps import workers as kernel
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
-from eomgen.sweeps.sweep import sweep_at
+from eomgen.sweeps.runs_of_a_plan import sweep_at
 from eomgen.sweeps.workers import SweepKernel
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.work import check_patience

@@ -20,9 +20,7 @@ from eomgen.documents.letters import PlacedName
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.scene.making import scene_of_system
-from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.strokes import Drawing, Letter, SceneNumbers, Stroke
+from eomgen.scene import Drawing, Letter, SceneNumbers, Stroke, plane_drawing, scene_of_system
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.sure_numbers import numbers_of

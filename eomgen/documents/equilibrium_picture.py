@@ -9,11 +9,7 @@ from eomgen.documents.figures import Picture
 from eomgen.documents.latex_math import notation_of
 from eomgen.documents.space_drawing import draw_space, page_limits
 from eomgen.model.parts import Model
-from eomgen.scene.making import scene_of
-from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.scene import Scene, drawn_start, frame_at
-from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import Drawing, SceneNumbers
+from eomgen.scene import Drawing, Scene, SceneNumbers, drawn_start, frame_at, plane_drawing, scene_of, space_drawing
 
 WIDTHS, HEIGHT, TITLE = (3.4, 8.0), 4.2, 0.4  # [inches]
 

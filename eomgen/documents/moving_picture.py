@@ -29,13 +29,22 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.linearization.modes import Mode, Modes
 from eomgen.model.diagnostics import nearest
-from eomgen.scene.making import named_points, scene_of_system
-from eomgen.scene.phase_frames import phase_frames
-from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.scene import DrawnState, Scene, SceneFrame, frames_along
-from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import Drawing, SceneNumbers, corners_of
-from eomgen.scene.virtual import VirtualDisplacement, swing_of
+from eomgen.scene import (
+    Drawing,
+    DrawnState,
+    Scene,
+    SceneFrame,
+    SceneNumbers,
+    VirtualDisplacement,
+    corners_of,
+    frames_along,
+    named_points,
+    phase_frames,
+    plane_drawing,
+    scene_of_system,
+    space_drawing,
+    swing_of,
+)
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import COMPUTED, WIDE_STEP
 

@@ -14,7 +14,7 @@ from eomgen.documents.drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARR
 from eomgen.documents.latex_math import Notation
 from eomgen.documents.letters import PlacedName
 from eomgen.frozen import dataclass
-from eomgen.scene.strokes import Drawing, Stroke, corners_of
+from eomgen.scene import Drawing, Stroke, corners_of
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
 ALONG_X = 0.9  # cosine of what is upright to x: more, and y goes to the right

@@ -27,7 +27,7 @@ from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.identification.proof_of_groups import StackedSamples, fit_checked, samples_checked, spread_checked
-from eomgen.identification.regressor import Regressor, regressor_of
+from eomgen.identification.regressors import Regressor, regressor_of
 from eomgen.mechanics.dynamics.system import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.pipeline import derive

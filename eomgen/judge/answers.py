@@ -25,7 +25,7 @@ from eomgen.judge.terms import LONG
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
-from eomgen.questions.answers import Answer
+from eomgen.questions import Answer
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.text import parse

@@ -29,9 +29,7 @@ from eomgen.model.dimensions import inferred
 from eomgen.model.fields import AtRest, Table, WrittenEquation
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model, Output
-from eomgen.questions import answers
-from eomgen.questions.answers import Answer
-from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions import Answer, MotionFromStart, solve
 from eomgen.simulation.contacts import has_phases
 from eomgen.study import Study, study_of
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
@@ -405,7 +403,7 @@ class Case:
             "left": Output(value=written.left, at=at, from_=from_),
             "right": Output(value=written.right, at=at, from_=from_),
         }
-        found = answers.solve(_asking(self.model, requested))
+        found = solve(_asking(self.model, requested))
         return found["left"], found["right"]
 
     def exact(self, answer: Answer) -> Scalar | None:

@@ -49,7 +49,7 @@ from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.questions.answers import Answer
+from eomgen.questions import Answer
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.formula import Call, Expression, Reference, over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero

@@ -37,7 +37,7 @@ from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.mechanics.start.state import start_speeds
 from eomgen.model.arithmetic import in_order
 from eomgen.model.parts import Coordinate, Model
-from eomgen.scene.scene import Scene
+from eomgen.scene import Scene
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of

@@ -32,11 +32,7 @@ from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.pictures_reported import picture_of_page, pictures_reported, states_shown
 from eomgen.proof.reports_read import columns_unpacked, unpacked
-from eomgen.scene.connections import reaction_marks, resultants
-from eomgen.scene.making import scene_of_system
-from eomgen.scene.phase_frames import joined, phase_frames
-from eomgen.scene.scene import Scene
-from eomgen.scene.virtual import VirtualDisplacement
+from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.result import Trajectory

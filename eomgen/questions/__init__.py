@@ -1,0 +1,5 @@
+"""Answers to the outputs of a model; the state at an instant; runs of a model."""
+
+from eomgen.doors import door
+
+__getattr__, __dir__, __all__ = door(__name__)

@@ -27,7 +27,7 @@ from eomgen.mechanics.start.exact import ExactStart, known_exactly
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
-from eomgen.questions.run import RunProof
+from eomgen.questions.single_run import RunProof
 from eomgen.simulation.constraint_drift import nearness_of, projection_of
 from eomgen.simulation.contacts import by_the_law, has_phases
 from eomgen.simulation.integrate import integrate

@@ -30,7 +30,7 @@ from eomgen.model.replaced import Valued, Values, with_values
 from eomgen.proof.check import Certificate, checked
 from eomgen.proof.degrees_of_freedom import rows_that_stay
 from eomgen.questions.of_a_run import WholeRun, requested_of
-from eomgen.questions.run import finished_run, phase_models, run
+from eomgen.questions.single_run import finished_run, phase_models, run
 from eomgen.simulation.columns import formulas_of
 from eomgen.simulation.contacts import has_phases
 from eomgen.simulation.integrate import instants_of, refuse_bad_run

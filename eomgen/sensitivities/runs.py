@@ -23,8 +23,7 @@ from eomgen.model.reader import model_at
 from eomgen.model.values import numeric_parameters, start_values
 from eomgen.pipeline import simulator
 from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.questions.answers import solve
-from eomgen.questions.of_a_run import requested_of
+from eomgen.questions import requested_of, solve
 from eomgen.simulation.contacts import changing, has_phases
 from eomgen.simulation.solvers import breakpoints_of, solver_of, step
 from eomgen.study import Study

@@ -27,7 +27,7 @@ from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.model.replaced import Taken, TypedNumbers, refuse_what_is_not_set, with_values
-from eomgen.sensitivities.sensitivity import slope_requested
+from eomgen.sensitivities import slope_requested
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 

@@ -34,10 +34,8 @@ from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import with_values
 from eomgen.pipeline import simulator
-from eomgen.questions.answers import solve
-from eomgen.questions.of_a_run import requested_of
-from eomgen.questions.simulator import Simulator
-from eomgen.sensitivities.sensitivity import slope_in_si
+from eomgen.questions import Simulator, requested_of, solve
+from eomgen.sensitivities import slope_in_si
 from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of
 from eomgen.symbolic.numeric.work import PatienceEnded

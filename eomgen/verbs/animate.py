@@ -38,13 +38,12 @@ from eomgen.mechanics.statics.virtual_work import released_in
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
-from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
+from eomgen.page import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof.check import Check
 from eomgen.proof.pictures_reported import pictures_reported, states_shown
-from eomgen.questions.run import PAGE_TIME, page_stepping, page_time
-from eomgen.questions.run import run as simulated
-from eomgen.scene.phase_frames import picture_reported
-from eomgen.scene.virtual import VirtualDisplacement
+from eomgen.questions import PAGE_TIME, page_stepping, page_time
+from eomgen.questions import run as simulated
+from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.study import study_at_rest
@@ -70,7 +69,7 @@ class PlayerFrame:
         return f"<page of a motion, {len(self.page) // 1024} KB>"
 
     def _repr_html_(self) -> str:
-        from eomgen.page.contents import framed
+        from eomgen.page import framed
 
         return framed(self.page)
 
@@ -233,7 +232,7 @@ def virtual_displacement(
 
 
 def _displacement_page(found: VirtualDisplacement) -> str:
-    from eomgen.page.player import PlayedDisplacements
+    from eomgen.page import PlayedDisplacements
 
     return player_page_of(PlayedDisplacements((found,)))
 

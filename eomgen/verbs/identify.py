@@ -13,8 +13,7 @@ from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines, prose
 from eomgen.errors import UsageError
 from eomgen.files import read
-from eomgen.identification.fit import Identified, identify
-from eomgen.identification.regressor import Regressor, regressor
+from eomgen.identification import Identified, Regressor, identify, regressor
 from eomgen.model.parts import Model
 
 LARGEST = 200_000_000  # bytes of a file

@@ -12,7 +12,7 @@ from eomgen.errors import UsageError
 from eomgen.pipeline import derive
 from eomgen.proof.imported import imported_otherwise, sdf_otherwise, without_units
 from eomgen.proof.imported_mjcf import mjcf_otherwise
-from eomgen.robots.importing import ImportedRobot, first_element, imported
+from eomgen.robots import ImportedRobot, first_element, imported
 
 MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared
 OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}

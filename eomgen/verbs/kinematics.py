@@ -8,7 +8,7 @@ from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
-from eomgen.questions.velocities import kinematics as found_in
+from eomgen.questions import kinematics as found_in
 from eomgen.verbs.assignments import nearest_name
 
 

@@ -11,8 +11,7 @@ from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.model.parts import Model
-from eomgen.page.play import played, slider_ranges
-from eomgen.page.player import PlayerOptions
+from eomgen.page import PlayerOptions, played, slider_ranges
 from eomgen.verbs.outcome import with_start_reported
 
 

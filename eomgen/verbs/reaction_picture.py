@@ -9,7 +9,7 @@ from eomgen.documents.figures import Picture, run_picture
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.start.exact import known_exactly
 from eomgen.model.parts import Model
-from eomgen.questions.run import run_of_a_page
+from eomgen.questions import run_of_a_page
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.sure_numbers import number_of

@@ -38,7 +38,7 @@ from eomgen.model.unknowns import in_loads
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
-from eomgen.questions import answers
+from eomgen.questions import Answers, solve
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.rational import Fraction
@@ -259,12 +259,12 @@ def _answers(
     values = [parse(text, references=True) for text in requested]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
     model = _checked(model, f"--at {getattr(at, 'text', at)}", outputs=Table(outputs))
-    solved = answers.solve(model)
+    solved = solve(model)
     pairs = zip(requested.items(), solved.values(), strict=True)
     return {text: replace(answer, unit=unit) for (text, unit), answer in pairs}, partial(_proof_of_answers, solved)
 
 
-def _proof_of_answers(solved: answers.Answers, found: Mapping[str, Quantity]) -> Certificate:
+def _proof_of_answers(solved: Answers, found: Mapping[str, Quantity]) -> Certificate:
     """Proof of the outputs that stand for reactions, under the names of the reactions."""
     names = dict(zip(solved, found, strict=True))
     solved.update(zip(solved, found.values(), strict=True))

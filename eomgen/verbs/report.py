@@ -30,27 +30,35 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.units import units_of
-from eomgen.page.contents import PLAYER, SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
-from eomgen.page.figure import figure_of, motion_drawings, rest_figure
-from eomgen.page.formats import FORMATS, FilesByName, written_as
-from eomgen.page.markup import Html, element, in_a_row
-from eomgen.page.player import (
+from eomgen.page import (
+    FORMATS,
+    PLAYER,
+    SECTIONS,
+    Attachment,
+    FilesByName,
+    Html,
     Playable,
     PlayedDisplacements,
     PlayedRun,
     PlayerOptions,
+    Report,
+    ReportFigure,
+    ReportSection,
+    element,
+    figure_of,
+    in_a_row,
+    joint_proof,
+    motion_drawings,
     player_parts_of,
     player_read_back,
+    report_read_back,
+    rest_figure,
+    written_as,
 )
-from eomgen.page.read_back import report_read_back
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.pictures_reported import pictures_reported, states_shown
-from eomgen.questions import answers
-from eomgen.questions.run import PAGE_TIME, run_of_a_page
-from eomgen.questions.velocities import kinematics
-from eomgen.scene.making import scene_of
-from eomgen.scene.phase_frames import picture_reported
-from eomgen.scene.virtual import VirtualDisplacement
+from eomgen.questions import PAGE_TIME, kinematics, run_of_a_page, solve
+from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
@@ -164,7 +172,7 @@ FOUND: dict[str, Callable[[Model], Result]] = {
     "kinematics": kinematics,
     "inertia": inertia,
     "linearize": linearize,
-    "outputs": answers.solve,
+    "outputs": solve,
 }
 
 

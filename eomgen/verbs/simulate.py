@@ -26,7 +26,7 @@ from eomgen.model.parts import Model
 from eomgen.model.samples import left_tables
 from eomgen.model.units import units_of
 from eomgen.proof.run_reported import ReportedRun, run_reported
-from eomgen.questions.run import run as simulated
+from eomgen.questions import run as simulated
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.solvers import Accuracy

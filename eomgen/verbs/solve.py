@@ -7,7 +7,7 @@ from dataclasses import replace
 from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.model.parts import Model
-from eomgen.questions import answers
+from eomgen.questions import solve
 from eomgen.verbs.outcome import with_start_reported
 
 LATE = "there was no time left"
@@ -15,7 +15,7 @@ LATE = "there was no time left"
 
 def solve_document(model: Model, *, certify: bool = True) -> Document:
     """Every entry of [outputs]."""
-    found = answers.solve(model)
+    found = solve(model)
     document = with_start_reported(found.document, model)
     if found.stopped:
         note = f"Nothing of it is proven: {'it was interrupted' if found.stopped == 'interrupted' else LATE}."

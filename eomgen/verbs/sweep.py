@@ -20,14 +20,27 @@ from eomgen.model.replaced import range_of
 from eomgen.pipeline import simulate
 from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
-from eomgen.questions.answers import solve
-from eomgen.questions.of_a_run import requested_of, requested_typed
-from eomgen.questions.run import answered_otherwise
-from eomgen.sensitivities.sensitivity import checks_of_slope, slope_in_si
+from eomgen.questions import answered_otherwise, requested_of, requested_typed, solve
+from eomgen.sensitivities import checks_of_slope, slope_in_si
 from eomgen.simulation.result import Trajectory
-from eomgen.sweeps.design import Stepped, SweepPlan, spread_of
-from eomgen.sweeps.sweep import CRITICAL, LEDGER, PARQUET, PLAN, TABLE, Sweep, planned, sweep_at, swept
-from eomgen.sweeps.workers import FAILED, WITHOUT_MOTION, SweepKernel, is_without_motion
+from eomgen.sweeps import (
+    CRITICAL,
+    FAILED,
+    LEDGER,
+    PARQUET,
+    PLAN,
+    TABLE,
+    WITHOUT_MOTION,
+    Stepped,
+    Sweep,
+    SweepKernel,
+    SweepPlan,
+    is_without_motion,
+    planned,
+    spread_of,
+    sweep_at,
+    swept,
+)
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.verbs.assignments import assignments, typed
 

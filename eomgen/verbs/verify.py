@@ -14,9 +14,7 @@ from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.judge.case import Case
-from eomgen.judge.judge import Judge
-from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict
+from eomgen.judge import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Case, Judge, Verdict
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values

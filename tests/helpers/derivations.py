@@ -23,7 +23,7 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.model.unbuilt import unbuilt
 from eomgen.pipeline import derive
-from eomgen.questions.answers import Answers
+from eomgen.questions.outputs_answered import Answers
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.formula import Call, Reference, over
 from eomgen.symbolic.expression.node import Node, Scalar

@@ -23,7 +23,7 @@ from eomgen.documents.latex import setter_of, side_latex, with_listings_typeset
 from eomgen.documents.latex_math import Notation, Setter
 from eomgen.documents.statements import Formula, Side
 from eomgen.documents.text import side_text
-from eomgen.questions.answers import Answers
+from eomgen.questions.outputs_answered import Answers
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import derivative, substituted
 from eomgen.symbolic.expression.graph import Graph

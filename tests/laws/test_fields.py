@@ -27,7 +27,7 @@ from eomgen.mechanics.kinematics.motion import (
     rotation_center,
 )
 from eomgen.model.outputs.points import curvature_radius
-from eomgen.questions import answers
+from eomgen.questions import outputs_answered as answers
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states

@@ -14,7 +14,7 @@ from slider_crank import SLIDER_CRANK
 import eomgen
 from eomgen.cli import main
 from eomgen.model.forces import weights as distributed
-from eomgen.questions import answers
+from eomgen.questions import outputs_answered as answers
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.proof_of_answers import _by_coincidence
 

@@ -15,7 +15,7 @@ from eomgen.model.constraints.strand import Stop
 from eomgen.model.constraints.string import String
 from eomgen.model.joints.one_axis import Cylindrical, Screw
 from eomgen.model.joints.path import Path, PathPiece
-from eomgen.questions import answers
+from eomgen.questions import outputs_answered as answers
 from eomgen.questions.motion_from_start import MotionFromStart, wrong_way
 
 pytestmark = pytest.mark.slow

@@ -11,7 +11,7 @@ import pytest
 from slow_run import beside, in_slow_run
 
 import eomgen
-from eomgen.sensitivities.sensitivity import slope_requested
+from eomgen.sensitivities.derivatives import slope_requested
 
 MODELS = Path(__file__).parents[2] / "models"
 DIGITS = 50

@@ -53,10 +53,7 @@ from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Certificate
 from eomgen.proof.masses import Stated, mass_checks, tried
 from eomgen.proof.parameters import other_parameters
-from eomgen.scene.connections import ordered
-from eomgen.scene.forms import LabelForm, PointForm
-from eomgen.scene.making import scene_of_system
-from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
+from eomgen.scene import ROLES, LabelForm, Mark, PointForm, Scene, SceneFrame, ordered, scene_of_system
 from eomgen.study import study_of
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.node import Node, State, is_zero

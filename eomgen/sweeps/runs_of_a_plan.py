@@ -21,8 +21,8 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads
 from eomgen.model.replaced import LIKE, TypedNumbers, range_of, refuse_what_is_not_set, typed_values
 from eomgen.model.units import units_of
-from eomgen.questions.of_a_run import requested_of
-from eomgen.sensitivities.sensitivity import unit_of_slope
+from eomgen.questions import requested_of
+from eomgen.sensitivities import unit_of_slope
 from eomgen.simulation.integrate import refuse_bad_run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory

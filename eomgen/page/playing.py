@@ -22,7 +22,7 @@ from eomgen.model.replaced import Taken, TypedNumbers, Values
 from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.questions.run import run_of_a_page
+from eomgen.questions import run_of_a_page
 from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 

@@ -36,7 +36,7 @@ from eomgen.model.replaced import Values
 from eomgen.model.units import units_of
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Certificate, Check, Tally, checked, differing
-from eomgen.questions.of_a_run import requested_of
+from eomgen.questions import requested_of
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation.integrate import instants_of
 from eomgen.study import Study, study_of

@@ -1,0 +1,83 @@
+"""Door of the room: what other rooms may import from `eomgen.scene`."""
+
+# The marks as they are drawn
+from eomgen.scene.connections import ordered as ordered
+
+# The resultant force of every joint and constraint, on the body that it holds
+from eomgen.scene.connections import reaction_marks as reaction_marks
+
+# Resultants of the joints and constraints all of whose forces are among the names
+from eomgen.scene.connections import resultants as resultants
+
+# A name next to a place
+from eomgen.scene.forms import LabelForm as LabelForm
+
+# A dot
+from eomgen.scene.forms import PointForm as PointForm
+
+# Scenes of the same bodies, one after the other, as one
+from eomgen.scene.frames_of_phases import joined as joined
+
+# Scene of a run and its numbers at given instants
+from eomgen.scene.frames_of_phases import phase_frames as phase_frames
+
+# Places of bodies, ends of springs and arrows that the strokes of a drawing show at a frame
+from eomgen.scene.frames_of_phases import picture_reported as picture_reported
+
+# Every named point of the ground and of bodies by its whole name, ground axes [m]
+from eomgen.scene.making import named_points as named_points
+
+# Scene of a model
+from eomgen.scene.making import scene_of as scene_of
+
+# Scene of a system
+from eomgen.scene.making import scene_of_system as scene_of_system
+
+# The strokes of a scene in the plane
+from eomgen.scene.plane_strokes import plane_drawing as plane_drawing
+from eomgen.scene.scene import ROLES as ROLES
+
+# A state in numbers
+from eomgen.scene.scene import DrawnState as DrawnState
+
+# Something that is drawn
+from eomgen.scene.scene import Mark as Mark
+
+# Drawable elements of a model at a state
+from eomgen.scene.scene import Scene as Scene
+
+# Axes in which marks stand
+from eomgen.scene.scene import SceneFrame as SceneFrame
+
+# State at which the model starts
+from eomgen.scene.scene import drawn_start as drawn_start
+
+# The numbers of the scene's frame at a state
+from eomgen.scene.scene import frame_at as frame_at
+
+# The same along a motion
+from eomgen.scene.scene import frames_along as frames_along
+
+# The strokes of a scene in space
+from eomgen.scene.space_strokes import space_drawing as space_drawing
+
+# Everything of a picture, in the order in which it is drawn
+from eomgen.scene.strokes import Drawing as Drawing
+
+# A name and the place next to which it stands, n x d
+from eomgen.scene.strokes import Letter as Letter
+
+# The numbers of a scene over n frames
+from eomgen.scene.strokes import SceneNumbers as SceneNumbers
+
+# A path to draw
+from eomgen.scene.strokes import Stroke as Stroke
+
+# The lowest and the highest corner of points,
+from eomgen.scene.strokes import corners_of as corners_of
+
+# A structure of which one reaction is released
+from eomgen.scene.virtual import VirtualDisplacement as VirtualDisplacement
+
+# Size of the displacement at which the body that moves most moves by SWING of the picture's extent
+from eomgen.scene.virtual import swing_of as swing_of
