@@ -30,7 +30,7 @@ from eomgen.symbolic.numeric.tolerances import (
 from eomgen.symbolic.numeric.work import check_patience
 
 # -------- newton ----------------------------------------------------------------------------------------------
-# Equations -> a root nearby, by steps of least change; the one iteration of the package, in any number of digits.
+# Equations -> a root nearby, by steps of least change, in any number of digits.
 #
 #     f(x) + A d = 0,  |d| least:   d = -A^+ f,   A = df/dx      x <- x + d      until |f| is small enough
 #

@@ -605,7 +605,7 @@ def _common(line: list[PowerProduct], own: Collection[Node]) -> SymbolPowers:
 
 
 # -------- linear systems --------------------------------------------------------------------------------------
-# Linear equations over the graph: the front of all ways to solve them.
+# Linear equations over the graph: the way is chosen here for systems of scalars; forces and balances choose theirs.
 #
 #     way                   for                                          divides by
 #     minors                few unknowns hang together, A regular        determinants of blocks: singular where A is
