@@ -123,8 +123,8 @@ def simulate_many(
     """Many motions of one model, derived and compiled once; a run that fails is recorded, and the rest go on.
 
     A model without constraints and contacts is stepped in the lanes of vectors, each with its own steps; one with
-    constraints by
-    marches in C, a run after the other; where contacts change, and where a step needs a look, one by one.
+    constraints by marches in C, a run after the other; where contacts change, and where a step needs a look, one by
+    one.
 
     Args:
         time: how long, as of `simulate`.

@@ -337,9 +337,8 @@ def reactions_program(values: Mapping[str, Scalar], equations: EquationsOfMotion
 # -------- solved equations ------------------------------------------------------------------------------------
 # Equations of motion -> accelerations and multipliers as expressions of q, u and t.
 #
-# Where the equations are few by determinants, where degrees of freedom are few over the independent accelerations,
-# else by
-# factors.
+# Where the equations are few by determinants, where degrees of freedom are few over the independent accelerations, else
+# by factors.
 
 
 def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Scalar]:

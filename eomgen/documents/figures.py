@@ -354,8 +354,7 @@ def kinds_of_lines(owned: Sequence[Sequence[str]], colors: int) -> dict[str, tup
     """{reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike.
 
     Where that look is taken, by the other string of one constraint, say, it is the owner's next kind, then that of a
-    colour
-    which nobody has.
+    colour which nobody has.
 
     Args:
         owned: the reactions of each joint or constraint.

@@ -113,9 +113,8 @@ def regressor(model: ModelOrPath) -> Regressor:
     """The regressor of a mechanism.
 
     Raises:
-        DerivationError: Coulomb friction of a constraint, whose normal force is no linear function of the parameters;
-            nothing
-            moves.
+        DerivationError: Coulomb friction of a constraint, whose normal force is no linear function of the
+            parameters; nothing moves.
     """
     return regressor_of(derive(model).system)
 

@@ -2,9 +2,8 @@
 
 At random exact states of a prime field; where roots or functions have no meaning there, at real states of 50 digits in
 the model's own domain: parameters that are sizes positive, coordinates and speeds of either sign; on the constraints
-where
-these restrict the coordinates. What no state decides stays undecided: nothing is taken for true that was not. What
-vanishes with 50 digits is looked at once more in balls: a kinetic energy of 1e-293 J is small, and is not 0.
+where these restrict the coordinates. What no state decides stays undecided: nothing is taken for true that was not.
+What vanishes with 50 digits is looked at once more in balls: a kinetic energy of 1e-293 J is small, and is not 0.
 """
 
 from __future__ import annotations

@@ -90,8 +90,7 @@ class PhaseMotion:
         """Message if the code's accelerations violate the equations of the free bodies with all constraints; "".
 
         None at a state in which the constraints do not hold, and where no constraint closes. Where the code's numbers
-        hang on the
-        last digits of the state, this is held against it only if the rows themselves are far from singular.
+        hang on the last digits of the state, this is held against it only if the rows themselves are far from singular.
         """
         equations, symbols = self.equations, self.equations.symbols
         system = equations.system

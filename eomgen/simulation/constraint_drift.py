@@ -7,11 +7,9 @@ System, parameters -> Projection: states put back onto the constraints, by the l
 
 Positions move in all coordinates, dependent ones as freely as others; speeds are those of the state. Measured by M the
 least change is the same in every set of coordinates. Driven coordinates and the time stay: their rows of N are zero.
-Redundant rows do no harm: residuals are removed in the sense of least squares, and directions in which the
-constraints all
-but do not resist (near a singular position) are passed over.
-Source: Eich, Convergence results for a coordinate projection method applied to mechanical systems with algebraic
-constraints, SIAM J. Numer. Anal. 30 (1993).
+Redundant rows do no harm: residuals are removed in the sense of least squares, and directions in which the constraints
+all but do not resist (near a singular position) are passed over. Source: Eich, Convergence results for a coordinate
+projection method applied to mechanical systems with algebraic constraints, SIAM J. Numer. Anal. 30 (1993).
 """
 
 from __future__ import annotations

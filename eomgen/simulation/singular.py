@@ -115,8 +115,7 @@ def _cut(run: Run, i: int, instant: float, what: Undetermined, number: int) -> R
 # x' = f(t, x) -> the states of one run, carried across singular positions of the constraints.
 #
 # At a change point or a dead centre the rows of the constraints come to depend on one another, and the accelerations
-# are 0/0
-# there; on either side they are not. A motion that comes by with a speed is an analytic function of time on its
+# are 0/0 there; on either side they are not. A motion that comes by with a speed is an analytic function of time on its
 # branch, so it is continued by a polynomial through what it did just before, and put back onto the constraints beyond:
 #
 #     x(t) = sum of c_n T_n(t)   over t0 - W < t < t0,   taken at t0 + 2 tau,   tau = s/|s'|

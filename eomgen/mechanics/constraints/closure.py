@@ -246,8 +246,7 @@ def speeds_closed(constraints: Constraints, state: State) -> State:
 #
 # s_k is how far a change of the k-th coordinate moves the gaps: angles and lengths count alike, whatever their units.
 # The same holds of speeds that nobody gave, so that those stay which the constraints do not need, and where M is not
-# known
-# or measures nothing. Values that nobody gave move first, then those of the model, at last those that the caller
+# known or measures nothing. Values that nobody gave move first, then those of the model, at last those that the caller
 # gave.
 
 

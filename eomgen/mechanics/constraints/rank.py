@@ -302,8 +302,7 @@ def _others(constraint: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]
 #     xi_i = Ad(parent -> i) xi_parent + S_i w_i,   w_i free;   of a body that is placed, all six of xi_i free
 #
 # Coordinates that move several joints together, and constraints, are left out of it: a row of a constraint whose
-# wrenches do no
-# work on any of these ways is held by joints alone.
+# wrenches do no work on any of these ways is held by joints alone.
 
 
 def powers_of_rows(motion: Motion, rows: Sequence[Row], state: State, loose: Container[str]) -> np.ndarray:

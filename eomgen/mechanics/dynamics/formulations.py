@@ -335,8 +335,7 @@ LONGEST = 2_000  # characters of a balance that stands as an equation
 
 def with_nodes_balanced(model: Model) -> Model:
     """The model with the balance of every massless node as a constraint, from which its coordinate follows; the same
-    where
-    there is none, or where what pushes one is no spring or damper."""
+    where there is none, or where what pushes one is no spring or damper."""
     return recalled(model, with_nodes_balanced, lambda: _balanced(model))
 
 

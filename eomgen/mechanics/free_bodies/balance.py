@@ -402,8 +402,7 @@ def unbalanced(balance: Balance, solution: Solution) -> DerivationError:
 # Balance -> the force equations of bodies that no joint holds, along the ground's axes.
 #
 # The axes of a body spin with it. Where constraints alone push it, along directions that do not, its force equations
-# are
-# short in the ground's axes, R (sum of forces) = R m a, and their solutions divide by nothing that vanishes as the
+# are short in the ground's axes, R (sum of forces) = R m a, and their solutions divide by nothing that vanishes as the
 # body turns.
 
 

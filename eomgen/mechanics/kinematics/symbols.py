@@ -35,8 +35,7 @@ from eomgen.symbolic.solve import cramer
 #
 # q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero row of N and its
 # given rate in nu; a dependent one has the row that the constraints give, and is free until then. Declared speeds take
-# the
-# place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
+# the place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
 
 
 LONGEST_LAW = 3  # marks of a constant rate or acceleration that is put in where it stands: 2 n

@@ -37,9 +37,8 @@ from eomgen.symbolic.solve.linear import LinearSystem, general_solution, unique_
 # -------- exact start -----------------------------------------------------------------------------------------
 # System -> ExactStart: the one start that every verb takes, in closed form where it has one, in numbers else.
 #
-# Where the constraints move nothing the start is what the file says. Coordinates that they place, or move, are roots
-# of the
-# gaps; speeds that they complete or change follow from the same least change as in `start_of_motion`, by exact
+# Where the constraints move nothing the start is what the file says. Coordinates that they place, or move, are roots of
+# the gaps; speeds that they complete or change follow from the same least change as in `start_of_motion`, by exact
 # equations:
 #
 #     J d + (J u + sigma) = 0,   W d = J^T y      W: how far each speed moves the gaps, or M
