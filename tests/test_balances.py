@@ -56,6 +56,7 @@ def test_every_balance_of_a_part_of_a_truss_holds(model):
         test_every_balance_of_what_is_cut_free_holds(model, f"{name} = 0")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "kind", "reported"),
     usual(

@@ -117,7 +117,10 @@ def random_formula(seed: int) -> str:
 @pytest.mark.slow
 @each("seed", usual(range(125), 2))
 def test_a_formula_keeps_its_value_and_is_found_again(seed: int):
-    """book_form(x) = x as a function; made again, and anywhere else, it is the same text."""
+    """book_form(x) = x as a function; made again, and anywhere else, it is the same text.
+
+    Slow: of many random formulas, each written three times.
+    """
     given = random_formula(seed)
     x = read(given)
     found = book_form(x, Work.ANSWER)

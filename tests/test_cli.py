@@ -553,7 +553,10 @@ def test_reactions_from_rest_are_functions_of_the_coordinates():
 
 
 def test_reactions_as_formulas_say_what_accelerates_and_what_has_no_single_value():
-    """15 M R (cos theta'' - ...) by the equations of motion; in line the parallelogram is indeterminate"""
+    """15 M R (cos theta'' - ...) by the equations of motion; in line the parallelogram is indeterminate
+
+    Slow: forty reactions of a chain of twenty, until each is found too long.
+    """
     found = json.loads(run("reactions", PARALLELOGRAM, "--json").stdout)["reactions"]
     assert "theta''" not in found["reaction_x(OA)"]["exact"]
     assert found["reaction_x(OA)"]["value"] is None

@@ -71,6 +71,7 @@ def test_a_name_is_none_of_the_model_nor_set_like_one(taken: str) -> None:
     assert name.name == "I_2"
 
 
+@pytest.mark.slow
 @each(
     "form, definition",
     [("text", "    I_1 = J1"), ("latex", "I_{1} &= J_{1}"), ("markdown", "I_{1} &= J_{1}"), ("json", '"I_1"')],

@@ -265,7 +265,10 @@ def test_kinematic_equations_are_solved_for_the_speeds_where_sympy_has_none(expl
 
 
 def test_a_bicycle_has_room_in_a_model_file_by_parts_with_names(tmp_path):
-    """Sympy's own bicycle (743 000 characters multiplied out): u' as sympy has them, the file reads as the model."""
+    """Sympy's own bicycle (743 000 characters multiplied out): u' as sympy has them, the file reads as the model.
+
+    Slow: sympy derives its bicycle itself.
+    """
     method, known = bicycle()
     model = eomgen.from_sympy(method, path=tmp_path / "bicycle.toml")
     assert eomgen.load(tmp_path / "bicycle.toml") == model and (tmp_path / "bicycle.toml").stat().st_size < 100_000

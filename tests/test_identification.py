@@ -213,6 +213,7 @@ joint = { kind = "revolute", on = "upper.tip", axis = [0, 1, 0], angle = "q3" }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("text", "axes", "arithmetic"), [(FOUR_BAR, "xy", "50 digits"), (CHAIN, "xyz", "prime field")])
 def test_what_moves_beside_a_system_leaves_its_base_parameters(text: str, axes: str, arithmetic: str) -> None:
     """Y of parts that do not act on one another is diag(Y_1, Y_2, ...): K is diag(K_1, K_2, ...)."""
@@ -396,6 +397,7 @@ def _fails(found: Regressor) -> list[str]:
     return [check.name.split()[0] for check in found.certify().checks if check.ok is False]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["four_bar", "arm3"])
 def test_wrong_groups_and_wrong_regressors_are_contradicted(name: str) -> None:
     """A factor that is off, a text of another factor, a column of Y and a parameter's value: each by its own check."""

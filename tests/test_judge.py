@@ -11,6 +11,7 @@ import pytest
 import sympy
 from click.testing import CliRunner
 from cpu_limit import cpu_limit
+from derivations import loaded
 from each import each
 from hand_equations import MODELS, ByHand, named, right_of, wrong_of
 from human_errors import nearly_right_answers, right_answers, wrong_answers
@@ -36,7 +37,7 @@ NAMES = "m g l theta theta1 theta2 m1 m2 x k l0 r pi t omega k_max M".split()
 
 
 def verdict(model: str, equation: object, **more: object) -> eomgen.Verdict:
-    return eomgen.verify(MODELS / f"{model}.toml", equation, **more)  # type: ignore[arg-type]
+    return eomgen.verify(loaded(MODELS / f"{model}.toml"), equation, **more)  # type: ignore[arg-type]
 
 
 def kinds(found: eomgen.Verdict) -> list[str]:
@@ -122,7 +123,10 @@ def test_what_is_right_in_a_disguise_is_right(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", usual(SAMPLE, 2, 1))
 def test_what_is_wrong_is_wrong_and_mostly_named(name):
-    """Never accepted; at least 90 % of the mistakes named, those of kinds that were held out among them."""
+    """Never accepted; at least 90 % of the mistakes named, those of kinds that were held out among them.
+
+    Slow: sympy writes each model's equations by hand first.
+    """
     hand = ByHand(MODELS / f"{name}.toml")
     judge = Judge(Case(hand.model))
     cases = random.Random(4).sample(wrong_of(hand, random.Random(4)), 12)
@@ -161,6 +165,7 @@ def test_a_mistake_has_its_name(model, equation, cause, word):
     assert (found.verdict, kinds(found)) == ("wrong", [cause]) and word in found.causes[0].text
 
 
+@pytest.mark.slow
 @each(
     "model, equation, cause, words",
     [
@@ -341,6 +346,7 @@ def test_redundant_ties_make_nothing_right():
     assert kinds(verdict("four_cranks", right.replace(" + g", " + N + g"))) == ["constraint_force"]
 
 
+@pytest.mark.slow
 @each("mass", ["1e-8", "1e-30", "1e-293", "1e200"])
 def test_the_size_of_a_unit_makes_nothing_right(mass):
     """T = m l^2 theta'^2/2 is not 0, however light the bob; its equation, which is not linear in m, stays right."""
@@ -521,7 +527,10 @@ def test_what_holds_in_its_own_domain_is_right(model, equation, up_to):
 
 @pytest.mark.slow
 def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
-    """In equations of motion and in answers: wrong; 4 in 5 named."""
+    """In equations of motion and in answers: wrong; 4 in 5 named.
+
+    Slow: thirteen mistakes, nearly each of a model of its own, which is derived.
+    """
     some = usual(random.Random(2).sample(wrong_answers(), 40), 3)
     found = [(x, x.verdict()) for x in some]
     assert [x.text for x, each in found if each.verdict != "wrong"] == []
@@ -757,6 +766,7 @@ def test_rates_in_time_and_driven_places_are_judged(equation):
     assert eomgen.verify(eomgen.loads(SHAKEN), equation)
 
 
+@pytest.mark.slow
 def test_an_equation_of_rest_beside_what_turns_is_decided():
     """(m + M) g = m l W^2 cos(theta): cos(psi)^2 + sin(psi)^2 does not depend on the driven psi."""
     model = eomgen.loads(
@@ -920,6 +930,7 @@ constraints.road = { kind = "equation", gap = "y - c*x^2" }
 """
 
 
+@pytest.mark.slow
 @each(
     "model, right, wrong",
     [

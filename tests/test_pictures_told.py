@@ -273,6 +273,7 @@ UNLIKE = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", UNLIKE)
 def test_a_body_without_lengths_is_an_ellipsoid_of_its_moments_or_as_it_rolls(change: str):
     """A = m (b^2 + c^2)/5 about its mass centre; |(r - c)/h| = 1"""

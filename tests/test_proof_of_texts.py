@@ -83,6 +83,7 @@ forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
 """
 
 
+@pytest.mark.slow
 def test_rates_of_samples_are_read_back_by_their_names(monkeypatch: pytest.MonkeyPatch):
     """arm' and arm'' of a motion through samples; one printed for the other is a contradiction."""
     found = eomgen.derive(eomgen.loads(SAMPLED)).document

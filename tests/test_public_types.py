@@ -70,7 +70,10 @@ def test_the_functions_of_a_model_are_found():
 
 @pytest.mark.slow
 def test_a_script_under_strict_mypy_sees_the_classes(tmp_path):
-    """reveal_type(eomgen.derive(eomgen.load("x"))) is Equations, not Any."""
+    """reveal_type(eomgen.derive(eomgen.load("x"))) is Equations, not Any.
+
+    Slow: mypy reads the whole package.
+    """
     pytest.importorskip("mypy")
     (tmp_path / "script.py").write_text(SCRIPT, encoding="utf-8")
     command = [sys.executable, "-m", "mypy", "--strict", "--follow-imports=silent", "script.py"]

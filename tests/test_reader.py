@@ -38,6 +38,7 @@ def only_problem(text: str, space: str = "plane") -> str:
     return one
 
 
+@pytest.mark.slow
 @each("path", MODELS)
 def test_every_model_of_the_gallery_loads(path):
     """models/**/*.toml -> Model, with the names of the tables in the order of the text."""
@@ -363,6 +364,7 @@ HOSTILE = {
 }
 
 
+@pytest.mark.slow
 @each("text", HOSTILE.values())
 def test_a_hostile_text_costs_little_and_ends_in_an_error(text):
     """A clear error, never a traceback, in about a second."""

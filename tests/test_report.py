@@ -263,7 +263,10 @@ def test_kinetic_energies_come_out_as_a_textbook_prints_them(name):
 
 @pytest.mark.parametrize("name", usual([*derivable()], 3, 1))
 def test_the_payload_reads_back_as_the_equations(name):
-    """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back"""
+    """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back
+
+    Slow: all that is written of the largest models is parsed again.
+    """
     derived, data = equations(name), entries(name)
     graph, also = derived.graph, {}
     for symbol, text in data.get("definitions", []):

@@ -82,6 +82,7 @@ def wrong(form: str, text: str, run: Trajectory | None = None) -> list[str]:
     return [f"{check.name}: {check.detail}" for check in checks if check.status == "fails"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_a_report_says_what_was_found(form: str):
     """read(write(report)) = report"""
@@ -114,6 +115,7 @@ acceleration = [0, -9.81]
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 def test_a_report_of_several_verbs_says_what_was_found(form: str):
     """Q_q of the motion and Q_q at rest are one quantity; |q'| is read as it is set."""

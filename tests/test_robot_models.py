@@ -145,6 +145,7 @@ def test_a_model_within_a_model_is_as_if_its_links_stood_in_the_whole(way, tmp_p
     assert found.model.bodies["arm_up"].about == "link arm::up"
 
 
+@pytest.mark.slow
 def test_models_three_deep_and_merged_ones_with_a_pose_stand_where_they_are_put(tmp_path):
     """`a::b::link`, poses one after the other; <include merge="true"> with a <pose> moves what it merges."""
     deep = f"""<model name="r"><model name="a"><pose>0 0 1 0 0 0</pose><model name="b"><pose>1 0 0 0 0 0</pose>

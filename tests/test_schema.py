@@ -20,6 +20,7 @@ def test_the_schema_is_one():
     jsonschema.Draft202012Validator.check_schema(json_schema())
 
 
+@pytest.mark.slow
 @each("path", MODELS)
 def test_every_model_of_the_gallery_obeys_the_schema(path):
     errors = list(VALIDATOR.iter_errors(tomllib.loads(path.read_text())))

@@ -32,7 +32,10 @@ def site(tmp_path_factory):
 
 
 def test_a_reader_needs_no_network(site):
-    """No page asks for anything from elsewhere; every formula is set; every link leads to a page."""
+    """No page asks for anything from elsewhere; every formula is set; every link leads to a page.
+
+    Slow: Sphinx builds all pages once, each with its formulas and pictures; the tests below read the same.
+    """
     pages = list(site.rglob("*.html"))
     assert len(pages) > 50
     for page in pages:
@@ -106,7 +109,10 @@ def test_a_search_asks_for_no_other_page(site):
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
 def test_every_command_of_a_page_does_what_stands_there(page, tmp_path, monkeypatch):
-    """In a new folder, one after the other."""
+    """In a new folder, one after the other.
+
+    Slow: pages show models as readers have them, Bricard's linkage among them.
+    """
     monkeypatch.chdir(tmp_path)
     assert run_page(page.read_text("utf-8")) > 0
 

@@ -265,7 +265,10 @@ def done_runs(folder: Path) -> int:
 @pytest.mark.parametrize("count", [*beside(1), 2])
 def test_a_sweep_that_is_killed_goes_on_and_has_each_run_once(spring, tmp_path, count):
     """SIGKILL of the parent again and again, at whatever instant; its workers end by themselves; the bits are those
-    of a sweep that nobody disturbed."""
+    of a sweep that nobody disturbed.
+
+    Slow: parents and their workers are started again and again.
+    """
     folder, kills = tmp_path / "out", 0
     words = (spring, *SWEEP, "--workers", str(count), "-o", str(folder), "--no-certify")
     for wait in (1, *beside(30), 90, 170, *beside(260)):
@@ -329,7 +332,10 @@ def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
 @needs_sh
 @pytest.mark.slow
 def test_workers_that_are_killed_are_replaced(spring, tmp_path):
-    """SIGKILL of the workers of a running sweep: a new pool does what the ledger lacks."""
+    """SIGKILL of the workers of a running sweep: a new pool does what the ledger lacks.
+
+    Slow: processes are started, killed and started again, each importing numpy and scipy.
+    """
     folder = tmp_path / "out"
     process = swept(spring, *SWEEP, "--workers", "2", "-o", str(folder), "--no-certify")
     for wait in (20, 120):
@@ -398,7 +404,10 @@ def test_any_executor_with_submit_gives_the_same_bits(spring):
 
 @pytest.mark.slow
 def test_dask_gives_the_same_bits(spring):
-    """A cluster of processes of dask.distributed on this machine."""
+    """A cluster of processes of dask.distributed on this machine.
+
+    Slow: dask starts a scheduler and two processes.
+    """
     distributed = pytest.importorskip("distributed")
     requested = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
     alone = eomgen.sweep(spring, **requested)

@@ -100,6 +100,7 @@ def test_a_factor_beside_ties_is_of_the_equation_alone():
         assert found.verdict == "right" and "factor 2" in found.up_to
 
 
+@pytest.mark.slow
 @each(
     "equation",
     [
@@ -154,6 +155,7 @@ def test_an_unknown_name_stays_in_the_list_with_exit_code_2():
     assert judged("F_S = m*g*cos(theta)", "l*theta'' = g*sin(theta)")[0] == 5
 
 
+@pytest.mark.slow
 @each(
     "equation, verdict",
     [
@@ -385,6 +387,7 @@ def turned(model: eomgen.Model, equation: str) -> list[tuple[str, str]]:
     return [(check.status, check.detail) for each in both for check in verdicts_again([each])]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "equation"),
     [
@@ -435,6 +438,7 @@ forces.g = { kind = "gravity", acceleration = [0, "-g"] }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("equation", "verdict"),
     [("x = v*t - mu*g/2*t^2", "right"), ("x = v*t + mu*g/2*t^2", "wrong"), ("x = v*t", "wrong")],

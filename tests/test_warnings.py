@@ -67,6 +67,7 @@ DOUBTFUL = {
 LIGHT = '[bodies.dust]\nshape = { kind = "particle", mass = 0.001 }\njoint = { kind = "placed", on = "bob.end" }\n'
 
 
+@pytest.mark.slow
 @each("path", MODELS)
 def test_no_model_of_ours_is_warned_of(path):
     """No false alarm."""

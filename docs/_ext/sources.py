@@ -19,7 +19,8 @@ def named() -> list[tuple[str, str]]:
     found = []
     for path in sorted(PACKAGE.rglob("*.py")):
         module = path.relative_to(PACKAGE).with_suffix("").as_posix().removesuffix("/__init__")
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        text = path.read_text(encoding="utf-8")
+        for node in ast.walk(ast.parse(text)) if SOURCE.search(text) else ():
             if isinstance(node, DOCUMENTED):
                 for match in SOURCE.finditer(ast.get_docstring(node) or ""):
                     found.append((module, " ".join(match[1].split())))

@@ -167,7 +167,10 @@ def written(folder: Path, target: str, name: str, most: int | None = None) -> Pa
 
 @each_own_test
 def test_the_language_s_own_test_agrees_with_the_symbols(target, tmp_path):
-    """Compiled without a warning, every vector of every function: samples of inputs and nan among them."""
+    """Compiled without a warning, every vector of every function: samples of inputs and nan among them.
+
+    Slow: compilers of others at their strictest, rustc and clippy, LLVM of numba, a wasm of zig's.
+    """
     vectors_reported = [
         v for name in ("roots", "rough_incline") for _, reported in emitted(name) for v in reported.vectors
     ]

@@ -420,6 +420,7 @@ eye = { kind = "pin", points = ["piston.center", "boom.end"] }
 """
 
 
+@pytest.mark.slow
 def test_ties_that_close_nowhere_near_the_start_are_not_looked_for_by_every_question(monkeypatch):
     """A strut of 1.5 m on a boom that reaches 0.8 m: each of what may stay constant draws twice, not twelve times."""
     sought, own = [], closure.closed
@@ -428,6 +429,7 @@ def test_ties_that_close_nowhere_near_the_start_are_not_looked_for_by_every_ques
     assert 0 < len(sought) < 60
 
 
+@pytest.mark.slow
 def test_no_equation_of_a_loop_is_longer_than_a_page(monkeypatch):
     """Joined again and again, equations of loops in space grow to ten pages, of which no root is taken."""
     own, sizes = places._waves, list[int]()

@@ -143,7 +143,10 @@ def test_a_particle_that_friction_can_hold_stays():
 
 
 def test_a_wire_that_stays_taut_has_no_place_where_it_is_slack():
-    """v0^2 > 5 g l: the tension never vanishes, and the answer says so."""
+    """v0^2 > 5 g l: the tension never vanishes, and the answer says so.
+
+    Slow: the motion is followed for thousands of steps, as nothing ends it.
+    """
     model = with_numbers(model_of("ch16_p4"), {"v0": 8})
     fast = eomgen.solve(replace(model, outputs={x: model.outputs[x] for x in ("cos_theta_slack", "v0_full_circle")}))
     assert fast["cos_theta_slack"].value is None and fast["cos_theta_slack"].message

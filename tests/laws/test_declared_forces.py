@@ -130,6 +130,7 @@ KINDS = (
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "wrong"), KINDS, ids=lambda x: x.__name__)
 def test_a_load_that_is_made_otherwise_is_contradicted(kind, wrong, monkeypatch):
     """Sign, axes, place: both routes start from the load, its fields do not."""

@@ -43,6 +43,7 @@ def column():
     return eomgen.statics(eomgen.loads(COLUMN))
 
 
+@pytest.mark.slow
 def test_folded_bars_of_a_column_may_stand_at_any_angle(column):
     """sin(th) + sin(th2) = 0 with u = L/2 (cos(th) + cos(th2)) = 0: th2 = th + pi or th - pi, at one V."""
     families = [place for place in column.places if place.curve is not None]

@@ -100,6 +100,7 @@ def states_of(name: str) -> list[tuple[np.ndarray, np.ndarray]]:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("dependent", [False, True], ids=["multipliers", "dependent"])
 @pytest.mark.parametrize("name", MACHINES)
 def test_accelerations_of_loops_that_a_moving_body_carries_are_those_of_free_bodies(name, dependent):
@@ -189,6 +190,7 @@ SUMS = (
 REQUESTED = "[outputs]\nqdd = \"q''\"\n" + "".join(f'r{k} = "{name}"\n' for k, name in enumerate(SUMS))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "text", [SLEWING.replace(*FOLLOWING), IN_GROUND_AXES.replace(*FOLLOWING)], ids=["pin", "ground"]
 )
@@ -261,8 +263,12 @@ def test_inverse_dynamics_counts_freedoms_where_the_loops_are_closed(text):
     assert found.names == ("q", "s")
 
 
+@pytest.mark.slow
 def test_accelerations_by_a_row_that_vanishes_where_the_others_hold_are_contradicted(monkeypatch):
-    """The error: d_y, whose J vanishes where d_x and d_z hold, taken for independent: q'' = -2 tan q q'^2."""
+    """The error: d_y, whose J vanishes where d_x and d_z hold, taken for independent: q'' = -2 tan q q'^2.
+
+    Slow: equations, answers and code are each proven.
+    """
 
     def as_found(constraints, state):
         values = floats_of(evaluate([x for row in constraints.J for x in row], state, fifty_digits()))

@@ -22,13 +22,12 @@ import cross
 import eomgen
 
 MACHINES = {path.stem: path for path in sorted((Path(__file__).parent / "machines").glob("*.toml"))}
-QUICK = (  # of every kind of feature one
+USUAL = (  # of every kind of feature one
     "balanced_arm", "bascule_bridge", "cable_robot", "cam_valve", "chairlift", "differential", "double_cardan",
     "geneva_drive", "governor_on_turntable", "quarter_car", "road_train", "screw_press", "stewart_on_ship",
     "washing_machine",
 )  # fmt: skip
-REQUESTED = [*MACHINES] if ALL else sorted({*QUICK, *[*MACHINES][::6]})
-EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in REQUESTED]
+REQUESTED = [*MACHINES] if ALL else sorted({*USUAL, *[*MACHINES][::6]})
 
 
 def test_there_are_thirty_machines_and_each_says_what_it_is():
@@ -37,7 +36,8 @@ def test_there_are_thirty_machines_and_each_says_what_it_is():
     assert all(path.read_text(encoding="utf-8").startswith("# ") for path in MACHINES.values())
 
 
-@pytest.mark.parametrize("name", EACH)
+@pytest.mark.slow
+@pytest.mark.parametrize("name", REQUESTED)
 def test_a_machine_moves_as_free_bodies_do(name):
     """M z'' = F + J^T lam, J z'' + gamma = 0 in maximal coordinates: the same accelerations, reactions and energies."""
     found = compare.of_model(MACHINES[name].read_text(encoding="utf-8"), 1, count=1)
@@ -49,7 +49,10 @@ def test_a_machine_moves_as_free_bodies_do(name):
 @pytest.mark.slow
 @pytest.mark.parametrize("name", usual([*MACHINES], 8))
 def test_what_is_said_of_a_machine_is_one_number_and_proven(name):
-    """`solve`, `reactions`, a run's columns, eigenvalues, inverse dynamics against the oracle; a green certificate."""
+    """`solve`, `reactions`, a run's columns, eigenvalues, inverse dynamics against the oracle; a green certificate.
+
+    Slow: every verb of large models, and the oracle of each number.
+    """
     product = compare.product_of(MACHINES[name].read_text(encoding="utf-8"))
     found = cross.across(product)
     assert found.numbers

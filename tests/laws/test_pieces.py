@@ -186,6 +186,7 @@ def test_an_answer_by_the_energy_of_a_bungee_is_refused_where_its_cord_is_taut(t
     assert "while abs(y) <= L0" in found.message and "leaves that at t = 1.35" in found.message
 
 
+@pytest.mark.slow
 def test_an_answer_by_the_energy_is_given_only_if_the_motion_stays_in_its_piece(tmp_path):
     """A pendulum on a cart between two buffers: p_x stays while the cart touches neither, and it comes to one."""
     text = """
@@ -271,6 +272,7 @@ def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
     assert laws_of_motion(phase.system, phase.accelerations, declared_start(phase.system)) == {}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("written", "verdict", "up_to"),
     [
@@ -293,6 +295,7 @@ def test_a_verdict_says_in_which_piece(written, verdict, up_to, tmp_path):
 # -- samples ---------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_beside_samples_neither_energy_nor_jacobi_s_integral_stays(tmp_path):
     """A bead on an arm that turns by samples: dH/dt = -dT/dt of what moves by itself, which is at no steady rate."""
     text = """

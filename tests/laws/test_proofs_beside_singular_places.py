@@ -39,6 +39,7 @@ def test_equations_are_not_called_wrong_at_a_dead_centre(start, near):
     assert failing(eomgen.derive(model).certify()) == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("x", "near"), [("0.4", "0"), ("0.2", "3.14")])
 def test_a_dead_centre_is_named_where_velocities_and_small_motions_are_asked(x, near):
     """0/0 of rates has a name: the constraint, the coordinates, the place."""

@@ -59,6 +59,7 @@ VERBS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("run", VERBS)
 @pytest.mark.usefixtures("heavy_rods")
 def test_a_wrong_shape_is_seen_by_every_verb(run: str, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -75,6 +75,7 @@ def test_coordinates_asked_alone_move_as_in_the_whole(monkeypatch: pytest.Monkey
     assert not eomgen.linearize(model, coordinates=(requested,)).certify()
 
 
+@pytest.mark.slow
 def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     """`certificate` in JSON, null with --no-certify, exit 3 where it fails."""
     run = CliRunner().invoke

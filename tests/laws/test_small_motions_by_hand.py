@@ -286,7 +286,10 @@ pull = "m*mu/r^2"
 
 @pytest.mark.parametrize(("mu", "stability"), [*beside(("0.01", "stable to first order")), ("0.05", "unstable")])
 def test_the_triangular_points_are_stable_below_the_mass_ratio_of_routh(mu, stability):
-    """s^4 + s^2 + 27/4 mu (1 - mu) = 0, stable where 1 - 27 mu (1 - mu) > 0"""
+    """s^4 + s^2 + 27/4 mu (1 - mu) = 0, stable where 1 - 27 mu (1 - mu) > 0
+
+    Slow: places of rest between two centres of attraction are sought in many boxes, twice.
+    """
     found = small(LIBRATION.format(mu=mu))
     value = float(mu)
     assert_same(found.spectrum.eigenvalues, np.roots([1, 0, 1, 0, 27 / 4 * value * (1 - value)]), 1e-7)

@@ -129,6 +129,7 @@ DRIVES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("drive", DRIVES)
 @pytest.mark.parametrize("holds", ['constraints.l]\nkind = "link"\n#', SPRING], ids=["link", "spring"])
 def test_what_stands_as_at_the_start_does_so_for_a_drive(drive: str, holds: str):
