@@ -1,15 +1,15 @@
-"""Polynomials over the rational numbers: products, common divisors, factors; by FLINT, or sympy where it is missing.
+"""Polynomials over the rational numbers: products, common divisors, factors; by FLINT.
 
-The library is chosen here and nowhere else, when a polynomial first needs one. What comes out is the same either way:
-a common divisor has the leading coefficient 1; a factor has whole coefficients without common divisor, the leading one
+The library is met here alone, and loaded when a polynomial first needs it. The form of the results is fixed: a
+common divisor has the leading coefficient 1; a factor has whole coefficients without common divisor, the leading one
 positive; factors stand in one order. The leading term is that of the highest power of the first generator, then of the
 second, and so on.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
-from functools import cache, lru_cache
+from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from math import prod
 from typing import Any
 
@@ -18,8 +18,7 @@ from eomgen.symbolic.exact.terms import TooLarge, common_number
 from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 
-LARGEST_IMAGE = 10_000_000  # product of the degrees up to which sympy finds a common divisor in a second or two
-PLACES = 10  # at which a polynomial is tried before its factors are lifted
+LARGEST_IMAGE = 10_000_000  # product of the degrees up to which a common divisor is sought: beyond it takes seconds
 KEPT = 2_000  # polynomials of which the factors are cached, as formulas recur
 
 Exponents = tuple[int, ...]  # one for each generator
@@ -82,7 +81,7 @@ class RationalPolynomial:
         """The two of the same quotient, negative powers cleared in both: x^-2/(1 + x^-1) is 1/(x^2 + x).
 
         The divisor's leading coefficient is 1; where one of the two is a single term, their numbers' is taken out. One
-        that sympy finds only in integers of millions of digits (15 generators to the fifth power) is not sought.
+        of high degree in many generators (15 to the fifth power) is not sought.
         """
         above, below = _without_common_powers(self, other)
         if min(len(above.terms), len(below.terms)) == 1:
@@ -102,14 +101,14 @@ class RationalPolynomial:
     def square_free(self) -> tuple[Number, FactorPowers]:
         """(number, polynomials without squares and their powers, each power once)"""
         parts: dict[int, Element] = {}
-        for part, n in _library().square_free(_element(self)):
+        for part, n in _element(self).factor_squarefree()[1]:
             parts[n] = parts[n] * part if n in parts else part
         return _canonical(self, ((part, n) for n, part in parts.items()))
 
 
 @lru_cache(maxsize=KEPT)
 def _factors(f: RationalPolynomial) -> tuple[Number, FactorPowers]:
-    return _canonical(f, _library().factors(_element(f)))
+    return _canonical(f, _element(f).factor()[1])
 
 
 def _canonical(f: RationalPolynomial, parts: Iterable[tuple[Element, int]]) -> tuple[Number, FactorPowers]:
@@ -137,65 +136,8 @@ def _without_common_powers(*both: RationalPolynomial) -> tuple[RationalPolynomia
 
 
 def _image(f: RationalPolynomial, g: RationalPolynomial) -> int:
-    """The product of the degrees in each generator: the digits of the integers by which sympy finds a divisor."""
+    """The product of the degrees in each generator: a bound for the work of finding a divisor."""
     return prod(max(1, *powers) for powers in zip(*(exponents for exponents, _ in (*f.terms, *g.terms)), strict=True))
-
-
-# -- the libraries ------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class _Library:
-    """Operations in which the two polynomial libraries differ.
-
-    Args:
-        made: {exponents: coefficient}, number of generators -> an element.
-        factors: irreducible factors and their powers, in any order, of any sign.
-        square_free: the same, without squares only.
-    """
-
-    made: Callable[[PowerSum, int], Element]
-    factors: Callable[[Element], Iterable[tuple[Element, int]]]
-    square_free: Callable[[Element], Iterable[tuple[Element, int]]]
-
-
-@cache
-def _library() -> _Library:
-    try:
-        return _by_flint()
-    except ImportError:
-        return _by_sympy()
-
-
-def _by_flint() -> _Library:
-    from flint import Ordering, fmpq, fmpq_mpoly_ctx
-
-    def made(terms: PowerSum, generators: int) -> Element:
-        ring = fmpq_mpoly_ctx.get(_names(generators), Ordering.lex)
-        return ring.from_dict({exponents: fmpq(c.numerator, c.denominator) for exponents, c in terms.items()})
-
-    return _Library(made, lambda f: f.factor()[1], lambda f: f.factor_squarefree()[1])
-
-
-def _by_sympy() -> _Library:
-    from sympy.polys.domains import QQ
-    from sympy.polys.polyconfig import using
-    from sympy.polys.rings import PolyRing
-
-    def made(terms: PowerSum, generators: int) -> Element:
-        ring = PolyRing(_names(generators), QQ)
-        return ring.from_dict({exponents: QQ(c.numerator, c.denominator) for exponents, c in terms.items()})
-
-    def factors(f: Element) -> Iterable[tuple[Element, int]]:
-        """Wang's algorithm factors at random places first.
-
-        With three of them, sympy's own choice, one run in five takes a thousand times as long as the others, where by
-        chance a polynomial splits at all three and nowhere else.
-        """
-        with using(EEZ_NUMBER_OF_CONFIGS=PLACES):
-            return f.factor_list()[1]  # type: ignore[no-any-return]
-
-    return _Library(made, factors, lambda f: f.sqf_list()[1])
 
 
 def _names(generators: int) -> list[str]:
@@ -205,7 +147,10 @@ def _names(generators: int) -> list[str]:
 def _element(f: RationalPolynomial) -> Element:
     if min(map(min, (e or (0,) for e, _ in f.terms))) < 0:
         raise TooLarge("a polynomial with negative powers")
-    return _library().made(dict(f.terms), len(f.terms[0][0]))
+    from flint import Ordering, fmpq, fmpq_mpoly_ctx  # loaded where polynomials are
+
+    ring = fmpq_mpoly_ctx.get(_names(len(f.terms[0][0])), Ordering.lex)
+    return ring.from_dict({exponents: fmpq(c.numerator, c.denominator) for exponents, c in f.terms})
 
 
 def _read(element: Element) -> RationalPolynomial:

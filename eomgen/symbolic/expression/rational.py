@@ -1,6 +1,6 @@
-"""Exact rationals: compiled where quicktions is installed, else Python's own. Same values, texts and hashes either way.
+"""Exact rationals: those of quicktions, compiled, with the values, texts and hashes of Python's own.
 
-Every module takes its Fraction from here, and nowhere else is a choice made. Text becomes one by fraction_of alone: of
+Every module takes its Fraction from here. Text becomes one by fraction_of alone: of
 one character quicktions 1.24 writes over the interpreter's own b"\\0", and GIFs and zips written after it are broken.
 """
 
@@ -13,10 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from fractions import Fraction
 else:
-    try:
-        from quicktions import Fraction
-    except ImportError:
-        from fractions import Fraction
+    from quicktions import Fraction
 
 __all__ = ["EXACT", "Fraction", "fraction_of", "known_to_sympy"]
 

@@ -9,14 +9,8 @@ import operator
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
+from flint import arb, arb_mat, arf, ctx
 from mpmath.libmp import from_man_exp
-
-try:
-    from flint import arb, arb_mat, arf, ctx
-
-    HAS_BALLS = True
-except ImportError:  # no wheel for this platform: mpmath decides
-    HAS_BALLS = False
 
 SOLVING = 256  # bits: those of 50 digits, and as many more as an elimination takes
 SURE = 100  # bits of a value, or of its sum with 1, that must be left
@@ -77,7 +71,7 @@ def in_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Seq
 
 def _value(handed: int, steps: Sequence[_Step]) -> bool:
     """True if all steps are known operations, and enough of them for the conversion of `handed` values to pay."""
-    return HAS_BALLS and len(steps) >= WORTH * handed and {op for _, op, _ in steps} <= OPERATIONS.keys()
+    return len(steps) >= WORTH * handed and {op for _, op, _ in steps} <= OPERATIONS.keys()
 
 
 def _go(known: list[Any], steps: Sequence[_Step]) -> None:
@@ -90,7 +84,7 @@ def _go(known: list[Any], steps: Sequence[_Step]) -> None:
 def solved_by_balls(mp: Any, rows: Sequence[Sequence[Any]]) -> list[Any] | None:
     """x of as many rows [A | b] as unknowns; None where they are few, or A is singular or nearly so."""
     n = len(rows)
-    if not HAS_BALLS or n < ROWS or len(rows[0]) != n + 1:
+    if n < ROWS or len(rows[0]) != n + 1:
         return None
     with ctx.workprec(SOLVING):
         flat = _balls(x for row in rows for x in row)
@@ -108,7 +102,7 @@ def solved_by_balls(mp: Any, rows: Sequence[Sequence[Any]]) -> list[Any] | None:
 def sums_by_balls(mp: Any, rows: Sequence[Sequence[Any]], columns: Sequence[Sequence[Any]]) -> list[Any] | None:
     """(row column, |row| |column|) for each row, in a list for each column; None where they are few, or not sure."""
     n, m, k = len(rows), len(columns[0]), len(columns)
-    if not HAS_BALLS or n < ROWS:
+    if n < ROWS:
         return None
     with ctx.workprec(SOLVING):
         flat, given = (
