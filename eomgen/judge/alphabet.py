@@ -1,4 +1,4 @@
-"""What letters and names may be: their plain forms, how names are set, and what of a model they can stand for."""
+"""Letters and names: their plain forms, how names are typeset, and the names of a model for which they can stand."""
 
 from __future__ import annotations
 
@@ -25,11 +25,11 @@ ALIKE |= {
 
 @dataclass(frozen=True)
 class Vocabulary:
-    """What the names in an equation can stand for.
+    """The names for which those in an equation can stand.
 
     Args:
         names: of the model, without primes.
-        functions: that can be asked of it: speed, T, Q.
+        functions: that can be requested of it: speed, T, Q.
         set_as: how names are set in LaTeX, by name.
     """
 
@@ -71,7 +71,7 @@ class Vocabulary:
 
 
 def key(letters: str) -> str:
-    """What of a name is compared: its letters and digits, Greek ones by their names."""
+    """The part of a name that is compared: its letters and digits, Greek ones by their names."""
     plain = re.sub(r"\\(?:mathrm|mathit|text|mathbf|mathsf|mathcal|left|right)\b", "", letters)
     return "".join(spelled(c) or c for c in plain if c.isalnum()).replace("varphi", "phi").replace("vartheta", "theta")
 

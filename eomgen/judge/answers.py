@@ -22,6 +22,7 @@ from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
 from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
+from eomgen.judge.truth import other_models
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
@@ -45,7 +46,7 @@ def requested(case: Case, written: HandEquation, kind: str, at: Instant) -> Verd
 
 
 def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
-    """Of a frequency by its letter: motions of the whole, whose frequency is 0, are not counted by everybody."""
+    """Verdict on a frequency that is given by its letter: not everybody counts motions of the whole, of frequency 0."""
     ((_, call), *_) = written.left.code
     number, whole = int(call.args[0].text), _motions_of_the_whole(case, written, at)
     if not whole:
@@ -61,7 +62,7 @@ def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
 
 
 def _motions_of_the_whole(case: Case, written: HandEquation, at: Instant) -> int:
-    """How many frequencies are 0."""
+    """Number of frequencies that are 0."""
     for whole in range(len(case.system.symbols.u)):
         each = _with_frequency(written, whole + 1)
         (value, _) = case.sides(replace(each, right=each.left), at)
@@ -125,7 +126,7 @@ def _one_by_one(case: Case, written: HandEquation, at: Instant) -> tuple[Answer,
 
 
 def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
-    """Whether sides that are equal in numbers are so with other values of the parameters, too."""
+    """Verdict on sides that are equal in numbers: right if they are so with other values of the parameters, too."""
     tried = 0
     parts = case.model.parameters  # those that are formulas of others follow them
     own = {name: x for name, x in exact_parameters(case.model).items() if name in parts and not parts[name].formula}
@@ -158,8 +159,9 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
         if place is None
         else tuple(Balances(case, written, finely, place) for finely in (False, True)[: 1 if place else 2])
     )
+    edits = other_models(case, written, kind, at)
     implied = chain(balances[:1], implied_by(case, written, kind, at, left, right), balances[1:])
-    target, found = simplest_explanation(implied, fixes, at_once=SURE if balances else BELIEVED)
+    target, found = simplest_explanation(implied, [edits, *fixes], at_once=SURE if balances else BELIEVED)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
         causes = causes_of(case, found, moving=False, rooted=isinstance(target, Comparison) and target.squared)

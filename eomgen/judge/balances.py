@@ -21,7 +21,7 @@ import numpy as np
 from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import EXTRA, excess, remainder
+from eomgen.judge.comparison import EXTRA, remainder
 from eomgen.judge.cut_bodies import (
     ActingForce,
     CutBalance,
@@ -37,7 +37,6 @@ from eomgen.judge.diagnosis import (
     PIECES,
     PLACED,
     PLAIN,
-    PLAINEST,
     SHARED,
     SHORTER,
     TERMS,
@@ -49,14 +48,12 @@ from eomgen.judge.diagnosis import (
     Search,
     Share,
     explained,
-    samples_of,
 )
 from eomgen.judge.fixes import Authored
 from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
 from eomgen.judge.wrong_terms import WrongTerms
-from eomgen.mechanics.free_bodies.balance import balance_of
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.section_forces import KINDS
@@ -65,26 +62,26 @@ from eomgen.symbolic.expression.formula import Call, over, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, SAME_EIGENVALUE
+from eomgen.symbolic.numeric.tolerances import CARRIED
 
 KNOWN = 1.2  # how much less a balance is believed for each reaction in it that has to be known
 OBLIQUE = 0.6  # the same, along or across a member of a truss
-SISTER = 1.2  # the same, where a couple is asked, and it is the force there
+SISTER = 1.2  # the same, where a couple is requested, and it is the force there
 LARGER = 0.15  # the same, for each body beside the first; for the whole and parts of trusses once
 FINEST = 2.5  # the same, of a balance whose items are looked at place by place
 TURNED = 0.01  # how much less something else is believed of an item than that it was forgotten
 MOST_TERMS = 8  # of an equation, each of which may be too many
-SHORT = 40  # characters of a factor that is told
+SHORT = 40  # characters of a factor that is stated
 
 
 def requests_reactions(written: HandEquation) -> bool:
-    """Whether reactions stand in an equation."""
+    """True if reactions stand in an equation."""
     return any(FUNCTION_KINDS.get(call.name) == "reaction" for call in written.calls)
 
 
 @dataclass(frozen=True)
 class InBalance:
-    """In what a change is made: the sum of all items, the item, whether that is asked, how many others there are."""
+    """The place of a change: the sum of all items, the item, whether it is requested, the number of other items."""
 
     left: Scalar
     value: Scalar
@@ -142,11 +139,11 @@ class Balances:
         return TURNED * (len(explanation.shares) - len(gone)) if possible else float("inf")
 
     def difference(self, explanation: Explanation) -> str:
-        """What the author's sides differ by; the balance itself holds whatever the reactions are."""
+        """Difference of the author's sides; the balance itself holds whatever the reactions are."""
         return remainder(self.case, self.case.value(self.written.difference))
 
     def proves(self, explanation: Explanation) -> bool:
-        """Whether the balance holds with these mistakes, the answer put in, exactly."""
+        """True if the balance holds exactly with these mistakes and the answer put in."""
         pi = self.case.system.scope.graph.pi
         total = sum((share.added(pi)[0] for share in explanation.shares), start=self._left(explanation))
         _, answer, true = self._requested
@@ -161,14 +158,14 @@ class Balances:
 
     @cached_property
     def _wholes(self) -> dict[Mistake, InBalance]:
-        """Of each change in what it is made."""
+        """The place of each change, by its mistake."""
         return {}
 
-    # -- what is asked -----------------------------------------------------------------------------------
+    # -- what is requested -----------------------------------------------------------------------------------
 
     @cached_property
     def _free(self) -> FreeBodies | None:
-        """What acts, the beams cut where section forces are asked; None: in space, or something acts at no place."""
+        """The loads, beams cut where section forces are requested; None: in space, or something acts at no place."""
         system, quantities = self.case.system, self.case.quantities
         samples = Authored(self.case, self.written, "reaction").samples
         if samples is None or not quantities.is_plane or any(call.name == MULTIPLIER for call in self.written.calls):
@@ -184,7 +181,7 @@ class Balances:
 
     @cached_property
     def _sections(self) -> dict[Node, Scalar]:
-        """The section forces that are asked."""
+        """The section forces that are requested."""
         return {}
 
     @cached_property
@@ -193,7 +190,7 @@ class Balances:
 
     @cached_property
     def _values(self) -> dict[Node, Scalar]:
-        """What all reactions are that have a value, and the unknowns of loads."""
+        """Values of all reactions that have one, and of the unknowns of loads."""
         reactions = self._reactions
         mine = (*symbols_of_reactions(reactions.balance), *reactions.balance.unknowns)
         determined, values = reactions.solution.determined, reactions.solution.constants
@@ -251,7 +248,7 @@ class Balances:
 
     @property
     def _is_free(self) -> bool:
-        """Whether the author's accelerations may be any: he speaks of them by their names."""
+        """True if the accelerations are arbitrary: the author's equation names them."""
         accelerations = self.case.system.symbols.a
         return not self.case.closing and depends_on(next(iter(self._requested[1].values())), accelerations)
 
@@ -267,7 +264,7 @@ class Balances:
         return tuple(search for search in found if search is not None)
 
     def _of_whole(self, requested: Node) -> Search | None:
-        """All of what is asked, with a factor; None: it has no value."""
+        """All of what is requested, with a factor; None: it has no value."""
         true = self._values.get(requested)
         if true is None:
             return None
@@ -311,7 +308,7 @@ class Balances:
                 yield Mistake(text, "extra_term", (over(term * ours, slope),), EXTRA, open=False, text=text)
 
     def _search(self, free: FreeBodies, cut: CutBalance) -> Search | None:
-        """One balance in numbers; None: nothing that is asked stands in it, or more than is known."""
+        """One balance in numbers; None: nothing that is requested stands in it, or more than is known."""
         requested, seen = self._requested[0], [(each, pushes) for each in free.acting if (pushes := each.on(cut.parts))]
         values = [sum(map(cut.value, pushes), start=0) for _, pushes in seen]
         sizes = np.abs(self._before.flat(values)).max(axis=1, initial=0)
@@ -339,7 +336,7 @@ class Balances:
         return Search(None, numbers[0], numbers[1:], mistakes, 0)
 
     def _dearness(self, free: FreeBodies, cut: CutBalance, items: list[Item], known: set[Node]) -> float:
-        """How much less it is believed that somebody wrote this balance."""
+        """The cost added to a balance: the higher, the less it is believed that somebody wrote it."""
         requested = [item for item in items if item.acting.symbol in self._requested[0]]
         couples = {item.acting.force for item in requested if all(push.is_couple for push in item.pushes)}
         sisters = {item.acting.symbol for item in items if item.acting.force in couples} & known
@@ -350,7 +347,7 @@ class Balances:
 
 
 def _at(samples: Samples, known: Mapping[Node, Scalar]) -> dict[Node, np.ndarray]:
-    """What formulas are at the states."""
+    """Values of formulas at the states."""
     return dict(zip(known, samples.flat(tuple(known.values())), strict=True))
 
 
@@ -378,11 +375,11 @@ SINGLE = 0.2  # how much sooner a change of one item is believed than the same o
 
 @dataclass(frozen=True)
 class Item:
-    """What one acting thing adds to a balance.
+    """The share of one acting thing in a balance.
 
     Args:
         there: whether that is something.
-        is_asked: it is of what the author speaks.
+        is_requested: it is of what the author speaks.
     """
 
     acting: ActingForce
@@ -394,7 +391,7 @@ class Item:
 
 @dataclass(frozen=True)
 class Otherwise:
-    """What somebody takes for what a push adds: how it is told, its value; of a size the sign is that of the item."""
+    """A wrong share of a force or couple: its sentence and its value; a magnitude takes the sign of the item."""
 
     kind: str
     rank: float
@@ -405,11 +402,11 @@ class Otherwise:
 
 @dataclass(frozen=True)
 class WrongItems:
-    """What may be wrong with the items of one balance.
+    """Possible mistakes in the items of one balance.
 
     Args:
         samples: states with the reactions, where values are compared.
-        alone: one reaction is asked alone.
+        alone: one reaction is requested alone.
     """
 
     case: Case
@@ -419,7 +416,7 @@ class WrongItems:
     alone: bool = False
 
     def changes(self, item: Item) -> Iterator[Mistake]:
-        """Of an item, as a vector at its place."""
+        """Mistakes in an item, seen as a vector at its place."""
         what, pushes = f"{item.acting.name} in {self.cut.name}", item.pushes
         if item.there and not (item.is_requested and self.alone):
             yield self._of(item.acting, what, pushes[0], item.value, PLAIN)
@@ -457,13 +454,15 @@ class WrongItems:
             sign = int(np.sign(near[0] * own[0])) if item.there else 0
             for k in ((1, -1) if not sign else (sign,)) if other.is_size else (1,):
                 apart, size = np.abs(k * near - own).max(), np.abs(near).max()
-                if apart > CARRIED * size and size > CARRIED * np.abs(own).max():  # what is nothing is told as missing
+                if (
+                    apart > CARRIED * size and size > CARRIED * np.abs(own).max()
+                ):  # what is nothing is stated as missing
                     by, rank = k * other.value - true, other.rank + dear
                     kind, text = (other.kind, other.text) if sign or not other.is_size else ("extra_term", NOTHING)
                     yield self._of(item.acting, what, push, by, rank, kind, text)
 
     def _values(self, acting: ActingForce, push: PlacedPush) -> Iterator[Otherwise]:
-        """What may be taken for what a push adds."""
+        """Wrong values of the share of a force or couple."""
         F, e, p = push.force, self.cut.along, self.cut.about
         if e is not None:
             reported = "stands with its other component: sin and cos are exchanged"
@@ -516,7 +515,7 @@ class WrongItems:
 
     @property
     def strangers(self) -> Iterator[Mistake]:
-        """What does not act on the cut bodies, or on both sides inside of them, and is counted."""
+        """Mistakes of counting what does not act on the cut bodies, or acts on both sides inside of them."""
         for each in self.free.acting:
             mine = tuple(push for push in each.pushes if push.part in self.cut.parts)
             inner = mine and not each.on(self.cut.parts)
@@ -527,21 +526,21 @@ class WrongItems:
                 yield self._of(each, what, push, by, TERMS if inner else PIECES, "extra_term", reported)
 
     def _beyond(self, each: ActingForce) -> tuple[PlacedPush, ...]:
-        """What stands of a line load on the other part of a beam that is cut."""
+        """The part of a line load on the other part of a beam that is cut."""
         cut = len(self.free.system.motion.links)
         return tuple(
             push for push in each.pushes if min(self.cut.parts) >= cut and cut <= push.part not in self.cut.parts
         )
 
     def throughout(self, left: Scalar) -> Iterator[Mistake]:
-        """Of the whole balance: angles from the other axes, names that are exchanged."""
+        """Mistakes throughout a balance: angles counted from the other axes, names that are exchanged."""
         parameters = tuple(self.case.system.symbols.parameters.values())
         for each in WrongTerms(self.case.edits, parameters, ()).throughout((left,)):
             text = each.text.replace("in everything", f"in {self.cut.name}", 1)
             yield replace(each, name=self.cut.name, text=text, rank=each.rank + SINGLE)
 
     def edits(self, item: Item) -> Iterator[Mistake]:
-        """Of an item, as a formula; of a reaction what it is multiplied by."""
+        """Mistakes in an item, seen as a formula; in a reaction, in its coefficient."""
         what, edits, push = f"{item.acting.name} in {self.cut.name}", self.case.edits, item.pushes[0]
         symbol = item.acting.symbol
         k: Scalar = 1 if symbol is None else symbol
@@ -558,111 +557,3 @@ class WrongItems:
 def _size(v: Vector) -> Scalar:
     nonzero = [x for x in v if not is_zero(x)]
     return nonzero[0] if len(nonzero) == 1 else sqrt(dot(v, v))
-
-
-# -------- unsupported -----------------------------------------------------------------------------------------
-# An equation of motion of somebody -> the balance of cut bodies that it is, but for reactions that he left out.
-#
-#     D = sigma (sum of items without the reactions),   sigma a function of the configuration
-#
-# Newton's or Euler's equation of a body, written down as if what holds or supports it were not there.
-
-
-MOST_LEFT_OUT = 2  # reactions in one balance
-
-
-@dataclass(frozen=True)
-class Unsupported:
-    """The balances of which an equation of somebody may be one, without the reactions in them.
-
-    Args:
-        case: the model; nothing closes in it.
-        scalar: the author's left side minus his right side.
-    """
-
-    case: Case
-    scalar: Scalar
-
-    def explained(self, number: int) -> list[Explanation]:
-        """That reactions are left out, and beside it one mistake less than there are."""
-        if number > 2 or self._free is None:
-            return []
-        with suppress(EomgenError):
-            found = sorted(self._found(number), key=lambda each: each.cost)
-            return next(([each] for each in found if self._proves(each)), [])
-        return []
-
-    def difference(self, explanation: Explanation) -> str:
-        """What is missing."""
-        return excess(self.case, sum((x.mistake.rows[0] for x in explanation.shares if x.factor == 0), start=0))
-
-    def _proves(self, explanation: Explanation) -> bool:
-        pi = self.case.system.scope.graph.pi
-        total = self._wholes[explanation.shares[0].mistake]
-        total = total + sum((x.added(pi)[0] for x in explanation.shares if x.mistake not in self._wholes), start=0)
-        return bool(self.case.follows(self.scalar, (total,)).holds)
-
-    @cached_property
-    def _wholes(self) -> dict[Mistake, Scalar]:
-        """Of what is left out the sum of the other items."""
-        return {}
-
-    @cached_property
-    def _free(self) -> FreeBodies | None:
-        samples = samples_of(self.case.system, (self.scalar,)) if self.case.quantities.is_plane else None
-        if samples is None:
-            return None
-        symbols = self._symbols
-        random = np.random.default_rng(7)
-        size = next(iter(samples.values.values())).shape
-        samples = samples.with_values({x: random.uniform(0.4, 2, size) for x in symbols})
-        return FreeBodies(self.case.system, what_acts(self.case.system), (), samples)
-
-    @cached_property
-    def _symbols(self) -> tuple[Node, ...]:
-        return symbols_of_reactions(balance_of(self.case.system))
-
-    def _found(self, number: int) -> Iterator[Explanation]:
-        free = self._free
-        assert free is not None
-        (D,) = free.samples.of((self.scalar,))
-        for cut in free.cuts(self._symbols):
-            seen = [(each, pushes) for each in free.acting if (pushes := each.on(cut.parts))]
-            values = [sum(map(cut.value, pushes), start=0) for _, pushes in seen]
-            sizes = np.abs(free.samples.flat(values)).max(axis=1, initial=0)
-            there = sizes > CARRIED * sizes.max(initial=0)
-            items = [Item(*x, *y, False) for x, y in zip(seen, zip(values, there, strict=True), strict=True) if y[1]]
-            gone = [item for item in items if item.acting.kind == "reaction"]
-            left = [item for item in items if item.acting.kind != "reaction"]
-            if 0 < len(gone) <= MOST_LEFT_OUT and any(item.acting.kind == "inertia" for item in left):
-                yield from self._of_cut(number, cut, D, gone, left)
-
-    def _of_cut(
-        self, number: int, cut: CutBalance, D: np.ndarray, gone: list[Item], left: list[Item]
-    ) -> Iterator[Explanation]:
-        free = self._free
-        assert free is not None
-        whole = sum((item.value for item in left), start=0)
-        missing = [self._missing(cut, item) for item in gone]
-        self._wholes.update({share.mistake: whole for share in missing})
-        cost = PLAINEST + SHARED + KNOWN * (len(gone) - 1) + LARGER * (len(cut.parts) - 1)
-        wrong = WrongItems(self.case, free, cut, free.samples)
-        known = [each for item in left for each in wrong.changes(item)] if number == 2 else []
-        numbers = free.samples.of([whole, *(each.rows[0] for each in known)])
-        if number == 1:
-            if Search(D, numbers[0], numbers[:1], [missing[0].mistake], 0).misfit < SAME_EIGENVALUE:
-                yield Explanation(tuple(missing), 0, cost)
-            return
-        for each in Search(D, numbers[0], numbers[1:], known, 0).explanations(1):
-            yield Explanation((*missing, *each.shares), 0, cost + each.cost, each.scale)
-
-    def _missing(self, cut: CutBalance, item: Item) -> Share:
-        name = f"in {cut.name} {item.acting.name}"
-        body = self.case.system.motion.links[item.pushes[0].body].name
-        return Share(Mistake(name, "factor", (item.value,), SHARED, body, item.acting.force), Fraction(0))
-
-
-def unsupported(case: Case, scalar: Scalar) -> Iterator[Unsupported]:
-    """Of an equation with accelerations, where nothing closes."""
-    if not case.closing and case.system.free is None and depends_on(scalar, case.system.symbols.a):
-        yield Unsupported(case, scalar)

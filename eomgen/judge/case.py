@@ -13,6 +13,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.contributions import Contributions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
 from eomgen.judge.mistakes import Mistakes
+from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics.formulations import free_rates
@@ -76,7 +77,7 @@ class Case:
         return self.motion.begun if of_motion else ExactStart(self.system, self.at_rest)
 
     def starts_at_zero(self, *scalars: Scalar) -> bool | None:
-        """Whether scalars are 0 at the start, in numbers where it has no closed form; None: it is not known."""
+        """True if scalars are 0 at the start, in numbers where it has no closed form; None: the start is not known."""
         if not self.start:
             return None
         if self.starting.is_exact:
@@ -116,7 +117,7 @@ class Case:
 
     @cached_property
     def laws_of_time(self) -> dict[Node, Scalar]:
-        """Of each coordinate that is driven as a function of time that function."""
+        """The function of time of each coordinate that is driven by one."""
         scope, coordinates = self.system.scope, self.model.coordinates
         motions = {q: coordinates[q.name].motion for q in self.system.symbols.q}
         return {q: scope.value(law) for q, law in motions.items() if law is not None}
@@ -152,7 +153,7 @@ class Case:
 
     @cached_property
     def dimensions(self) -> Mapping[str, str]:
-        """Of what the model declares, as far as they follow from it."""
+        """Dimensions of the declared names, as far as they follow from the model."""
         return {name: str(each) for name, each in inferred(Catalog(self.model, ())).found.items()}
 
     @cached_property
@@ -164,12 +165,12 @@ class Case:
 
     @property
     def rests(self) -> bool:
-        """Whether an equilibrium is found."""
+        """True if an equilibrium is found."""
         return bool(self._equilibria)
 
     @property
     def places_of_rest(self) -> tuple[Mapping[Node, Scalar], ...]:
-        """Where all coordinates rest, as far as that has a closed form."""
+        """The equilibria that have a closed form."""
         named = {q.name: q for q in self.system.symbols.q}
         found = [place.exact for place in self._equilibria if place.is_exact]
         return tuple({named[q.name]: self.own(x) for q, x in place.items() if q.name in named} for place in found)
@@ -187,15 +188,20 @@ class Case:
 
     @property
     def edits(self) -> Edits:
-        """What may go wrong in its formulas."""
+        """The mistakes that are looked for in formulas of the model."""
         return self.parts.edits
+
+    @cached_property
+    def edited(self) -> tuple[ModelEdit, ...]:
+        """The models of which somebody may have thought, each with one change of the file."""
+        return edited_models(self.model, self.parts)
 
     @cached_property
     def _mistakes(self) -> dict[tuple[str, tuple[str, ...]], Mistakes]:
         return {}
 
     def mistakes(self, what: str, of: tuple[str, ...] = (), start: Mapping[Node, Scalar] | None = None) -> Mistakes:
-        """What may be wrong in its equations, energies or forces, found once for all equations that are judged."""
+        """Possible mistakes in equations, energies or forces, found once for all equations that are judged."""
         found = Mistakes(self.parts, what, of, start or {})
         return self._mistakes.setdefault((what, of), found)
 
@@ -234,7 +240,7 @@ class Case:
             for row, gamma in zip(e.J, e.gamma, strict=True)
         )
 
-    # -- what formulas are worth -------------------------------------------------------------------
+    # -- values of formulas -------------------------------------------------------------------
 
     def value(self, expression: Expression, also: Mapping[str, Scalar] | None = None) -> Scalar:
         """An expression over the symbols; accelerations and multipliers stay as they are.
@@ -248,14 +254,14 @@ class Case:
 
     @cached_property
     def names(self) -> Mapping[str, Scalar]:
-        """What names stand for; a parameter that stands nowhere in the model but is a formula of others is that."""
+        """Values of names; a parameter that stands nowhere in the model and is a formula of others is that formula."""
         leaves = (leaf for leaf in leaves_of(self.model, ()) if leaf.path[0] not in ("parameters", "outputs"))
         used = {name for leaf in leaves if isinstance(leaf.value, Expression) for name in leaf.value.names}
         return {**self.system.scope.names, **{x.name: y for x, y in self.definitions.items() if x.name not in used}}
 
     @cached_property
     def definitions(self) -> dict[Node, Scalar]:
-        """Of each parameter that the file gives by a formula what it is by those given in numbers."""
+        """Each parameter that the file gives by a formula, in terms of those that it gives by numbers."""
         scope, parts = self.system.scope, self.model.parameters
         formulas = {name: formula for name, part in parts.items() if (formula := part.formula)}
         known = {scope.symbols.parameters[name]: scope.value(formula) for name, formula in formulas.items()}
@@ -287,7 +293,7 @@ class Case:
         return self.solved(found)
 
     def solved(self, x: Scalar) -> Scalar:
-        """With what the unknowns of the model are.
+        """The scalar with the values of the unknowns of the model.
 
         Raises:
             DerivationError: the balance does not fix one.
@@ -313,14 +319,6 @@ class Case:
         if system is self.system:
             return self.solved(slope)
         return substituted((slope,), dict(zip(symbols.u, free_rates(self.system, system), strict=True)))[0]
-
-    def called_by(self, call: Call) -> Callable[[Case], Scalar]:
-        """The same function of another case, as a function of its state over the symbols of this one."""
-
-        def value(of: Case) -> Scalar:
-            return self.own(of.phase.eliminated(of.called(call)))
-
-        return value
 
     def _multiplier(self, call: Call) -> Scalar | None:
         label = f"{MULTIPLIER}({', '.join(a.name if isinstance(a, Reference) else a.text for a in call.args)})"
@@ -351,11 +349,11 @@ class Case:
         return None
 
     def follows(self, scalar: Scalar, rows: ScalarRow | None = None, *, within: bool = False) -> Follows:
-        """Whether a scalar is_zero_everywhere by the equations of motion and the constraints.
+        """True if a scalar vanishes by the equations of motion and the constraints.
 
         Args:
             rows: equations in place of the model's own.
-            within: where it is not in every piece, it is asked in which it is.
+            within: where it is not in every piece, the pieces in which it is are sought.
         """
         row, linear = linear_row(scalar, self.forced)
         if not linear:
@@ -426,7 +424,7 @@ class Case:
             _asking(self.model, {"asked": Output(value=value)})
 
     def clash(self, written: HandEquation) -> str:
-        """What is wrong with the dimensions, in words; ""."""
+        """The error in the dimensions, in words; "" where there is none."""
         names = inferred(Catalog(self.model, ())).names
         left, right = (replace(names.walk(), strict=True) for _ in range(2))
         needed = left.of(written.left)

@@ -1,4 +1,4 @@
-"""What an equation of somebody is compared with, the model's equations or a value; and what explains the difference."""
+"""Comparison of somebody's equation with the model's equations or a value, and explanations of the difference."""
 
 from __future__ import annotations
 
@@ -29,16 +29,14 @@ from eomgen.judge.diagnosis import (
     in_other_units,
     samples_of,
 )
-from eomgen.judge.inertias import Inertias
 from eomgen.judge.terms import short_text, term_text, terms_of
-from eomgen.judge.verdict import FUNCTION_KINDS, other_calls
+from eomgen.judge.verdict import other_calls
 from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Call, over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import CARRIED
-from eomgen.symbolic.solve.cramer import determinant
 
 LONGEST = 3000  # operations of equations that are looked at term by term
 EXTRA = 5.6  # rank of a term of the author that does not belong there
@@ -46,7 +44,7 @@ EXTRA = 5.6  # rank of a term of the author that does not belong there
 
 @dataclass(frozen=True)
 class Comparison:
-    """What an equation is compared with.
+    """A comparison of an equation with rows or a value of the model.
 
     Args:
         case: the model.
@@ -56,9 +54,9 @@ class Comparison:
             "T",
             "V", "Q", or "" of other values.
         call: what the value is of.
-        of: of which body, force or coordinate an energy or a force is asked; () of the whole.
+        of: of which body, force or coordinate an energy or a force is requested; () of the whole.
         more: what may be wrong, in place of what is known of such a value.
-        squared: the value is the square of what is asked: its mistakes stand under a root.
+        squared: the value is the square of what is requested: its mistakes stand under a root.
         sizes: what roots and sizes |x| are at the start, where the author wrote x.
         near: of linearized rows the place; {} of others.
     """
@@ -81,7 +79,7 @@ class Comparison:
 
     @cached_property
     def mistakes(self) -> tuple[Mistake, ...]:
-        """What may be wrong, the most believable first."""
+        """Possible mistakes, the most believable first."""
         system = self.case.system
         if self.more is not None:
             return tuple(self.more())
@@ -90,8 +88,6 @@ class Comparison:
             pass
         elif self.what:
             structural += self._structural()
-            if self.what == "motion" and self.case.closing:
-                structural += self._of_constraints()
             if self.sizes:
                 structural = [replace(x, rows=substituted(x.rows, self.sizes)) for x in structural]
             if self.near:
@@ -99,8 +95,6 @@ class Comparison:
         else:
             structural += self._other_arguments()
             structural += self._classes()
-            if self.call is not None and FUNCTION_KINDS.get(self.call.name) == "inertia":
-                structural += Inertias(self.case, self.call).mistakes
         if not self._is_equation:
             requested = self.call
             what = (
@@ -138,16 +132,16 @@ class Comparison:
 
     @property
     def _is_equation(self) -> bool:
-        """Whether the author may have multiplied it by anything."""
+        """True if the author may have multiplied it by any factor."""
         return self.what in ("motion", "constraints", "energy")
 
     @cached_property
     def is_long(self) -> bool:
-        """Whether nobody would look at it term by term."""
+        """True if it is too long to be looked at term by term."""
         return operations((self.scalar, *self.rows)).total > LONGEST
 
     def _structural(self) -> Iterator[Mistake]:
-        """What may be wrong with contributions."""
+        """Possible mistakes in contributions."""
         speeds = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
         start = self.case.start if self.what == "energy" else {}
         for each in self.case.mistakes(self.what, () if self.what == "Q" else self.of, start).all:
@@ -156,31 +150,8 @@ class Comparison:
             elif self.of[0] in speeds:
                 yield replace(each, rows=(each.rows[speeds.index(self.of[0])],))
 
-    def _of_constraints(self) -> Iterator[Mistake]:
-        """What is forgotten of constraints differentiated twice to eliminate accelerations: gamma of J a + gamma =
-        0."""
-        e, constraints = self.case.equations, self.case.system.constraints.closing
-        assert e is not None
-        gone = [j for j, a in enumerate(e.symbols.a) if not depends_on(self.scalar, (a,))]
-        if len(gone) != len(e.J) or len(gone) > 2:
-            return
-        J = [[row[j] for j in gone] for row in e.J]
-        det = determinant(J)
-        if is_zero(det):
-            return
-        adjugate = [[1]] if len(J) == 1 else [[J[1][1], -J[0][1]], [-J[1][0], J[0][0]]]
-        for i, (constraint, gamma) in enumerate(zip(constraints, e.gamma, strict=True)):
-            terms = terms_of(gamma, self.case.system.scope.positive)
-            for part in (*terms, *([gamma] if len(terms) > 1 else [])):
-                by = [-over(line[i] * part, det) for line in adjugate]
-                rows = tuple(sum((M[j] * x for j, x in zip(gone, by, strict=True)), start=0) for M in e.M)
-                what = f"the term {term_text(part)}" if part is not gamma else "all that holds products of speeds"
-                yield Mistake(
-                    f"{what} in the constraint {constraint.constraint} differentiated twice", "factor", rows, PIECES
-                )
-
     def _classes(self) -> Iterator[Mistake]:
-        """What of a value accelerations do, what speeds, what is there at rest."""
+        """The shares of a value that hold accelerations, speeds, or are there at rest."""
         symbols, (value,) = self.case.system.symbols, self.rows
         u, a = (tuple(x for x in some if depends_on(value, (x,))) for some in (symbols.u, symbols.a))
         classes = [("all that holds accelerations", a), ("all that holds speeds", u)]
@@ -295,7 +266,7 @@ class Comparison:
         return explained(self.searches, self.proves, number)
 
     def proves(self, explanation: Explanation) -> bool:
-        """Whether the explanation makes the author's equation, exactly."""
+        """True if the model's equation with these mistakes is exactly the author's."""
         case = self.case
         if not self._is_consistent(explanation):
             return False
@@ -315,7 +286,7 @@ class Comparison:
         return bool(case.follows(scalar, rows).holds)
 
     def _is_consistent(self, explanation: Explanation) -> bool:
-        """Whether nothing is missing twice: a term of its own, or a part of a body's kinetic energy, and all of it.
+        """True if nothing is missing twice: a term of its own, or a part of a body's kinetic energy, and all of it.
 
         Nor has all of it a number for its factor beside another number of a part.
         """
@@ -334,7 +305,7 @@ class Comparison:
         return True
 
     def _is_multiple(self, scalar: Scalar, energy: Scalar) -> bool:
-        """Whether an energy is the scalar times a function of the configuration, as their squares of speeds are."""
+        """True if an energy is the scalar times a function of the configuration, as their squares of speeds are."""
         system = self.case.system
         for u in system.symbols.u:
             mine, own = (derivative(derivative(x, u), u) for x in (scalar, energy))
@@ -343,7 +314,7 @@ class Comparison:
         return False
 
     def difference(self, explanation: Explanation) -> str:
-        """What is too much in the equation, as it stands in the model's own."""
+        """The excess in the equation, as it stands in the model's own."""
         added = [share.added(self.case.system.scope.graph.pi) for share in explanation.shares]
         rows = [sum(column, start=0) for column in zip(*added, strict=True)]
         row = rows[explanation.row] if explanation.row >= 0 else next((x for x in rows if not is_zero(x)), 0)
@@ -368,7 +339,7 @@ class Comparison:
 
 
 def changed_answers(case: Case, answer: ScalarRow) -> Iterator[Mistake]:
-    """What people make of an answer as it is written: its nodes changed, all of it turned over or without its root."""
+    """Mistakes in an answer as it is written: one node changed, all of it inverted or without its root."""
     answer = case.edits.written(answer)
     for each in case.edits.of_answer(answer):
         by = tuple(x - y for x, y in zip(each.to, answer, strict=True))
@@ -402,7 +373,7 @@ def excess(case: Case, scalar: Scalar) -> str:
 
 
 def remainder(case: Case, scalar: Scalar) -> str:
-    """What the motion leaves of a wrong equation, left minus right: with its accelerations or without, the shorter."""
+    """The left side minus the right side along the motion, with accelerations or without, whichever is shorter."""
     texts = [excess(case, scalar)]
     with suppress(DerivationError, ModelError):
         texts += [excess(case, case.phase.simple(case.phase.eliminated(scalar)))] if texts[0] else []

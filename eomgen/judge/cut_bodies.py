@@ -1,4 +1,4 @@
-"""What acts on bodies and beams that are cut free."""
+"""The forces and couples on bodies and beams that are cut free."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class ActingForce:
     follows: bool = False
 
     def on(self, parts: frozenset[int]) -> tuple[PlacedPush, ...]:
-        """What it does to them together; () of an inner force."""
+        """The forces and couples on them together; () of an inner force."""
         mine = tuple(push for push in self.pushes if push.part in parts)
         return () if self.kind == "reaction" and len({push.part for push in mine}) > 1 else mine
 
@@ -214,7 +214,7 @@ class CutBalance:
     about: Vector | None = None
 
     def value(self, push: PlacedPush) -> Scalar:
-        """What a push adds to the sum."""
+        """The share of a force or couple in the sum."""
         if self.along is not None:
             return push.force[0] * self.along[0] + push.force[1] * self.along[1]
         return push.moment - (0 if self.about is None else cross(self.about, push.force)[2])
@@ -232,7 +232,7 @@ class Spot:
 
 @dataclass(frozen=True)
 class FreeBodies:
-    """What is cut free.
+    """The parts that can be cut free, and their balances.
 
     Args:
         acting: what acts on it.
@@ -246,7 +246,7 @@ class FreeBodies:
     samples: Samples = field(repr=False)
 
     def cuts(self, requested: Sequence[Node]) -> Iterator[CutBalance]:
-        """The balances in which something that is asked may stand."""
+        """The balances in which something that is requested may stand."""
         mine = [each for each in self.acting if each.symbol in requested]
         for bodies in self._parts():
             if any(each.on(bodies) for each in mine):
@@ -261,7 +261,7 @@ class FreeBodies:
         yield from self.beams
 
     def _beyond(self, bodies: frozenset[int]) -> set[int]:
-        """What reactions join to them."""
+        """The bodies that reactions join to them."""
         return {
             push.body for each in self.acting if each.kind == "reaction" and each.on(bodies) for push in each.pushes
         }
@@ -289,7 +289,7 @@ class FreeBodies:
         return tuple(found)
 
     def is_truss(self, bodies: frozenset[int]) -> bool:
-        """Whether they are nodes of a truss."""
+        """True if they are nodes of a truss."""
         links = self.system.motion.links
         return all(i < len(links) and is_node(links[i].name) for i in bodies)
 
@@ -312,7 +312,7 @@ class FreeBodies:
 
     @staticmethod
     def _is_cut(acting: ActingForce, bodies: frozenset[int]) -> bool:
-        """Whether it acts between these bodies and others."""
+        """True if it acts between these bodies and others."""
         return acting.kind == "reaction" and 0 < len(acting.on(bodies)) < len(acting.pushes)
 
     def _hangs_together(self, bodies: frozenset[int]) -> bool:
@@ -322,7 +322,7 @@ class FreeBodies:
         return reached == bodies
 
     def _separated(self) -> Iterator[frozenset[int]]:
-        """What lies on one side of straight lines."""
+        """The sets of bodies on one side of a straight line."""
         places = [self._numbers(link.pose.p)[:, 0] for link in self.system.motion.links]
         for angle in np.arange(CUTS) * np.pi / CUTS:
             far = [x * np.cos(angle) + y * np.sin(angle) for x, y in places]
@@ -366,7 +366,7 @@ def _short(body: str) -> str:
 
 
 # -------- cut beams -------------------------------------------------------------------------------------------
-# A section force that is asked -> the beam cut there: what acts on the part before it and on the part after.
+# A section force that is requested -> the beam cut there: what acts on the part before it and on the part after.
 #
 # Line loads are cut, too: of each part the resultant of what stands on it.
 
@@ -390,7 +390,7 @@ class CutBeam:
 
 
 def cut_beam(quantities: Quantities, call: Call, acting: Sequence[ActingForce], part: int) -> CutBeam:
-    """The beam cut where a section force is asked.
+    """The beam cut where a section force is requested.
 
     Args:
         part: the index of the part before the section; that after it has the next one.
@@ -432,7 +432,7 @@ def cut_beam(quantities: Quantities, call: Call, acting: Sequence[ActingForce], 
 
 @dataclass(frozen=True)
 class _Cutting:
-    """On which part of a beam something acts."""
+    """Distribution of loads over the two parts of a beam that is cut."""
 
     link: BodyLink
     axis: MemberAxis
@@ -441,7 +441,7 @@ class _Cutting:
     part: int
 
     def pushes(self, acting: ActingForce, body: int) -> Iterator[PlacedPush]:
-        """What it does to the parts."""
+        """The forces and couples on the parts."""
         mine = [push for push in acting.pushes if push.part == body]
         if mine and (acting.kind == "inertia" or acting.name.startswith("the weight")):
             raise DerivationError("what a beam weighs is spread along it")
@@ -458,7 +458,7 @@ class _Cutting:
             yield replace(push, part=self.part + after)
 
     def _far(self, where: Vector) -> Scalar:
-        """Where a place of the body is along the beam."""
+        """Distance of a place of the body along the beam."""
         far = self.axis.distance(where)
         if far is None:
             raise DerivationError("something acts off the axis")

@@ -55,14 +55,14 @@ NumberRow = list[Any]
 
 @dataclass(frozen=True)
 class Follows:
-    """What was found of an equation.
+    """The result for an equation: whether it holds, where, and by which rows.
 
     Args:
         holds: yes, no, or None: no state decided it.
         rows: which of the rows stand in the combination, by their places.
         way: "prime field" or "50 digits".
-        on_ties: it holds only where the constraints do.
-        held: of what has pieces and does not hold in all of them, in which it does, where that was asked.
+        on_constraints: it holds only where the constraints do.
+        held: of what has pieces and does not hold in all of them, in which it does, where that was requested.
     """
 
     holds: bool | None
@@ -138,13 +138,13 @@ def combination(
     *,
     within: bool = False,
 ) -> Follows:
-    """Whether a row is a combination of others, its factors functions of the state, in every piece of what has pieces.
+    """True if a row is a combination of others, with functions of the state as factors, in every piece of the model.
 
     Args:
-        row: its entries, scalars of the system's graph; with no others it is asked whether they vanish.
+        row: its entries, scalars of the system's graph; with no others it is decided whether they vanish.
         constrained: further rows, which hold on the constraints alone: apart from these redundant ones contradict one
             another.
-        within: of what does not hold in all pieces it is asked in which it does.
+        within: the pieces are sought in which it does, of what does not hold in all.
     """
     found = _at_random(system, row, rows, constrained)
     if found.holds is not True and not (within and found.holds is False):
@@ -163,7 +163,7 @@ def _in_pieces(
     *,
     on_constraints: bool,
 ) -> Extent | None:
-    """In which pieces it is one; None: there are none, or nobody knows them all."""
+    """The pieces in which it is one; None: there are no pieces, or not all are known."""
     flat = [x for each in (row, *rows, *(constrained if on_constraints else ())) for x in each]
     if not any(holds_op(x, *PIECEWISE) for x in flat):
         return None
@@ -224,12 +224,12 @@ def _at_random(
 
 
 def is_zero_everywhere(system: System, *scalars: Scalar) -> Follows:
-    """Whether the scalars are 0 at every state."""
+    """True if the scalars are 0 at every state."""
     return combination(system, scalars, ())
 
 
 def vanish_at(scalars: Sequence[Scalar], numbers: Mapping[Node, float]) -> bool | None:
-    """Whether scalars are 0 at one state whose numbers are rounded; None: something has no value there.
+    """True if scalars are 0 at one state whose numbers are rounded; None: one has no value there.
 
     |f| is held against sum |x df/dx|, what the numbers' last digits make of it.
     """
@@ -248,7 +248,7 @@ def vanish_at(scalars: Sequence[Scalar], numbers: Mapping[Node, float]) -> bool 
 
 
 def vanish_nearly(system: System, scalars: Sequence[Scalar]) -> bool:
-    """Whether scalars that hold rounded numbers are 0 at real states, on the constraints, against their terms."""
+    """True if scalars that hold rounded numbers are 0 at real states on the constraints, measured by their terms."""
     arithmetic, found = fifty_digits(), 0
     for state in states_of(system, scalars, on_constraints=bool(system.constraints.J or _gaps(system, scalars))):
         try:
@@ -445,7 +445,7 @@ def _rational(x: float) -> Any:
 
 
 def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
-    """Where coordinates start, as far as numbers say it."""
+    """The starts of coordinates that are given by numbers."""
     from eomgen.mechanics.kinematics.scene import start_values
 
     values = {**dict.fromkeys(system.symbols.parameters.values(), 1.0), **own, system.symbols.t: 0.0}
@@ -457,7 +457,7 @@ def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
 
 
 def _gaps(system: System, flat: Sequence[Scalar]) -> list[Scalar]:
-    """What vanishes of coordinates: on constraints, and of driven ones by their law, where time stands in the
+    """Expressions of coordinates that vanish: on constraints, and by the laws of driven ones where time stands in the
     scalars too."""
     found = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if system.symbols.t in symbols_of(flat):

@@ -1,13 +1,11 @@
-"""An equation that is wrong -> why, in sentences.
-
-An equation that is wrong -> why: the least set of named corruptions that makes the model's equations the author's.
+"""An equation that is wrong -> why: the least set of named mistakes that makes the model's equations the author's.
 
     sigma D = E + sum y_j C_j
 
-D is the author's difference of sides, E the model's equation, C_j what the corruption j adds, y_j how often it is there
+D is the author's difference of sides, E the model's equation, C_j what the mistake j adds, y_j how often it is there
 (a simple number), sigma a function of the configuration alone: the author may have divided by anything. At a few
 configurations with several speeds and accelerations each this is linear in sigma and y; sets are searched in doubles,
-the cheapest that leaves nothing is proven exactly, and only then told.
+the cheapest that leaves nothing is proven exactly, and only then stated.
 """
 
 from __future__ import annotations
@@ -33,12 +31,12 @@ BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
 FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed
 PLAINEST = 10.0  # the cost of the most believable mistake
 WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes all of an answer wrongly
-WHOLE = "the whole of"  # what is asked, as one contribution
+WHOLE = "the whole of"  # what is requested, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
 ALIKE = 7  # digits to which directions are compared before pairs are sought
 MOST_PLAIN = 40  # contributions beside whose usual factors one more mistake is sought
-PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
+PAIRED, TRIPLED = 900, 120  # mistakes of which pairs and triples are sought
 MOST_MISTAKES = 3  # in one explanation
 PROVEN = 24  # explanations that are proven before it is given up
 SQUARED = 3.0  # how much less it is believed that a square has the wrong sign
@@ -52,7 +50,7 @@ USUAL = (  # factors that people write by mistake, and how much less each is bel
 UNUSUAL = 9.0  # of other factors
 TURNED = 0.3  # of an equation whose sides are exchanged
 MIXED = 6.0  # how much less a combination of equations is believed than one of them
-NEARLY = 2.0  # by how much less an explanation may be believed that is told beside the first
+NEARLY = 2.0  # by how much less an explanation may be believed that is stated in addition to the first
 MOST_NEAR = 6  # of these are proven
 INSTEAD = 2.0  # how much less it is believed that something unknown stands in the place of a contribution
 UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
@@ -71,10 +69,10 @@ UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
 
 @dataclass(frozen=True)
 class Share:
-    """One corruption in an explanation.
+    """One mistake in an explanation.
 
     Args:
-        corruption: what.
+        mistake: the mistake.
         factor: x, by which the contribution stands in the author's equation (1 is right); of a change how often it is
             there: once, or as often as the contribution in which it is made.
         unit: the name of the factor of a wrong unit, "".
@@ -95,10 +93,10 @@ class Share:
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why an equation differs: corruptions that together make the model's equation the author's.
+    """Why an equation differs: mistakes that together make the model's equation the author's.
 
     Args:
-        shares: the corruptions.
+        shares: the mistakes.
         row: whose equation it is, its place; -1: a combination.
         cost: how much has to be believed.
         scale: "", "opposite", "constant" or "function": what the author multiplied the equation by.
@@ -168,12 +166,12 @@ def in_other_units(samples: Samples, dimensions: Mapping[str, Dimension]) -> Sam
 
 
 def fitting(ours: np.ndarray, others: np.ndarray, given: int, rows: int) -> np.ndarray:
-    """Which corruptions have the dimension of the equation; all of them where the author's equation has none.
+    """True for each mistake with the dimension of the equation; for all of them where the author's equation has none.
 
     Args:
-        ours, others: the author's equation and what else is given, then the rows of each corruption, at the same states
+        ours, others: the author's equation and what else is given, then the rows of each mistake, at the same states
             in two sets of units.
-        given: how many there are before the corruptions, the last ones the rows.
+        given: how many there are before the mistakes, the last ones the rows.
     """
     ours, others = (x.reshape(len(x), -1) for x in (ours, others))
     places = np.argmax(np.abs(ours), axis=1)[:, None]
@@ -216,8 +214,8 @@ class Search:
 
     Args:
         D, E: (places, variants); D None: sigma E is 1 and E is what is left, with the opposite sign.
-        C: (corruptions, places, variants).
-        corruptions: what they are.
+        C: (mistakes, places, variants).
+        mistakes: the mistakes.
         row: whose equation E is.
         true: where D is None what the model says, of which something must be left.
         resisting: of E and of each C what must not vanish together.
@@ -234,7 +232,7 @@ class Search:
     opposite: bool = False
 
     def explanations(self, number: int) -> list[Explanation]:
-        """Those of so many corruptions, one to three."""
+        """The explanations by so many mistakes, one to three."""
         if not len(self.C):
             return []
         left, A, kept = self.projection
@@ -261,7 +259,7 @@ class Search:
 
     @cached_property
     def _distinct(self) -> list[int]:
-        """Of those that do the same the most believable, the most believable first."""
+        """The most believable of the mistakes that do the same, the most believable first."""
         _, A, kept = self.projection
         if not kept:
             return []
@@ -278,7 +276,7 @@ class Search:
         return list(found.values())
 
     def _length(self, i: int, direction: np.ndarray) -> float:
-        """How long a corruption is along its direction in the projection."""
+        """Length of a mistake along its direction in the projection."""
         (along,) = self._flat(self.C[i : i + 1])
         return float(along @ direction)
 
@@ -293,14 +291,14 @@ class Search:
 
     @cached_property
     def _size(self) -> np.ndarray:
-        """Of the equation at each configuration; 1 where the author may not have divided."""
+        """Magnitude of the equation at each configuration; 1 where the author may not have divided."""
         if self.D is None:
             return np.ones(len(self.E))
         sizes: np.ndarray = np.maximum(np.linalg.norm(self.E, axis=1), COMPUTED)
         return sizes
 
     def _flat(self, X: np.ndarray) -> np.ndarray:
-        """Without the share along D at each configuration, in one row."""
+        """The array without its share along D at each configuration, in one row."""
         X = X / self._size[:, None]
         if self.D is not None:
             D = self.D / np.maximum(np.linalg.norm(self.D, axis=1, keepdims=True), COMPUTED * COMPUTED)
@@ -310,7 +308,7 @@ class Search:
 
     @property
     def misfit(self) -> float:
-        """How much of the equation is not the author's."""
+        """The part of the equation that is not the author's, as a norm."""
         left, *_ = self.projection
         return float(np.linalg.norm(left)) if np.all(np.isfinite(left)) else float("inf")
 
@@ -345,7 +343,7 @@ class Search:
                 yield [i, *(int(kept[k]) + i + 1 for k in pair)]
 
     def _explained(self, chosen: Sequence[int], first: float | None = None) -> Explanation | None:
-        """The explanation of these corruptions, where their factors are simple.
+        """The explanation of these mistakes, where their factors are simple.
 
         Args:
             first: y of the first one; None: it is sought.
@@ -384,7 +382,7 @@ class Search:
         return Explanation(tuple(shares), self.row, cost, scaled)
 
     def _is_there(self, own: Sequence[bool], C: np.ndarray, y: np.ndarray) -> bool:
-        """Whether something is left of the model's equation with all these mistakes, terms of the author apart."""
+        """True if something is left of the model's equation with all these mistakes, terms of the author apart."""
         true = self.E if self.D is not None else self.true
         if true is None:
             return True
@@ -395,7 +393,7 @@ class Search:
         return bool(np.all(whole > CARRIED * np.linalg.norm(true, axis=1)))
 
     def _scale(self, C: np.ndarray, y: np.ndarray) -> tuple[str, float]:
-        """What the author multiplied by, and how far-fetched that is."""
+        """The factor by which the author multiplied, and its cost."""
         if self.D is None:
             return ("opposite", TURNED) if self.opposite else ("", 0.0)
         whole = self.E + np.tensordot(y, C, axes=1)
@@ -410,7 +408,7 @@ class Search:
 
 
 def _shares(mistakes: Sequence[Mistake], factors: Sequence[float]) -> list[Share] | None:
-    """The corruptions with their factors, where these are such as people write; None where one is not."""
+    """The mistakes with their factors, where these are such as people write; None where one is not."""
     found: dict[int, Share] = {}
     for k in sorted(range(len(mistakes)), key=lambda k: not mistakes[k].open):
         whole = [x.factor for x in found.values() if x.mistake.open and x.mistake.name == mistakes[k].name]
@@ -422,7 +420,7 @@ def _shares(mistakes: Sequence[Mistake], factors: Sequence[float]) -> list[Share
 
 
 def _share(mistake: Mistake, y: float, often: Sequence[Fraction | int]) -> Share | None:
-    """The corruption with its factor.
+    """The mistake with its factor.
 
     Args:
         often: how often a change may be there.
@@ -454,7 +452,7 @@ def simple_factor(x: float, largest: int = SIMPLE) -> Fraction | None:
 
 
 def cost_of(share: Share) -> float:
-    """How much has to be believed of one mistake."""
+    """The cost of one mistake: the higher, the less readily it is believed."""
     cost = PLAINEST + share.mistake.rank
     if share.unit:
         return cost + 1.5
@@ -490,7 +488,7 @@ def explained(
     return []
 
 
-# -------- corruption ------------------------------------------------------------------------------------------
+# -------- mistake ---------------------------------------------------------------------------------------------
 # One thing that may have gone wrong in an equation, and how readily it is believed.
 
 

@@ -42,7 +42,7 @@ from eomgen.symbolic.numeric.evaluation import ARRAYS, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 MOST_TRIED = 6  # changes that are proven before it is given up
-SHORT = 60  # characters of a place that is told
+SHORT = 60  # characters of a place that is stated
 MOST_PAIRS = 2000  # of terms that are compared
 ENERGIES = {"kinetic_energy": "T", "potential_energy": "V"}
 
@@ -65,12 +65,12 @@ class Fixes:
         return []
 
     def difference(self, explanation: Explanation) -> str:
-        """What is too much on the left."""
+        """The excess on the left side."""
         return excess(self.author.case, self._by[explanation.shares[0]])
 
     @cached_property
     def _by(self) -> dict[Share, Scalar]:
-        """By what the sides differ, of what is told."""
+        """The difference of the sides, of each mistake that is stated."""
         return {}
 
     def _explanation(self, node: Node, amended: Amended) -> Explanation | None:
@@ -86,7 +86,7 @@ class Fixes:
         self._by[share] = wrong - right
         return Explanation((share,), 0, PLAINEST + amended.cost)
 
-    # -- what is told ----------------------------------------------------------------------------
+    # -- the sentence ----------------------------------------------------------------------------
 
     def _share(self, node: Node, amended: Amended, corrected: Scalar) -> Share:
         product, term = self._around(node)
@@ -110,7 +110,7 @@ class Fixes:
         return Share(mistake, Fraction(1))
 
     def _around(self, node: Node) -> tuple[Node, Node]:
-        """The product, and the term that is told, in which a node stands."""
+        """The product, and the term that is stated, in which a node stands."""
         product = term = node
         in_sum = False
         for x in order((self.author.difference,)):
@@ -125,7 +125,7 @@ class Fixes:
         return short_text(self.author.plain(x), self.author.case.system.scope.positive)
 
     def _reported(self, there: Scalar, should: Scalar, around: Scalar) -> str:
-        """What is wrong where one thing stands and another is meant, in a product."""
+        """The sentence on a product in which one thing stands and another is meant."""
         if is_zero(should):
             return f"{term_text(there)} does not belong there"
         (ratio,), held = self.author.case.edits.written((over(should, there),)), powers_of(around)
@@ -155,7 +155,7 @@ class Fixes:
         return case.parts.holding(around, what.replace("motion", ""))
 
     def _of_terms(self, what: str, right: Scalar, wrong: Scalar) -> dict[str, Contribution]:
-        """Those of which a term is what the change makes, where most of the equation is made of such terms."""
+        """The contributions with a term that the change makes, where most of the equation is made of such terms."""
         samples, positive = self.author.samples, self.author.case.system.scope.positive
         mine, before = terms_of(right, positive), terms_of(wrong, positive)
         known = self.author.case.mistakes(what)
@@ -230,7 +230,7 @@ class Authored:
 
     @property
     def is_still(self) -> bool:
-        """Whether it is about one place or instant."""
+        """True if it is about one place or instant."""
         return bool(self.place) or self.true is not None
 
     @cached_property
@@ -254,12 +254,12 @@ class Authored:
 
     @cached_property
     def meant(self) -> Mapping[Node, Scalar]:
-        """What each occurrence stands for, at the place."""
+        """The value of each occurrence of a name, at the place."""
         known = self._sides[2]
         return dict(zip(known, substituted(tuple(known.values()), self.place), strict=True))
 
     def plain(self, x: Scalar) -> Scalar:
-        """With the names in place of their occurrences."""
+        """The scalar with the names in place of their occurrences."""
         graph = self.case.system.scope.graph
         return substituted((x,), {y: graph.symbol(y.name.partition(") ")[2]) for y in self.meant})[0]
 
@@ -279,7 +279,7 @@ class Authored:
         return found if case.equations is None else self._moving(found)
 
     def _moving(self, found: Samples) -> Samples:
-        """With the accelerations and multipliers of the motion: [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma]."""
+        """States with accelerations and multipliers of the motion: [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma]."""
         e = self.case.equations
         assert e is not None
         n, k = len(e.M), len(e.J)
@@ -292,7 +292,7 @@ class Authored:
 
     @cached_property
     def _atoms(self) -> tuple[Node, ...]:
-        """Of what changes are made: names of the model, and waves of angles."""
+        """The factors of which changes are made: names of the model, sines and cosines of angles."""
         symbols, known = self.case.system.symbols, tuple(self.meant.values())
         atoms: list[Node] = [*symbols.parameters.values(), *symbols.inputs.values()]
         formulas = known if self.is_still else (*self.case.rows, *known)

@@ -78,12 +78,12 @@ class Transcript:
     columns: tuple[int, ...]
 
     def column(self, at: int) -> int:
-        """Where in what was written a character of the text stands."""
+        """Column, in the given text, of a character of the transcript."""
         return self.columns[min(at, len(self.columns) - 1)] if self.columns else 0
 
 
 def transcript(written: str, known: Vocabulary) -> Transcript:
-    """What somebody wrote, in the grammar of the model file.
+    """The text of somebody in the grammar of the model file.
 
     Raises:
         ExpressionError: it cannot be read; column and length say where.
@@ -109,7 +109,7 @@ def transcript(written: str, known: Vocabulary) -> Transcript:
 
 
 def _side_by_side(a: Scrap, b: Scrap) -> bool:
-    """Whether a product is meant between the two."""
+    """True if a product is meant between the two."""
     return a.kind in ("number", "name", "call", "close") and b.kind in ("number", "name", "call", "function", "open")
 
 
@@ -200,7 +200,7 @@ class _Reader:
         self.put(")", "close", self.at - 1)
 
     def at_end(self) -> bool:
-        """Whether a sign of punctuation ends all that was written."""
+        """True if a punctuation mark ends the text."""
         return self.text[self.at] in ".;," and not _ORNAMENT.sub("", self.text[self.at + 1 :]).strip()
 
     def strange(self, what: str, fix: str = "", length: int = 1, at: int | None = None) -> ExpressionError:
@@ -219,7 +219,7 @@ class _Reader:
             self.at = unit.end()
 
     def group(self) -> tuple[str, int]:
-        """What stands in braces from here, or the one character (or command) that stands for a group; and where."""
+        """The content of braces from here, or the one character (or command) that stands for a group; and its place."""
         while self.at < len(self.text) and self.text[self.at].isspace():
             self.at += 1
         if self.at >= len(self.text):
@@ -249,12 +249,12 @@ class _Reader:
     # -- derivatives of energies ---------------------------------------------------------------------
 
     def is_slope(self, of: re.Match[str]) -> bool:
-        """Whether dT/dq is a derivative here: no name of the model begins with a d so."""
+        """True if dT/dq is a derivative here: no name of the model begins with such a d."""
         words = (_WORD.match(self.text, at) for at in (of.start(), of.end()))
         return not any(word and word.group() in self.known.names for word in words)
 
     def slope(self, energy: str, start: int) -> None:
-        """From the lower d on: \\partial\\dot\\theta, dp1'; dt."""
+        """The variable from the lower d on: \\partial\\dot\\theta, dp1'; dt."""
         by, before = _BY.match(self.text, self.at), len(self.out)
         assert by is not None
         self.at = by.end()
@@ -450,7 +450,7 @@ class _Reader:
             self.next()
 
     def parenthesis(self) -> None:
-        """From an opening parenthesis to the one that closes it."""
+        """The text from an opening parenthesis to the one that closes it."""
         start, level = len(self.out), 0
         opened = self.at
         while self.at < len(self.text):
@@ -519,7 +519,7 @@ class _Reader:
         self.put(found + "'" * dots, "name", start)
 
     def dots(self) -> int:
-        """How many dots and primes stand here."""
+        """Number of dots and primes here."""
         found = re.compile("[\u0307\u0308']*").match(self.text, self.at)
         assert found is not None
         self.at = found.end()
@@ -563,7 +563,7 @@ class _Reader:
         return letter, 0
 
     def index(self) -> str:
-        """What stands below the line behind a name."""
+        """The index below the line behind a name."""
         statements = re.compile(f"[{''.join(_STATEMENTS)}]+").match(self.text, self.at)
         if statements:
             self.at = statements.end()
@@ -631,7 +631,7 @@ class _Reader:
         self.after(parts[-1], start)
 
     def _is_product(self, word: str, end: int) -> bool:
-        """Whether parentheses behind a name are a factor: l(1 - cos(theta)), where l is a length."""
+        """True if parentheses behind a name are a factor: l(1 - cos(theta)), where l is a length."""
         if word in _FUNCTIONS:
             return False
         return not (word in self.known.functions and _REFERENCES.match(self.text, end))
@@ -677,7 +677,7 @@ class _Reader:
 
 
 def _closes_last(pieces: list[Scrap]) -> bool:
-    """Whether the parenthesis that opens first closes last."""
+    """True if the parenthesis that opens first closes last."""
     level = 0
     for k, piece in enumerate(pieces):
         level += {"open": 1, "close": -1}.get(piece.kind, 0)

@@ -32,7 +32,6 @@ from eomgen.judge.diagnosis import (
     MOST_NEAR,
     NEARLY,
     PLAINEST,
-    SHARED,
     TERMS,
     USUAL,
     Explanation,
@@ -46,12 +45,11 @@ from eomgen.judge.diagnosis import (
     samples_of,
 )
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.replays import replays
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.questions import Answer
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.formula import Call, Expression, Reference, over
+from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
@@ -61,11 +59,11 @@ from eomgen.symbolic.solve.cramer import determinant
 
 @dataclass(frozen=True)
 class PutIn:
-    """How an answer is put into an equation.
+    """A way to put an answer into an equation.
 
     Args:
         case: the model in the phase of the answer.
-        what: of which equation, as of Corruptions.
+        what: of which equation, as of Mistakes.
         into: a row, the answer put in.
         resisting: what of a row answers to a change.
         row: into which of the rows.
@@ -85,13 +83,13 @@ STATES_OF_VALUES = 12  # sets of values of the parameters at which an answer is 
 
 @dataclass(frozen=True)
 class Implied:
-    """What an answer leaves of the model's equation.
+    """The remainder of the model's equation with an answer put in.
 
     Args:
         case: the model.
         left: E, with the answer put in.
-        corruptions: with the answer put in.
-        resisting: of E and of every corruption what answers to a change: inertia, or stiffness. Some must be left.
+        mistakes: with the answer put in.
+        resisting: of E and of every mistake what answers to a change: inertia, or stiffness. Some must be left.
     """
 
     case: Case
@@ -118,11 +116,11 @@ class Implied:
         return (Search(None, found[0], found[1 : n + 1][fits], known, 0, resisting=resisting),)
 
     def difference(self, explanation: Explanation) -> str:
-        """What is left of the model's equation."""
+        """The remainder of the model's equation."""
         return excess(self.case, self.left)
 
     def proves(self, explanation: Explanation) -> bool:
-        """Whether the answer satisfies the model's equation with these mistakes, exactly."""
+        """True if the answer exactly satisfies the model's equation with these mistakes."""
         pi = self.case.system.scope.graph.pi
         total = sum((share.added(pi)[0] for share in explanation.shares), start=self.left)
         return bool(is_zero_everywhere(self.case.system, total).holds)
@@ -131,7 +129,7 @@ class Implied:
 def implied_by(
     case: Case, written: HandEquation, kind: str, at: Instant, true: Answer, author: Answer
 ) -> Iterator[Implied | Comparison | GivenFrequency]:
-    """What an answer may be compared with, the most telling first.
+    """The comparisons of an answer with the model, the most telling first.
 
     Args:
         true, author: the answer of the model and that of somebody.
@@ -146,51 +144,28 @@ def implied_by(
                 if found is not None:
                     yield found
     if own is not None:
-        yield from _beside_answer(case, written, kind, at, own, other)
+        yield from _beside_answer(case, written, own, other)
     alone = len(written.left.code) == 1 and kind == "frequency" and not case.closing and case.system.free is None
     if alone and 1 < len(case.rows) <= MOST_DEGREES_OF_FREEDOM:
         yield GivenFrequency(case, other, dict(([{}, *case.places_of_rest])[-1]))
 
 
-def _beside_answer(
-    case: Case, written: HandEquation, kind: str, at: Instant, own: Scalar, other: Scalar
-) -> Iterator[Comparison]:
-    """What somebody's value is compared with, beside the true one."""
+def _beside_answer(case: Case, written: HandEquation, own: Scalar, other: Scalar) -> Iterator[Comparison]:
+    """The comparisons of somebody's value with the true one."""
     call = written.left.calls[0] if len(written.left.code) == 1 and written.left.calls else None
-
-    def answered(of: Case) -> Scalar | None:
-        if kind != "frequency" or call is None or len(of.system.symbols.u) == len(case.system.symbols.u):
-            return case.exact(of.sides(written, at)[0])
-        for number in range(1, len(of.system.symbols.u) + 1):  # fewer ones are counted otherwise
-            numbered = replace(call, args=(Expression.number(number),))
-            left = Expression(str(call), (("call", numbered),), (0,))
-            value = case.exact(of.sides(replace(written, left=left), at)[0])
-            if value is not None and is_zero_everywhere(case.system, value - other).holds:
-                return value
-        return None
-
-    if isinstance(at, WrittenEquation) and len(case.system.symbols.u) == 1:
-        yield Comparison(case, other - own, (own,), "", more=lambda: _of_motion(case, written, at, own))
-    again = Comparison(case, other - own, (own,), "", more=lambda: replays(case, own, answered))
-    if kind == "frequency":
-        yield Comparison(case, other - own, (own,), "", more=lambda: _of_entry(case, call, own))
-    if not case.model.coordinates:
-        yield again  # of a structure, whose loads add up
     yield Comparison(case, other - own, (own,), "", call)
     if any(x.op == "sqrt" for x in order((own, other))):
         yield Comparison(case, other * other - own * own, (own * own,), "", squared=True)
-    if case.model.coordinates and not isinstance(at, WrittenEquation):
-        yield again
 
 
 class Explainable(Protocol):
-    """What explanations are sought of."""
+    """A thing of which explanations are sought."""
 
     def explained(self, number: int) -> list[Explanation]:
-        """Those by so many mistakes."""
+        """The explanations by so many mistakes."""
 
     def difference(self, explanation: Explanation) -> str:
-        """What is too much on the left."""
+        """The excess on the left side."""
 
 
 def simplest_explanation(
@@ -226,7 +201,7 @@ def simplest_explanation(
 
 
 def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | None:
-    """What a course of one coordinate leaves of its equation of motion; None: it needs the others."""
+    """Remainder of the equation of motion for a coordinate as a function of time; None: it needs the others."""
     symbols = case.system.symbols
     others = [x for x in (*symbols.q, *symbols.u, *case.forced) if x not in known]
     for k, (row, a) in enumerate(zip(case.rows, symbols.a, strict=True)):
@@ -245,7 +220,7 @@ def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | Non
 
 
 def implied_by_rest(case: Case, written: HandEquation) -> Implied | None:
-    """What a place q = value, or cos(q) = value, leaves of the forces that should balance there; None: it is none."""
+    """The remainder of the balance of forces at a place q = value, or cos(q) = value; None: it is no such place."""
     scalar = case.value(written.difference)
     held = [q for q in case.system.symbols.q if depends_on(scalar, (q,))]
     if len(case.rows) != 1 or len(held) != 1:
@@ -279,7 +254,7 @@ def beside_rest(case: Case, scalar: Scalar) -> list[Comparison]:
 
 
 def _implied(put: PutIn) -> Implied | None:
-    """The one equation of the model and its corruptions, with an answer put in."""
+    """The one equation of the model and its mistakes, with an answer put in."""
     case, known = put.case, put.case.mistakes(put.what)
     if put.what == "motion":
         whole = case.rows[put.row]
@@ -305,7 +280,7 @@ def _implied(put: PutIn) -> Implied | None:
 
 
 def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author: Answer) -> Iterator[PutIn]:
-    """How the answer is put into the equation of a model of one freedom."""
+    """The ways to put the answer into the equation of a model of one degree of freedom."""
     symbols, value = case.system.symbols, case.exact(author)
     assert value is not None
     free = [q for q in symbols.q if not case.model.coordinates[q.name].driven]
@@ -333,46 +308,6 @@ def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author:
             yield from _at_instant(begun, written, at, moment)
 
 
-def _of_motion(case: Case, written: HandEquation, at: WrittenEquation, own: Scalar) -> Iterator[Mistake]:
-    """Of a value at a place what is there at rest, and what the speed makes of it."""
-    begun = case.as_begun or case
-    (u,) = begun.system.symbols.u
-    q = next(x for x in begun.system.symbols.q if x.name == u.name.removesuffix("'"))
-    with suppress(DerivationError, ExpressionError):
-        if at.left.text == q.name and begun.start:
-            place = dict(zip((q, u), substituted((begun.value(at.right), 0), begun.start), strict=True))
-            value = begun.value(written.left)
-            if depends_on(value, (u, *begun.forced)):
-                still = begun.phase.simple(begun.phase.eliminated(value)) if depends_on(value, begun.forced) else value
-                still = case.own(substituted((still,), place)[0])
-                if not is_zero(still):
-                    yield Mistake("all that is there at rest", "factor", (still,), SHARED)
-                    yield Mistake("all that the speed does", "factor", (own - still,), SHARED)
-
-
-def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Mistake]:
-    """What may be wrong with an entry of M, C or K: in the slope of the equation that it is of."""
-    symbols, names = case.system.symbols, [x.name for x in call.args if isinstance(x, Reference)] if call else []
-    of = [u.name.removesuffix("'") for u in symbols.u]
-    if len(names) != 2 or not {*names} <= {*of} or case.closing or case.system.free is not None:
-        return
-    assert call is not None
-    i, j = map(of.index, names)
-    q = next(x for x in symbols.q if x.name == names[1])
-    along = {"mass": symbols.a[j], "damping": symbols.u[j]}.get(call.name, q)
-    still = dict.fromkeys((*symbols.u, *symbols.a), 0)
-    for place in ({}, *case.places_of_rest[:1]):
-
-        def slope(rows: ScalarRow, place: Mapping[Node, Scalar] = place) -> Scalar:
-            return substituted((derivative(rows[i], along),), {**still, **place})[0]
-
-        if is_zero_everywhere(case.system, slope(case.rows) - own).holds:
-            for each in case.mistakes("motion").all:
-                with suppress(DerivationError):
-                    yield replace(each, rows=(slope(each.rows),))
-            return
-
-
 def _resting(case: Case, q: Node, value: Scalar, of: Node | None = None) -> PutIn:
     """An equilibrium, q or a function of it, put into the equation of what does not move."""
     at = {q if of is None else of: value, **dict.fromkeys((*case.system.symbols.u, *case.system.symbols.a), 0)}
@@ -385,7 +320,7 @@ def _resting(case: Case, q: Node, value: Scalar, of: Node | None = None) -> PutI
 
 
 def _place(case: Case, q: Node) -> dict[Node, Scalar] | None:
-    """Where the small motions are; {} where that does not matter."""
+    """The place of the small motions; {} where that does not matter."""
     u, a = case.system.symbols.u[0], case.system.symbols.a[0]
     slopes = substituted((derivative(case.rows[0], q), derivative(case.rows[0], a)), {u: 0, a: 0})
     if not any(depends_on(slope, (q,)) for slope in slopes):
@@ -432,7 +367,7 @@ def _at_instant(case: Case, written: HandEquation, at: WrittenEquation, author: 
 
 
 def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Mapping[Node, Scalar]) -> Scalar | None:
-    """u^2, where what is asked is a speed, c u or |c u|, or depends on its square alone, as the force on what turns."""
+    """u^2, where a speed is requested, c u or |c u|, or what depends on its square alone, as forces of turning do."""
     u = case.system.symbols.u[0]
     try:
         requested = case.value(written.left)
@@ -491,7 +426,7 @@ class GivenFrequency:
         return list(islice(filter(self._proves, found), MOST_NEAR))
 
     def difference(self, explanation: Explanation) -> str:
-        """What of the determinant does not vanish."""
+        """The value of the determinant, which should vanish."""
         return excess(self.case, determinant(self._matrix(self._slopes(self.case.rows))))
 
     # -- slopes ----------------------------------------------------------------------------------
@@ -515,7 +450,7 @@ class GivenFrequency:
 
     @cached_property
     def _known(self) -> list[tuple[Mistake, tuple[ScalarRow, ScalarRow]]]:
-        """What may be wrong, with its slopes."""
+        """Possible mistakes with their derivatives."""
         found = []
         for each in (x for x in self.case.mistakes("motion").all if x.rank < TERMS):
             with suppress(DerivationError):  # it has no value there
@@ -528,7 +463,7 @@ class GivenFrequency:
 
     @cached_property
     def _fitting(self) -> list[Explanation]:
-        """Those that make the determinant vanish in numbers."""
+        """The mistakes that make the determinant vanish in numbers."""
         n, own = len(self.case.rows), self._slopes(self.case.rows)
         flat = [self.omega, *(x for M, K in (own, *(slopes for _, slopes in self._known)) for x in (*M, *K))]
         samples = samples_of(self.case.system, flat, places=STATES)

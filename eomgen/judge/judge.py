@@ -11,12 +11,10 @@ from typing import Any
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.answers import of_unknown, requested
-from eomgen.judge.balances import Balances, requests_reactions, unsupported
+from eomgen.judge.balances import Balances, requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, remainder
-from eomgen.judge.conserved import not_conserved
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import BELIEVED
 from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import (
     Explainable,
@@ -27,8 +25,7 @@ from eomgen.judge.implied import (
     simplest_explanation,
 )
 from eomgen.judge.reading import HandEquation, of_free_coordinates
-from eomgen.judge.renaming import OtherAxis, Renaming, renamings
-from eomgen.judge.replays import replays
+from eomgen.judge.renaming import Renaming, renamings
 from eomgen.judge.truth import (
     CONSTANT,
     IDENTITY,
@@ -36,13 +33,13 @@ from eomgen.judge.truth import (
     Decided,
     by_balance,
     by_what_is_given,
-    corrected,
     course_of,
     directions_at_start,
     in_its_piece,
     is_of_rest,
     of_the_start,
     on_one_side,
+    other_models,
     says_nothing,
     signs_at_start,
     sizes_in,
@@ -71,7 +68,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed
 from eomgen.proof.verdicts import Judged
 from eomgen.simulation.contacts import paths_of
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.formula import Reference, over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.text import SLOPE
@@ -82,7 +79,7 @@ from eomgen.symbolic.numeric.work import doing
 def verify(
     model: ModelOrPath, equation: Any, *, at: Any = None, from_rest: bool | None = None, kind: str | None = None
 ) -> Verdict:
-    """Whether an equation of somebody is right for a model, up to what, and if not, why.
+    """The verdict on somebody's equation for a model: right, up to what, or wrong, and why.
 
     Args:
         equation: a text of the grammar, LaTeX, or a sympy equation (an expression is what is 0).
@@ -107,7 +104,7 @@ SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong th
 
 @dataclass(frozen=True)
 class Judge:
-    """What judges equations of one model."""
+    """Judges equations of one model."""
 
     case: Case
 
@@ -186,7 +183,7 @@ class Judge:
         return self._of_scalar(written, kind, case.value(written.difference))
 
     def _at_rest(self, written: HandEquation) -> Verdict | None:
-        """Of an equation in which nothing moves: of the constraints, or of rest; None: the model is at rest nowhere."""
+        """Verdict on an equation in which nothing moves: on constraints or equilibrium; None: nothing rests."""
         case, scalar = self.case, self.case.value(written.difference)
         found = truth_of(case, scalar, "law")
         if found.holds:
@@ -254,7 +251,7 @@ class Judge:
         return replace(wrong, up_to=in_its_piece(case, scalar)) if kind in ("motion", "acceleration") else wrong
 
     def _course(self, written: HandEquation, constants: Meanings | None = None) -> Verdict | None:
-        """Of a coordinate as a function of time; None: it is something else."""
+        """Verdict on a coordinate as a function of time; None: it is something else."""
         case = self.case
         course = course_of(case, written, constants or {})
         if course is None:
@@ -271,11 +268,7 @@ class Judge:
         rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
         target = implied_by_course(case, course.known) if not course.holds else None
         found = simplest_explanation([target] if target is not None else [])[1]
-        if found and found[0].cost < BELIEVED:
-            causes = causes_of(case, found, moving=False)
-        elif (fix := corrected(case, written, constants or {})) is not None:
-            causes = (fix,)
-        elif found:
+        if found:
             causes = causes_of(case, found, moving=False)
         elif course.holds:
             text = f"the equations of motion hold with it, but at the start {of_the_start(case, course)}"
@@ -289,7 +282,7 @@ class Judge:
     # -- other names ---------------------------------------------------------------------------------
 
     def _of_other_names(self, written: HandEquation, kind: str, unknown: list[str]) -> Verdict:
-        """Of an equation with names that the model does not have: renamed, constants, or forces of constraints."""
+        """Verdict on an equation with names that the model lacks: renamed, constants, or forces of constraints."""
         case = self.case
         near: Renaming | None = None
         for renaming in renamings(case, written, unknown):
@@ -386,18 +379,13 @@ class Judge:
         targets = [each.with_known(laws) if laws and isinstance(each, Comparison) else each for each in targets]
         values = [each for each in targets if isinstance(each, Comparison)]
         known: list[Explainable] = [*targets, *(small for each in values for small in small_motions(each))]
-        if kind == "motion" and not written.calls and not also:
-            known += unsupported(case, scalar)
-        own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Fixes(Authored(case, written, kind))]
+        edits = other_models(case, written, kind, None)
+        own: list[Explainable] = [] if also else [edits, Fixes(Authored(case, written, kind))]
         target, explanations = simplest_explanation(known, own, soon=kind == "law" and not case.system.constraints.rows)
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)
                 target, explanations = simplest_explanation(also_)
-        if kind in ("law", "energy") and (also or not explanations):
-            changes = not_conserved(case, scalar)
-            if changes is not None:
-                return Verdict(written.given, kind, WRONG, difference=excess(case, scalar), causes=(changes,))
         if explanations and target is not None:
             moving = kind in ("motion", "acceleration", "reaction", "law")
             rooted = isinstance(target, Comparison) and target.squared
@@ -432,7 +420,7 @@ class Judge:
 
 
 def _apart(difference: str, beside: str = "") -> Cause:
-    """That the sides differ, where nothing says why."""
+    """The cause that the sides differ, where nothing explains it."""
     text = f"the sides differ by {difference}" if difference else "the sides differ"
     return Cause("other", f"{text}{beside}", term=difference)
 
@@ -457,15 +445,13 @@ def _instant(case: Case, at: Any) -> Instant:
 
 
 Meanings = Mapping[str, Scalar]
-MOST_FORMS = 6  # of a value that is compared in others than its own
-MOST_BODIES = 10  # of a model whose reactions are derived anew
 _WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
 
 
 def targets_of(
     case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None
 ) -> list[Explainable]:
-    """What an equation is compared with, the most telling first."""
+    """The comparisons of an equation with the model, the most telling first."""
     if kind in ("reaction", "motion") and not also and requests_reactions(written):
         begun = case.as_begun or case  # it slides as the author says, not by the sign of a speed
         balances = (Balances(begun, written), Balances(begun, written, finely=True))
@@ -502,7 +488,6 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
     of = tuple(x.name for x in call.args if isinstance(x, Reference))
     found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
     moving = (*case.system.symbols.a, *case.system.symbols.lam)
-    forms = _in_names_of(case, author, true) if kind == "reaction" else []
     if depends_on(true, moving) and not depends_on(author, moving):
         with suppress(EomgenError):
             so = case.phase.simple(case.phase.eliminated(true))
@@ -510,13 +495,8 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
                 so = case.phase.simple(substituted((so,), {**sizes, **signs_at_start(case, sizes)})[0])
             found.append(Comparison(case, author - so, (so,), "", call, of))
             true = so
-    found += [Comparison(case, author - x, (x,), "", call, of) for x in forms]
     if any(x.op == "sqrt" for x in order((author, true))) and not depends_on(true, moving):
         found.append(Comparison(case, author * author - true * true, (true * true,), "", squared=True))
-    if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
-        found.append(
-            Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call)))
-        )
     return found
 
 
@@ -531,20 +511,6 @@ def _sums(case: Case, written: HandEquation, scalar: Scalar) -> list[Comparison]
         so = case.phase.simple(case.phase.eliminated(true)) if depends_on(true, case.forced) else true
         found = [Comparison(case, theirs - so, (so,), "")] if not depends_on(theirs, case.forced) else found
     return found
-
-
-def _in_names_of(case: Case, author: Scalar, true: Scalar) -> list[Scalar]:
-    """A value by the equations of motion in other forms: without names that the author has not."""
-    mine, forms = {*symbols_of((author,))}, [true]
-    for row in case.rows:
-        for form in forms[:MOST_FORMS]:
-            for x in {*symbols_of((row,))} & {*symbols_of((form,))} - mine:
-                ours, slope = (derivative(each, x) for each in (row, form))
-                if not depends_on(ours, (x,)) and not depends_on(slope, (x,)) and not is_zero(slope):
-                    with suppress(DerivationError):  # it has no value there
-                        other = case.phase.simple(form - over(slope, ours) * row)
-                        forms += [other] if other not in forms else []
-    return forms[1:]
 
 
 def loosened_targets(case: Case, written: HandEquation, kind: str) -> list[Comparison]:

@@ -1,9 +1,8 @@
 """Contributions -> what people make of them by mistake: each a change of the equations that can be named.
 
 A whole contribution (a body's rotation, a weight, a spring) with a wrong factor, several together, or terms of its
-derivatives; derived from a wrong place (`wrong_points`); with something else in the place of a name, an angle or a
-speed (`substitutions`); with one place of it changed, before it is derived (`edits`) or in its terms (`wrong_terms`).
-What an equation differs by is then sought among them (`diagnosis`): the lists hold no equation, only what may go wrong.
+derivatives; with one place of it changed, before it is derived (`edits`) or in its terms (`wrong_terms`). What an
+equation differs by is then sought among them (`diagnosis`): the lists hold no equation, only what may go wrong.
 """
 
 from __future__ import annotations
@@ -12,40 +11,33 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
-from itertools import chain, combinations
+from itertools import combinations
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.judge.contributions import Contribution, Contributions, changes_of_places, substitutions_in
+from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Mistake
 from eomgen.judge.terms import terms_of
 from eomgen.judge.wrong_terms import Term, WrongTerms
-from eomgen.mechanics.kinematics.inertia import HALF, body_energies, mass_properties
-from eomgen.mechanics.kinematics.motion import Motion, parent_of, velocity_of
-from eomgen.model.forces.load import BodyPoint
+from eomgen.mechanics.kinematics.inertia import HALF
 from eomgen.symbolic.expression.derivative import (
     depends_on,
-    depends_on_any,
     gradient,
-    jacobian,
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.spatial import Vector, dot, minus
 
-MOST = 3000  # corruptions of one equation
+MOST = 3000  # mistakes of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
-GROUPS = ("all rotations", "the whole potential energy", "all that is applied")  # whose members are told
-MOST_REPORTED = 3  # members of a group that are told
-WAYS = ((2, "twice"), (HALF, "half"), (4, "four times"), (HALF * HALF, "a quarter"))  # how far something moves
+GROUPS = ("all rotations", "the whole potential energy", "all that is applied")  # whose members are stated
+MOST_REPORTED = 3  # members of a group that are stated
 MOST_NODES = 100_000  # of expressions that are made for them
 
 
 @dataclass(frozen=True)
 class Mistakes:
-    """What may be wrong in equations, energies or forces of a system.
+    """Possible mistakes in equations, energies or forces of a system.
 
     Args:
         parts: the contributions.
@@ -60,7 +52,7 @@ class Mistakes:
     start: Mapping[Node, Scalar] = field(default_factory=dict)
 
     def rows(self, part: Contribution) -> ScalarRow:
-        """What a contribution adds to what is asked."""
+        """The share of a contribution in the requested quantity."""
         operator = self.parts.operator
         if self.what == "T":
             return (operator.energy(part.T),)
@@ -104,20 +96,11 @@ class Mistakes:
             if len(members) > 1:
                 name, squares = " and ".join(part.name for part in members), not is_zero(members[0].T)
                 yield Mistake(name, "factor", self._sum(members), SHORTER, squares=squares)
-        yield from self._about_axes()
-        yield from self._ways()
         yield from self._together()
         if self.what == "motion":
             yield from self._pieces()
         if self.what in ("motion", "T", "energy"):
             yield from self._products()
-        for change in chain(changes_of_places(self.parts, self.whole), substitutions_in(self.parts, self.whole)):
-            if self.what == "T" and is_zero(change.part.T):
-                continue
-            rows = self.rows(change.part)
-            yield Mistake(
-                change.name, change.kind, rows, change.rank, change.part.body, change.part.force, False, change.text
-            )
         for part in self.whole if self.what != "energy" else ():
             yield from self._wrong_terms(part).in_rows(self.rows(part))
         for part in self.whole:
@@ -160,57 +143,6 @@ class Mistakes:
                     rows = self.rows(changed(by))
                     yield Mistake(part.name, each.kind, rows, each.rank, part.body, part.force, False, text)
 
-    def _ways(self) -> Iterator[Mistake]:
-        """Bodies that move on one way together, twice or half as far: T by the square, what acts on them once."""
-        motion, groups = self.parts.operator.base.motion, dict[Vector, list[str]]()
-        for link in motion.links:
-            v = velocity_of(motion, (link.name, mass_properties(motion.scope, link.name).com))
-            steady = not depends_on_any(
-                [x for row in jacobian(v, motion.scope.symbols.u) for x in row], motion.scope.symbols.q
-            )
-            if steady and not all(map(is_zero, v)):
-                groups.setdefault(v, []).append(link.name)
-        for bodies in groups.values():
-            straight = [part for part in self.whole if part.body in bodies and part.kind in ("translation", "weight")]
-            turning = [part for part in self.whole if part.body in bodies and part.kind == "rotation"]
-            for mine in (straight, [*straight, *turning]) if turning else (straight,):
-                yield from self._far(bodies, mine)
-
-    def _far(self, bodies: Sequence[str], mine: Sequence[Contribution]) -> Iterator[Mistake]:
-        """Bodies that move twice or half as far, in all that is given of them, and in one kind of it."""
-        kinds = [part.kind for part in mine]
-        rotate = " and turn" if "rotation" in kinds else ""
-        for factor, how in WAYS if {"translation", "weight"} <= {*kinds} else ():
-            parts = [replace(part, T=(factor * factor - 1) * part.T, V=(factor - 1) * part.V) for part in mine]
-            text = f"{' and '.join(bodies)} would move{rotate} {how} as far as meant, in the velocity and in the height"
-            rows = self._sum(parts)
-            yield Mistake(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
-        for kind in ("translation", "weight") if not rotate else ():
-            some = [part for part in mine if part.kind == kind]
-            if len(some) > 1:
-                name, squares = " and ".join(part.name for part in some), kind == "translation"
-                yield Mistake(name, "factor", self._sum(some), SHARED, squares=squares)
-
-    def _about_axes(self) -> Iterator[Mistake]:
-        """The rotations of bodies in space about their principal axes, those with equal moments together."""
-        motion, mine = (
-            self.parts.operator.base.motion,
-            {part.body: part for part in self.whole if part.kind == "rotation"},
-        )
-        for energy in body_energies(motion) if mine and motion.scope.model.space == "space" else ():
-            I = mass_properties(motion.scope, energy.body).I
-            moments = [I[k][k] for k in range(3)]
-            if energy.body not in mine or any(not is_zero(I[i][j]) for i in range(3) for j in range(i)):
-                continue
-            for moment in dict.fromkeys(moments):
-                axes = [k for k in range(3) if moments[k] == moment]
-                T = HALF * moment * sum((energy.spin[k] * energy.spin[k] for k in axes), start=0)
-                if len(axes) < 3 and not is_zero(T):
-                    reported = " and ".join("xyz"[k] for k in axes)
-                    name = f"the rotation of {energy.body} about its {reported}"
-                    row = self.rows(replace(mine[energy.body], T=T))
-                    yield Mistake(name, "factor", row, SHARED, energy.body, squares=True)
-
     # -- contributions together --------------------------------------------------------------------
 
     def _together(self) -> Iterator[Mistake]:
@@ -240,17 +172,6 @@ class Mistakes:
                 squares = all(not is_zero(part.T) for part in members)
                 rows = self._sum(members)
                 yield Mistake(reported, "factor", rows, SHARED, body, force, squares=squares)
-                yield from self._weights_for_masses(name, members, rows)
-
-    def _weights_for_masses(self, name: str, members: Sequence[Contribution], rows: ScalarRow) -> Iterator[Mistake]:
-        """m g where m is meant in all that is moved, m where m g is meant in all weights."""
-        moving = all(not is_zero(part.T) for part in members)
-        falling = [x for x in self.parts.edits.also if str(self.parts.dimensions.get(x.name)) == "m/s^2"]
-        for g in falling if moving or all(part.kind == "weight" for part in members) else ():
-            by = tuple((row * g if moving else over(row, g)) - row for row in rows)
-            text = f"weights stand for masses: a factor {g.name} is too many"
-            text = text if moving else f"masses stand for weights: a factor {g.name} is missing"
-            yield Mistake(name, "factor", by, SHARED, open=False, text=f"in {name} {text}")
 
     def _sum(self, members: Sequence[Contribution]) -> ScalarRow:
         rows = [self.rows(part) for part in members]
@@ -293,7 +214,7 @@ class Mistakes:
             yield Mistake(f"all products of speeds in the {of}", kind, tuple(moving), PIECES + SHORTER, part.body)
 
     def _products(self) -> Iterator[Mistake]:
-        """In a kinetic energy the product of two speeds: what is lost where only their squares are added."""
+        """The product of two speeds in a kinetic energy, which is lost where only their squares are added."""
         for part in self._kinetic:
             held = symbols_of((part.T,))
             moving = [u for u in self.parts.operator.base.symbols.u if u in held]
@@ -302,27 +223,3 @@ class Mistakes:
                 name = f"the product {u.name}*{w.name} in the square of the velocity of {part.body}"
                 row = self.rows(replace(part, T=mixed, V=0, Q=(), row=None))
                 yield Mistake(name, "factor", row, SHARED, part.body)
-            if part.kind == "translation" and part.body in self.parts.operator.base.motion.index:
-                yield from self._relative(part)
-
-    def _relative(self, part: Contribution) -> Iterator[Mistake]:
-        """The product of the velocity of a point and of that beside it: m v_P . (v_C - v_P)."""
-        motion = self.parts.operator.base.motion
-        mass = mass_properties(motion.scope, part.body)
-        v, seen = velocity_of(motion, (part.body, mass.com)), list[Vector]()
-        above = parent_of(motion.scope.model, part.body)
-        places = [(part.body, r) for r in motion.points[part.body].values()]
-        places += [(above, r) for r in motion.points[above].values()] if above is not None else []
-        for place in places:
-            w = velocity_of(motion, place)
-            product = mass.m * dot(w, minus(v, w))
-            if w not in seen and not is_zero(product):
-                seen.append(w)
-                name = f"the product of the velocities of {_named(motion, place)} and of {part.body} relative to it"
-                row = self.rows(replace(part, T=product, V=0, Q=(), row=None))
-                yield Mistake(name, "factor", row, SHARED, part.body)
-
-
-def _named(motion: Motion, place: BodyPoint) -> str:
-    """The name of a point of a body."""
-    return next(f"{place[0]}.{name}" for name, r in motion.points[place[0] or ""].items() if r == place[1])

@@ -1,4 +1,4 @@
-"""What somebody wrote, text, LaTeX or sympy -> both sides of an equation over the names of a model.
+"""Text, LaTeX or sympy of somebody -> both sides of an equation over the names of a model.
 
 The text grammar of the model file is tried first, then what people write otherwise (`handwriting`). T, V, L, Q(theta),
 T(rod) and the letters of reactions (B_x, N_floor) stand for functions of the outputs, unless the model has such names.
@@ -65,7 +65,7 @@ class HandEquation:
 
     @property
     def takes_rates(self) -> bool:
-        """Whether a rate of more than a coordinate stands in it."""
+        """True if the rate of something else than a coordinate stands in it."""
         return any(call.name == RATE for call in (*self.left.calls, *self.right.calls))
 
 
@@ -121,7 +121,7 @@ def side_value(
 
 @dataclass(frozen=True)
 class Reading:
-    """How equations about one system are read."""
+    """Reads equations about one system."""
 
     system: System
 
@@ -158,7 +158,7 @@ class Reading:
 
     @cached_property
     def _named(self) -> tuple[tuple[NamedReaction, Call, str], ...]:
-        """(a reaction that can be asked by itself, how, the number of its strand or ""); none where nothing is held."""
+        """(a reaction that can be requested, how, the number of its strand or ""); none where nothing is held."""
         found = []
         with suppress(DerivationError):
             for each in named_reactions(balance_of(self.system)):
@@ -280,7 +280,7 @@ class Reading:
         raise ExpressionError(what, written.column(at), "write one equation, left = right")
 
     def _may_be_inertia_terms(self, left: Expression) -> bool:
-        """Whether a side is c(q'), as `derive` names them."""
+        """True if a side is c(q'), as `derive` names them."""
         calls = left.calls if len(left.code) == 1 else ()
         return any(x.name == "c" and all(self._is_known(str(a)) for a in x.args) for x in calls)
 

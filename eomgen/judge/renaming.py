@@ -10,14 +10,10 @@ from itertools import islice, product
 
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import excess
 from eomgen.judge.contributions import ANGLES
-from eomgen.judge.diagnosis import PLAINEST, TERMS, Explanation, Mistake, Share
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.truth import truth_of
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.text import to_text
 
@@ -28,11 +24,11 @@ NODES = 60_000  # of the equations of motion that all ways together may evaluate
 
 @dataclass(frozen=True)
 class Renaming:
-    """What names stand for.
+    """Meaning of names that the model does not have.
 
     Args:
         values: of each name, with its primes, the scalar.
-        told: of each name without primes the text: {phi: "theta - pi/2"}.
+        reported: of each name without primes the text: {phi: "theta - pi/2"}.
         near: whether every name is spelt as what it stands for, but for case and marks, or moves as it does.
         guessed: a name that does not move stands for a coordinate: where constraints hold that at 0, it says nothing.
     """
@@ -67,49 +63,8 @@ def _renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Ite
                 yield replace(_renaming(case, ways), near=near, guessed=guessed)
 
 
-@dataclass(frozen=True)
-class OtherAxis:
-    """An equation that is right where the model's own angles are counted from the other axis, one or all alike.
-
-    Nothing else is tried under the model's own names: a sign that is wrong would be right in the other direction.
-    """
-
-    case: Case
-    written: HandEquation
-    kind: str
-
-    def explained(self, number: int) -> list[Explanation]:
-        """The angles that are counted from elsewhere."""
-        case = self.case
-        for renaming in self._renamings() if number == 1 else ():
-            if truth_of(case, case.value(self.written.difference, renaming.values), self.kind).holds:
-                names, values = (" and ".join(some) for some in (renaming.reported, renaming.reported.values()))
-                text = (
-                    f"sin and cos are exchanged: {names} counted from the other axis, where it is right with {values}"
-                )
-                row = (case.value(self.written.difference),)
-                mistake = Mistake(f"from where {names} is counted", "wrong_axis", row, TERMS, open=False, text=text)
-                return [Explanation((Share(mistake, Fraction(1)),), 0, PLAINEST + TERMS)]
-        return []
-
-    def difference(self, explanation: Explanation) -> str:
-        """What is too much on the left."""
-        return excess(self.case, explanation.shares[0].mistake.rows[0])
-
-    def _renamings(self) -> Iterator[Renaming]:
-        case, names = self.case, self.written.names
-        used = [q for q in case.model.coordinates if {q, f"{q}'", f"{q}''"} & names]
-        angles = [q for q in used if case.dimensions.get(q, "") in ANGLES]
-        quarter = over(case.system.scope.graph.pi, 2)
-        for shift in (quarter, -quarter):
-            if len(angles) > 1:
-                yield _renaming(case, {q: (q, 1, shift) for q in angles})
-            for q in angles:
-                yield _renaming(case, {q: (q, 1, shift)})
-
-
 def _choices(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Which of the names each stands for; those that are spelt alike first, at most MOST."""
+    """The choices of meanings for names; those that are spelt alike first, at most MOST."""
     if len(names) <= len(among):
         yield from islice((tuple(among[k] for k in chosen) for chosen in _nearest_first(names, among)), MOST)
 
@@ -134,7 +89,7 @@ def _nearest_first(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple
 
 
 def _distance(a: str, b: str) -> float:
-    """How different two names look; 0: but for case and marks they are one."""
+    """Distance of two names; 0: they are one but for case and marks."""
     x, y = (name.lower().replace("_", "") for name in (a, b))
     if x == y:
         return 0

@@ -55,7 +55,7 @@ def short_text(x: Scalar, positive: frozenset[Node]) -> str:
 
 
 def is_product(t: Scalar, others: Sequence[Scalar]) -> bool:
-    """Whether a term is what the square of a sum has beside its squares: t^2 = 4 a b, a cosine of an angle apart."""
+    """True if a term is the mixed one in the square of a sum: t^2 = 4 a b, but for a cosine of an angle."""
     if type(t) is not Node:
         return False
     square = powers_of(t * t)
@@ -72,7 +72,7 @@ def term_text(x: Scalar) -> str:
 
 
 def wrong_parameters(held: Iterable[Node], known: Sequence[Node]) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
-    """What may happen to the parameters that are held: (kind of the cause, what replaces what, in words)."""
+    """Mistakes in the parameters that are held: (kind of the cause, replacement, in words)."""
     mine = [x for x in known if x in {*held}]
     for x in mine:
         yield "missing_term", {x: 0}, f"{x.name} is left out"
@@ -116,15 +116,15 @@ def powers_of(x: Scalar) -> Powers:
 
 
 def angles_in(scalars: Sequence[Scalar]) -> list[Node]:
-    """What stands under sines and cosines."""
+    """The arguments of sines and cosines."""
     found = [x.args[0] for x in order(scalars) if x.op in ("sin", "cos")]
     return list(dict.fromkeys(x for x in found if type(x) is Node))
 
 
 def turned_angles(angle: Node, scalars: Sequence[Scalar]) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
-    """What may happen to an angle in scalars: (kind of the cause, what replaces sine and cosine, in words).
+    """Mistakes in an angle in scalars: (kind of the cause, replacement of sine and cosine, in words).
 
-    What replaces one of them alone comes first; where the other does not stand there, no more is told.
+    What replaces one of them alone comes first; where the other does not stand there, no more is stated.
     """
     held, seen = {x for x in order(scalars) if x.op in ("sin", "cos")}, list[dict[Node, Scalar]]()
     for kind, mapping, what in sorted(_turned(angle), key=lambda each: len(each[1])):
@@ -189,7 +189,7 @@ def all_turned(angles: Sequence[Node]) -> Iterator[tuple[str, dict[Node, Scalar]
 
 
 MOST_PLACES = 80  # nodes of a formula that are looked at
-SHOWN = 60  # characters of a place that is told
+SHOWN = 60  # characters of a place that is stated
 WAVES = ("sin", "cos", "tan")
 
 
@@ -212,7 +212,7 @@ class Edit:
 
 @dataclass(frozen=True)
 class Edits:
-    """What may go wrong in formulas.
+    """Mistakes of one place in formulas.
 
     Args:
         positive: symbols that stand for positive numbers.
@@ -225,7 +225,7 @@ class Edits:
     also: Sequence[Node] = ()
 
     def of(self, formulas: ScalarRow) -> Iterator[Edit]:
-        """Those of formulas as they are and as they are written, each once; a place of several in all of them."""
+        """Edits of formulas as they are and as they are written, each once; a shared place is changed in all."""
         seen = {formulas}
         for form in dict.fromkeys((formulas, self.written(formulas))):
             for each in self._in_form(form):
@@ -234,7 +234,7 @@ class Edits:
                     yield each
 
     def of_answer(self, answer: ScalarRow) -> Iterator[Edit]:
-        """Those of an answer as it is written, which may also stand upside down or under a root."""
+        """Edits of an answer as it is written, which may also be inverted or under a root."""
         for each in self.of(answer):
             yield replace(each, rank=max(each.rank, ODD))
         for x in answer if len(answer) == 1 else ():
@@ -259,7 +259,7 @@ class Edits:
                     yield Edit(kind, substituted(formulas, {node: other}), text + where, rank)
 
     def of_term(self, term: Node) -> Iterator[Edit]:
-        """Those of a term of a sum multiplied out: other functions of its angles, too, and factors too many."""
+        """Edits of a term of a sum multiplied out: other functions of its angles, too, and factors too many."""
         for kind, other, text, rank in self._of_product(term):
             yield Edit(kind, (other,), text, rank)
         angles = angles_in((term,))
@@ -327,7 +327,7 @@ def _of_ratio(x: Node, p: Node, q: Node, k: Fraction) -> Iterator[tuple[str, Sca
 
 
 def _other_powers(k: Fraction) -> tuple[Fraction, ...]:
-    """What people write for a power k, each once."""
+    """Powers that people write for a power k, each once."""
     halved = (k / 2,) if (k / 2).denominator <= 2 else ()
     return tuple(dict.fromkeys((Fraction(0), k - 1 if k > 0 else k + 1, k + 1 if k > 0 else k - 1, -k, 2 * k, *halved)))
 
@@ -354,7 +354,7 @@ def power(x: Scalar, k: Fraction) -> Scalar:
 
 
 def wrong_power(name: str, k: Fraction, other: Fraction) -> str:
-    """In words that x^other stands where x^k is meant."""
+    """The sentence that x^other stands where x^k is meant."""
     name = f"({name})" if any(c in name for c in " +-*/") and not name.endswith(")") else name
     if other == 0:
         return f"a factor {name} is missing" if k > 0 else f"a division by {name} is missing"
@@ -435,7 +435,7 @@ _EXPONENTS = (  # of two names: powers, how much less they are believed
 
 @dataclass(frozen=True)
 class Amended:
-    """What is meant in the place of a formula.
+    """The formula that is meant in the place of another.
 
     Args:
         cost: how much less it is believed than the plainest mistake.
@@ -462,7 +462,7 @@ class Products:
 
     @cached_property
     def _known(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of each product the powers of the atoms, how much less it is believed, and its values."""
+        """Powers of the atoms, cost and values of each product."""
         n = len(self.atoms)
         unit = np.eye(n)
         rows = [np.zeros(n), *(k * unit[i] for k in (1, -1, 2, -2, 0.5, -0.5) for i in range(n))]
@@ -478,7 +478,7 @@ class Products:
         return powers, np.array(costs), np.where(negative % 2 == 1, -sizes, sizes)
 
     def changes(self, node: Node, own: np.ndarray, needed: np.ndarray, *, inner: bool, forced: bool) -> list[Amended]:
-        """Those by which a node gets the value that is needed.
+        """The changes by which a node gets the value that is needed.
 
         Args:
             inner: it is a factor of a product: a number is one of that.
@@ -516,7 +516,7 @@ class Products:
                 yield int(k), c
 
     def _cost(self, k: int, c: Fraction) -> float:
-        """Of a product; a wrong sign beside it is a mistake of its own."""
+        """The cost of a product; a wrong sign in addition is a mistake of its own."""
         return float(self._known[1][k]) + _of_number(abs(c)) + (PLAINEST if c < 0 else 0.0)
 
     def _product(self, k: int, c: Fraction) -> Scalar:
@@ -540,6 +540,6 @@ def other_forms(node: Node, own: np.ndarray, needed: np.ndarray) -> Iterator[Ame
 
 
 def _of_number(c: Fraction) -> float:
-    """How much less a number is believed than none."""
+    """The cost of a number, compared with none."""
     size = next((more / 2 for known, more in USUAL if abs(c) in known), UNUSUAL)
     return size + (MINUS if c < 0 else 0.0)

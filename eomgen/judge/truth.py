@@ -1,4 +1,4 @@
-"""Whether an equation is right: of motion, at rest, along the motion, of small motions."""
+"""Decision whether an equation is right: of motion, at rest, along the motion, of small motions."""
 
 from __future__ import annotations
 
@@ -16,10 +16,11 @@ from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, linearized
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, states_of, vanish_nearly
 from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistake, Share
+from eomgen.judge.model_edits import ModelEdits
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.terms import LONG, short_text, term_text
-from eomgen.judge.verdict import Cause
+from eomgen.judge.terms import LONG, short_text
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent
+from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import (
@@ -49,11 +50,12 @@ MOST_SIZES = 2  # sizes |x| of which either sign is tried
 
 EVERY_PIECE = ("motion", "acceleration")  # kinds of equations that must hold in every piece
 IDENTITY, CONSTANT, SIGNLESS = "identity", "constant", "signless"
+OF_ENERGIES = ("", "the constraints", "a constant of the potential energy")  # up to what an energy is the model's
 
 
 @dataclass(frozen=True)
 class Decided:
-    """Whether an equation is right.
+    """The decision on an equation.
 
     Args:
         holds: yes, no, or None: nothing decided it.
@@ -67,7 +69,7 @@ class Decided:
 
 
 def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
-    """Whether a scalar vanishes in every motion of the case, and what had to be used to see it."""
+    """The decision whether a scalar vanishes in every motion of the case, with what had to be used to see it."""
     found = is_zero_everywhere(case.system, scalar)
     if found.holds:
         if kind == "motion":
@@ -75,7 +77,7 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
         return Decided(True, "the constraints" if found.on_constraints else "")
     undecided = found.holds is None
     if kind == "energy" and _is_constant_of_potential(case, scalar):
-        return Decided(True, "a constant of the potential energy")
+        return Decided(True, OF_ENERGIES[-1])
     if case.equations is None:
         return Decided(None if undecided else False)
     if depends_on(scalar, case.forced):
@@ -91,6 +93,39 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
         if held.everywhere or (held and kind not in EVERY_PIECE):
             return Decided(True, f"{reported} from the start{while_(held)}")
     return Decided(None if undecided else False)
+
+
+def is_right(case: Case, written: HandEquation, kind: str, at: WrittenEquation | AtRest | None) -> bool:
+    """True if an equation is right for a case, by whatever decides one of its kind; False also where nothing does.
+
+    Raises:
+        EomgenError: it has no value there.
+    """
+    if at is not None or kind in ("frequency", "statics"):
+        left, right = (case.exact(each) for each in case.sides(written, at))
+        return left is not None and right is not None and bool(is_zero_everywhere(case.system, left - right).holds)
+    course = course_of(case, written, {})
+    if course is not None:
+        return bool(course.holds and course.begins)
+    scalar = case.value(written.difference)
+    if kind in ("law", "energy"):
+        found = truth_of(case, scalar, kind)
+        return bool(found.holds) and (kind == "law" or found.up_to in OF_ENERGIES)
+    if kind == "equilibrium":
+        return bool(is_of_rest(case, scalar))
+    if depends_on(scalar, case.forced):
+        follows = case.follows(scalar)
+        return bool(follows.holds) and any(k < len(case.rows) for k in follows.rows)
+    return kind != "motion" and bool(is_zero_everywhere(case.system, scalar).holds)
+
+
+def other_models(case: Case, written: HandEquation, kind: str, at: WrittenEquation | AtRest | None) -> ModelEdits:
+    """The changes of the model file with which an equation would be right; none explains what has no dimension."""
+    return ModelEdits(
+        lambda: () if case.clash(written) else case.edited,
+        written.names,
+        lambda model: is_right(replace(case, model=model), written, kind, at),
+    )
 
 
 def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> tuple[str, Extent]:
@@ -128,7 +163,7 @@ def in_its_piece(case: Case, scalar: Scalar) -> str:
 
 
 def says_nothing(case: Case, written: HandEquation) -> bool:
-    """Whether it holds whatever its names mean, functions of the motion included: 0 = 0."""
+    """True if it holds whatever its names mean, functions of the motion included: 0 = 0."""
     graph, known = case.system.scope.graph, dict[str, Node]()
 
     def opaque(call: Call) -> Node:
@@ -149,7 +184,7 @@ def _is_constant_of_potential(case: Case, scalar: Scalar) -> bool:
 
 
 def _reported(case: Case, scalar: Scalar, kind: str, rows: Sequence[int], on_constraints: bool) -> Decided:
-    """What was used of the equations of motion, in words; whether they alone satisfy it."""
+    """The decision with the equations of motion that were used, in words; wrong if others than they satisfy it."""
     n = len(case.rows)
     if kind == "motion" and (why := _has_other_solutions(case, scalar)) is not None:
         return why
@@ -169,7 +204,7 @@ def _reported(case: Case, scalar: Scalar, kind: str, rows: Sequence[int], on_con
 
 
 def _has_other_solutions(case: Case, scalar: Scalar) -> Decided | None:
-    """Of what is not linear in accelerations: None where it fixes them all the same.
+    """The decision on what is not linear in accelerations; None where it fixes them all the same.
 
     A function f with 2 f' f''' = 3 f''^2 is a fraction of two linear ones: it vanishes in one place alone.
     """
@@ -189,7 +224,7 @@ def _has_other_solutions(case: Case, scalar: Scalar) -> Decided | None:
 
 
 def _factor(case: Case, scalar: Scalar, row: int, closing: ScalarRow) -> str:
-    """What the author multiplied the equation by; "" where that is 1.
+    """The factor by which the author multiplied the equation; "" where that is 1.
 
     Args:
         closing: rows of the constraints that were added to it: of what stands in none of them the slopes are compared.
@@ -203,7 +238,7 @@ def _factor(case: Case, scalar: Scalar, row: int, closing: ScalarRow) -> str:
 
 
 def _integral(case: Case, scalar: Scalar) -> Decided | None:
-    """Of what stays constant along the motion: whether it is right; None: it does not."""
+    """The decision on what stays constant along the motion; None: it does not."""
     held = stays_constant(case, scalar)
     if not held:
         return None
@@ -220,7 +255,7 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
 
 
 def stays_constant(case: Case, scalar: Scalar) -> Extent:
-    """Where a scalar with speeds in it is a first integral."""
+    """The pieces in which a scalar with speeds in it is a first integral."""
     speeds = case.system.symbols.u
     if not depends_on(scalar, speeds) or is_zero_everywhere(case.system, *gradient(scalar, speeds)).holds:
         return NOWHERE
@@ -293,7 +328,7 @@ def by_what_is_given(case: Case, written: HandEquation) -> Decided | None:
 
 @dataclass(frozen=True)
 class HoldsWith:
-    """That an equation holds with nodes replaced.
+    """The extent in which an equation holds with nodes replaced.
 
     Args:
         held: in which pieces.
@@ -308,7 +343,7 @@ FROM_START = "the motion from the start, with "
 
 
 def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scalar]) -> HoldsWith | None:
-    """How it holds with nodes replaced, in the equations of the case too; None: it does not.
+    """The extent in which it holds with nodes replaced, in the equations of the case too; None: it does not hold.
 
     Args:
         kind: that of the equation, or "rate": of a scalar that stays constant, in whichever pieces it does.
@@ -441,7 +476,7 @@ def balance_at_rest(case: Case, scalar: Scalar) -> tuple[Node, Scalar] | None:
 
 
 def is_of_rest(case: Case, scalar: Scalar) -> bool | None:
-    """Whether every place that satisfies scalar = 0 is one of rest; None: it is not decided so."""
+    """True if every place that satisfies scalar = 0 is an equilibrium; None: it is not decided so."""
     found = balance_at_rest(case, scalar)
     if found is None:
         return None
@@ -459,7 +494,7 @@ def is_of_rest(case: Case, scalar: Scalar) -> bool | None:
 
 
 def sign_changes(scalar: Scalar, q: Node, values: dict[Node, float]) -> list[float]:
-    """Where it changes its sign by going through zero, the nearest to the value of q first."""
+    """Places at which it changes its sign by going through zero, the nearest to the value of q first."""
     grid = _grid(values[q])
     (height,) = _at((scalar,), q, values, grid)
     found = []
@@ -578,7 +613,7 @@ def _put_in(
 
 
 def of_the_start(case: Case, course: Course) -> str:
-    """What differs at the start, in words: x is 0 there, and not x0."""
+    """The differences at the start, in words: x is 0 there, and not x0."""
     reported, at = [], {case.system.symbols.t: 0}
     for x, value in course.known.items():
         if x in case.start and not x.name.endswith("''"):
@@ -589,42 +624,8 @@ def of_the_start(case: Case, course: Course) -> str:
     return " and ".join(reported)
 
 
-def corrected(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Cause | None:
-    """The one place of a course that is wrong: with another value there the equations of motion hold, and the start."""
-    name, x = written.left.code[0][1], case.value(written.right, constants)
-    places = [node for node in order((x,)) if node is not x and depends_on(node, tuple(_constants(case)))]
-    for node in [x, *places][:MOST_PLACES] if type(x) is Node else ():
-        for to, kind, reported in _others(case, node):
-            try:
-                course = _put_in(case, name, substituted((x,), {node: to})[0], any_start=bool(constants))
-            except DerivationError:
-                continue
-            if course is not None and course.holds and course.begins:
-                there, meant = term_text(node), term_text(to)
-                text = f"in the course {there} stands where {meant} is meant{reported}"
-                return Cause(kind, text, there, quantity="the course")
-    return None
-
-
 def _constants(case: Case) -> tuple[Node, ...]:
     return (*case.system.symbols.parameters.values(), case.system.symbols.t)
-
-
-def _others(case: Case, node: Node) -> Iterator[tuple[Scalar, str, str]]:
-    """What may be meant in the place of a node: (that, kind of the cause, more words)."""
-    graph = node.graph
-    yield graph.sqrt(node), "factor", ": the root is missing"
-    yield node * node, "factor", ": a root is too many"
-    yield -node, "sign", ": the sign is wrong"
-    for k in (Fraction(2), Fraction(1, 2)):
-        yield k * node, "factor", ""
-    if node.op in ("sin", "cos"):
-        yield graph.call("cos" if node.op == "sin" else "sin", node.args[0]), "wrong_axis", ""
-    yield over(1, node), "factor", ": it is turned over"
-    yield 1 - node, "missing_term", ""
-    for p in case.system.symbols.parameters.values():
-        yield node * p, "factor", f": a factor {p.name} is missing"
-        yield over(node, p), "factor", f": a division by {p.name} is missing"
 
 
 # -------- small -----------------------------------------------------------------------------------------------
@@ -653,7 +654,7 @@ class InSmallMotions:
     near: Comparison
 
     def explained(self, number: int) -> list[Explanation]:
-        """That the equation is linearized, and beside it one mistake less than there are."""
+        """The explanation that the equation is linearized, with one further mistake less than allowed."""
         rows = tuple(x - y for x, y in zip(self.near.rows, self.whole.rows, strict=True))
         text = "sines, cosines and products of speeds are those of a small motion: the equation is linearized"
         share = Share(Mistake(NAME, "approximation", rows, RANK, open=False, text=text), Fraction(1))
@@ -665,7 +666,7 @@ class InSmallMotions:
         return [Explanation((share, *each.shares), each.row, cost + each.cost, each.scale) for each in found]
 
     def difference(self, explanation: Explanation) -> str:
-        """What is too much in the equation."""
+        """The excess in the equation."""
         return self.whole.difference(explanation)
 
 

@@ -1,4 +1,4 @@
-"""What the judge says of one equation, and what it is about.
+"""The verdict on one equation, and the kind of the equation.
 
 What the judge says of one equation: right, wrong or undecided, up to what, and why.
 """
@@ -116,7 +116,7 @@ AREAS = {
 
 @dataclass(frozen=True, repr=False)
 class Verdict:
-    """What the judge says of one equation.
+    """The verdict on one equation.
 
     Args:
         given: as it was written.
@@ -148,7 +148,7 @@ class Verdict:
         return "\n".join(self.lines())
 
     def _repr_html_(self) -> str:
-        """As the command line tells it."""
+        """The text of the command line, as HTML."""
         return f"<pre>{html.escape(repr(self))}</pre>"
 
     @property
@@ -175,11 +175,11 @@ class Verdict:
         return replace(self, difference=reported(self.difference), causes=tuple(causes)) if letters else self
 
     def hint(self, level: int = 3) -> str:
-        """What helps the author: 1 where to look, 2 at which quantity, 3 the cause."""
+        """Help for the author: 1 where to look, 2 at which quantity, 3 the cause."""
         return " ".join(dict.fromkeys(cause.hint(level) for cause in self.causes))
 
     def as_dict(self, hint: int | None = None) -> dict[str, Any]:
-        """For machines; with a hint only what that level tells."""
+        """The verdict for machines; with a hint only what that level says."""
         reported = {
             "given": self.given,
             "kind": self.kind,
@@ -196,7 +196,7 @@ class Verdict:
         return reported | more | ({"reason": self.reason} if self.reason else {})
 
     def lines(self, hint: int | None = None) -> tuple[str, ...]:
-        """As people read it."""
+        """The verdict as lines of text."""
         found = [f"{self.verdict}: {self.given}"]
         if self.up_to:
             found.append(f"    {'right' if self.verdict == WRONG else 'up to'} {self.up_to}")
@@ -252,7 +252,7 @@ FUNCTION_KINDS = {
 
 
 def kind_of_equation(written: HandEquation, model: Model) -> str:
-    """What an equation is about."""
+    """The kind of an equation: what it is about."""
     names = written.names
     speeds = {f"{name}'" for name in model.speeds}
     accelerated = written.takes_rates or any(name.endswith("''") or name in speeds for name in names)
@@ -287,7 +287,7 @@ def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool, rooted:
 
     Args:
         moving: it is about accelerations: products of two speeds are Coriolis terms.
-        rooted: what is compared is the square of what was asked.
+        rooted: what is compared is the square of what was requested.
     """
     best = found[0]
     causes = _joined(case, best, [cause_of(case, share, best.row, moving=moving) for share in best.shares])
@@ -305,7 +305,7 @@ def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool, rooted:
 
 
 def _is_another(one: Cause, other: Cause) -> bool:
-    """Whether two causes are of different things, not two sentences of one."""
+    """True if two causes are of different things, not two sentences of one."""
     ends = {x.text.rpartition(", ")[2] for x in (one, other)}  # "is missing"
     return one.kind != other.kind and one.quantity != other.quantity and len(ends) == 2
 
@@ -335,7 +335,7 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
 
 
 def cause_of(case: Case, share: Share, row: int, *, reported: bool = True, moving: bool = True) -> Cause:
-    """The cause that one corruption is."""
+    """The cause that one mistake is."""
     mistake, x = share.mistake, share.factor
     rows = (mistake.rows[row],) if row >= 0 else mistake.rows
     term = (
@@ -378,7 +378,7 @@ def _of_factor(kind: str, name: str, x: Fraction, unit: str, term: str) -> tuple
 
 
 def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
-    """Whether the rows are products of different speeds alone: nothing is left of them where only one moves."""
+    """True if the rows are products of different speeds alone: nothing is left of them where only one moves."""
     symbols = case.system.symbols
     rows = case.edits.written(tuple(rows))
     if depends_on_any(rows, case.forced) or not depends_on_any(rows, symbols.u):

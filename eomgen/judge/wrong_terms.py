@@ -17,7 +17,7 @@ Term = tuple[int, Scalar]  # of which row
 
 @dataclass(frozen=True)
 class WrongTerms:
-    """What may be wrong with terms.
+    """Possible mistakes in single terms.
 
     Args:
         edits: what goes wrong in formulas.
@@ -34,7 +34,7 @@ class WrongTerms:
     force: str = ""
 
     def in_rows(self, rows: Sequence[Scalar], known: Collection[Term] = ()) -> Iterator[Mistake]:
-        """Of each row, its terms one by one.
+        """Mistakes in the terms of each row, one by one.
 
         Args:
             known: terms that are looked at already.
@@ -71,7 +71,7 @@ class WrongTerms:
                         yield from self._replaced(name, term, "wrong_quantity", {u: other}, what, ODD, k, number)
 
     def throughout(self, rows: Sequence[Scalar]) -> Iterator[Mistake]:
-        """What may be wrong in a row wherever it stands: angles, and parameters."""
+        """Mistakes throughout a row: in angles and parameters."""
         for k, row in enumerate(rows):
             whole = sum(terms_of(row, frozenset(self.edits.positive)), start=0)
             if type(whole) is not Node:
