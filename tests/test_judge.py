@@ -27,6 +27,7 @@ from eomgen.judge.diagnosis import fitting, in_other_units, samples_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
 from eomgen.judge.terms import Products, powers_of
+from eomgen.judge.truth import other_models
 from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
@@ -191,12 +192,6 @@ def test_a_mistake_has_its_name(model, equation, cause, word):
         ("simple_pendulum", "frequency(1) = g/l", "factor", ("root is missing",)),
         ("half_car", "stiffness(y, y) = k_f*k_r/(k_f + k_r)", "wrong_formula", ("in series",)),
         ("simple_pendulum", "speed(bob.center) = l/2*theta'", "factor", ("factor 1/2",)),
-        (
-            "beam_with_overhang",
-            "reaction_y(B) = q*L/3 + F*(L + c)/c + F*c/L",
-            "factor",
-            ("force tip", "c/L is turned over"),
-        ),
     ],
 )
 def test_one_place_of_a_contribution_is_named(model, equation, cause, words):
@@ -788,6 +783,25 @@ def test_a_moment_of_inertia_is_explained_body_by_body(equation, words):
     """I_O = sum of I_C + m d^2: a body missing, or at another distance."""
     found = verdict("../tests/helpers/hand_models/ball_on_rod", equation)
     assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
+
+
+@each(
+    "model, equation, kind, words",
+    [
+        ("elastic_pendulum", "m*r'' - m*r*theta'^2 = m*g*cos(theta) - k*r", "motion", "l0, is left out"),
+        ("double_pendulum", "omega(arm1) = theta1' + theta2'", "velocity", "theta1 + theta2 for theta1"),
+        ("simple_pendulum", "l*theta'' + g*cos(theta) = 0", "motion", "is counted from the other axis"),
+    ],
+)
+def test_a_change_of_the_model_file_is_one_with_which_the_equation_is_right(model, equation, kind, words):
+    """Wrong for the model, right for each one with a change that is stated."""
+    case = Case(eomgen.load(MODELS / f"{model}.toml"))
+    found = other_models(case, case.reading.read(equation), kind, None).explained(1)
+    stated = [share.mistake for each in found for share in each.shares]
+    assert Judge(case).verdict(equation).verdict == "wrong" and any(words in mistake.text for mistake in stated)
+    for mistake in stated:
+        (edit,) = (x for x in case.edited if x.mistake is mistake)
+        assert Judge(Case(edit.model)).verdict(equation).verdict == "right", mistake.text
 
 
 @pytest.mark.slow

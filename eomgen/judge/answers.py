@@ -161,7 +161,7 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     )
     edits = other_models(case, written, kind, at)
     implied = chain(balances[:1], implied_by(case, written, kind, at, left, right), balances[1:])
-    target, found = simplest_explanation(implied, [edits, *fixes], at_once=SURE if balances else BELIEVED)
+    target, found = simplest_explanation(implied, [*fixes, edits], at_once=SURE if balances else BELIEVED)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
         causes = causes_of(case, found, moving=False, rooted=isinstance(target, Comparison) and target.squared)
