@@ -51,6 +51,7 @@ FOLDERS = {  # of rooms that are divided further
     "symbolic": ("expression", "numeric", "print", "exact", "solve"),
     "mechanics": (
         "kinematics",
+        "state",
         "constraints",
         "dynamics",
         "start",

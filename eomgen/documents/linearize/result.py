@@ -23,7 +23,6 @@ from eomgen.documents.statements import Quantity
 from eomgen.errors import DerivationError, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import reported_of_nodes, with_nodes_balanced
-from eomgen.mechanics.linearization.first_order import Entries
 from eomgen.mechanics.linearization.linearization import SmallMotions, small_motions_of
 from eomgen.mechanics.linearization.modes import Frequency, Mode, Modes, Spectrum
 from eomgen.mechanics.linearization.polynomial import Polynomial
@@ -31,6 +30,7 @@ from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.linearization.reference import Family
 from eomgen.mechanics.linearization.transfer import StateMatrices, exact_state_space, with_outputs
 from eomgen.mechanics.start.exact import known_exactly
+from eomgen.mechanics.state import Entries
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at

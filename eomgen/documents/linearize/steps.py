@@ -30,13 +30,13 @@ from eomgen.documents.statements import (
 from eomgen.documents.statements import Entry as Place
 from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
-from eomgen.mechanics.linearization.first_order import Entries, MatrixEntry
 from eomgen.mechanics.linearization.modes import MOST_WRITTEN, Frequency, Mode, Modes
 from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM, STEADY, Family, ReferenceMotion
 from eomgen.mechanics.linearization.transfer import TransferFunction, exact_state_space, with_outputs
 from eomgen.mechanics.start.exact import known_exactly
+from eomgen.mechanics.state import Entries
 from eomgen.proof.small_motions_reported import PrintedModes
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.formula import over
@@ -209,7 +209,7 @@ def _plain(x: Node) -> Node:
     return plain
 
 
-def _side(x: MatrixEntry) -> Side:
+def _side(x: Any) -> Side:
     if isinstance(x, float):
         return _number(x)
     return x if text_size(x) <= LONG else Law("(too long to print)", r"\text{(too long to print)}")

@@ -22,10 +22,7 @@ from eomgen.mechanics.free_bodies.friction import frictions
 from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.mechanics.linearization.first_order import (
     Choice,
-    Exact,
     FirstOrder,
-    NumberField,
-    Numbers,
     choice_of,
     first_order_of,
 )
@@ -56,6 +53,7 @@ from eomgen.mechanics.linearization.reference import (
     relative_rest,
 )
 from eomgen.mechanics.linearization.steady import family_of, steady_start
+from eomgen.mechanics.state import Exact, NumberField, Numbers
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on_any, substituted
@@ -186,7 +184,7 @@ def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[
 def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str]) -> SmallMotions:
     first = first.looked_at(at_rest=reference.at_rest)
     choice = choice_of(first, reference, wanted)
-    if not choice.u:
+    if not choice.speeds.free:
         raise DerivationError(
             "the constraints leave no degree of freedom: there are no small motions",
             "coordinates",
@@ -300,7 +298,10 @@ def _without_value(reference: ReferenceMotion) -> DerivationError:
 
 def _exact_field(reference: ReferenceMotion, first: FirstOrder, choice: Choice) -> Exact | None:
     """Exact entries, where the reference is known so and the work is bounded; None elsewhere."""
-    small = len(choice.u) <= MOST_EXACT and max(len(choice.dq), len(choice.du)) <= MOST_FOLLOWING
+    small = (
+        len(choice.speeds.free) <= MOST_EXACT
+        and max(len(choice.places.following), len(choice.speeds.following)) <= MOST_FOLLOWING
+    )
     long = operations(x for row in first.derivatives["R_q"] for x in row).total > MOST_OPERATIONS
     if not reference.is_exact or not small or long:
         return None
@@ -390,7 +391,8 @@ def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) ->
 def _with_family(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
     """Relative rest, with the family of all places of the same kind."""
     choice = choice_of(first, reference, ())
-    return replace(reference, family=family_of(first, reference, (), [first.system.symbols.q[k] for k in choice.q]))
+    kept = [first.system.symbols.q[k] for k in choice.places.free]
+    return replace(reference, family=family_of(first, reference, (), kept))
 
 
 def _other_rest(
@@ -421,7 +423,7 @@ def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
     """The speed that does not stay as it is; "" where all do."""
     reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
     wrong = unsettled(reducing, COMPUTED)
-    return first.system.symbols.u[reducing.choice.u[wrong[0]]].name if wrong else ""
+    return first.system.symbols.u[reducing.choice.speeds.free[wrong[0]]].name if wrong else ""
 
 
 # -------- dependent values ------------------------------------------------------------------------------------
@@ -436,7 +438,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
     determined by what is known in closed form; a wheel's place from its turning."""
     symbols, choice = first.system.symbols, choice_of(first, reference, ())
     guessed = _guessed(first, choice)
-    if (reference.is_exact and not guessed) or len(choice.du) > MOST:
+    if (reference.is_exact and not guessed) or len(choice.speeds.following) > MOST:
         return reference
     positive = first.system.scope.positive
     located = Located({x: float(v) for x, v in reference.numbers.items()}, positive)
@@ -444,7 +446,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
     try:
         unknown = [q for q in symbols.q if q not in known]
         exact = {**reference.exact, **places_of(substituted(first.relations, known), unknown, located)}
-        if all(x in exact for x in (*symbols.q, *(symbols.u[k] for k in choice.u))):
+        if all(x in exact for x in (*symbols.q, *(symbols.u[k] for k in choice.speeds.free))):
             exact |= dependent_speeds(first, choice, Exact(exact, positive, reference.trial))
     except (DerivationError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
         return reference
@@ -455,7 +457,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
 def _guessed(first: FirstOrder, choice: Choice) -> frozenset[Node]:
     """Dependent coordinates of which the model only has a guess."""
     symbols, coordinates = first.system.symbols, first.system.scope.model.coordinates
-    return frozenset(q for k in choice.dq if coordinates[(q := symbols.q[k]).name].near is not None)
+    return frozenset(q for k in choice.places.following if coordinates[(q := symbols.q[k]).name].near is not None)
 
 
 # -------- steadiness ------------------------------------------------------------------------------------------
@@ -571,8 +573,8 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
     Raises:
         DerivationError: the speed that moves nothing is named, where it is one.
     """
-    M, Z = floats(equations.M), abs(floats(reducing.Z))
-    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.M)) @ Z), SQUARED_SINE * abs(M).max())
+    M, Z = floats(equations.M), abs(floats(reducing.at.Z))
+    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.at.M)) @ Z), SQUARED_SINE * abs(M).max())
     idle = [u.name for u, x, size in zip(equations.speeds, np.diagonal(M), least, strict=True) if abs(x) <= size]
     if idle or dense.scaled_condition(M) > 1 / REGULAR:
         moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"

@@ -13,7 +13,6 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.first_order import Entries, MatrixEntry, Numbers
 from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside, state_matrix_of
 from eomgen.mechanics.linearization.polynomial import (
     Conditions,
@@ -27,6 +26,7 @@ from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.mechanics.start.exact import values_of_parameters
+from eomgen.mechanics.state import Entries, Numbers
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
@@ -190,7 +190,7 @@ class Modes:
 
     # -- by name -----------------------------------------------------------------------------------------------
 
-    def entry(self, function: str, *names: str) -> tuple[MatrixEntry, bool]:
+    def entry(self, function: str, *names: str) -> tuple[Any, bool]:
         """(an entry of M, C or K, whether it is exact).
 
         Raises:
@@ -231,7 +231,7 @@ class Modes:
         return found[k - 1]
 
     @property
-    def symmetric_parts(self) -> dict[str, list[list[MatrixEntry]]]:
+    def symmetric_parts(self) -> dict[str, list[list[Any]]]:
         """D and G of C = D + G, and the symmetric and circulatory part of K = S + H."""
         equations = self.small.exact or self.small.numbers
         return {
@@ -240,11 +240,11 @@ class Modes:
             for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)
         }
 
-    def tidy(self, x: MatrixEntry) -> MatrixEntry:
+    def tidy(self, x: Any) -> Any:
         """An entry in its shortest form."""
         return x if isinstance(x, float) else simplest(x, Work.VALUE, self.positive)
 
-    def written(self, x: MatrixEntry) -> MatrixEntry:
+    def written(self, x: Any) -> Any:
         """An entry as it is printed, as formulas of a book are; of many speeds as it is."""
         if isinstance(x, float) or len(self.small.numbers.speeds) > MOST_WRITTEN:
             return x
@@ -257,7 +257,7 @@ class Modes:
         return {}
 
 
-def _parted(A: list[list[MatrixEntry]]) -> tuple[list[list[MatrixEntry]], list[list[MatrixEntry]]]:
+def _parted(A: list[list[Any]]) -> tuple[list[list[Any]], list[list[Any]]]:
     """(A + A^T)/2 and (A - A^T)/2."""
     half = 0.5 if any(isinstance(x, float) for row in A for x in row) else Fraction(1, 2)
     n = range(len(A))

@@ -22,11 +22,11 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.first_order import MatrixEntry, Numbers, at, matrix_solution, negative
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM, ReferenceMotion
 from eomgen.mechanics.start.exact import Seeds
+from eomgen.mechanics.state import NumberField, Numbers
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -82,13 +82,13 @@ def sloped(x: Any) -> Sloped:
     return x if isinstance(x, Sloped) else Sloped(float(x))
 
 
-def slopes_in(A: Sequence[Sequence[MatrixEntry]]) -> np.ndarray:
+def slopes_in(A: Sequence[Sequence[Any]]) -> np.ndarray:
     """The slopes of the entries, rows x columns."""
     return np.array([[sloped(x).slope for x in row] for row in A]).reshape(len(A), -1)
 
 
 @dataclass(frozen=True)
-class WithSlopes:
+class WithSlopes(NumberField):
     """Numbers with their slopes.
 
     Args:
@@ -99,19 +99,13 @@ class WithSlopes:
     state: Mapping[Node, Any]
     seeds: Seeds = field(default_factory=dict)
 
-    def of(self, scalars: Iterable[Scalar]) -> list[MatrixEntry]:
+    def of(self, scalars: Iterable[Scalar]) -> list[Any]:
         scalars = tuple(scalars)
         found = floats_of(evaluate((*scalars, *tangent(scalars, self.seeds)), self.state, fifty_digits()))
         pairs = zip(scalars, found[: len(scalars)], found[len(scalars) :], strict=True)
         return [x if type(x) is not Node else Sloped(value, slope) for x, value, slope in pairs]
 
-    def tidy(self, x: MatrixEntry) -> MatrixEntry:
-        return x
-
-    def size(self, x: MatrixEntry) -> float:
-        return abs(float(x))
-
-    def with_values(self, more: Mapping[Node, MatrixEntry]) -> WithSlopes:
+    def with_values(self, more: Mapping[Node, Any]) -> WithSlopes:
         known = {node: sloped(x) for node, x in more.items()}
         number = fifty_digits().number
         state = {**self.state, **{node: number(1) * x.value for node, x in known.items()}}
@@ -166,15 +160,16 @@ class ParameterSlopes:
         here: dict[Node, Scalar] = dict(self.parameters)
         here |= _of_inputs(reference, here)
         aside = np.zeros(len(reference.system.symbols.q))
-        if choice.relations:
+        if choice.places.rows:
             part = WithSlopes(reference.numbers, here)
-            requested = part.of([first.relations[i] for i in choice.relations if i < len(first.relations)])
-            rows = at(Numbers(reference.numbers), [first.derivatives["G"][i] for i in choice.relations])
-            pushed = [[sloped(x).slope] for x in requested] + [[0.0]] * (len(choice.relations) - len(requested))
-            G_d = [[row[k] for k in choice.dq] for row in rows]
-            aside[list(choice.dq)] = floats(matrix_solution(Numbers({}), G_d, negative(pushed)))[:, 0]
+            requested = part.of([first.relations[i] for i in choice.places.rows if i < len(first.relations)])
+            numbers = Numbers(reference.numbers)
+            rows = numbers.matrix([first.derivatives["G"][i] for i in choice.places.rows])
+            pushed = [[sloped(x).slope] for x in requested] + [[0.0]] * (len(choice.places.rows) - len(requested))
+            G_d = [[row[k] for k in choice.places.following] for row in rows]
+            aside[list(choice.places.following)] = floats(numbers.solution(G_d, numbers.negative(pushed)))[:, 0]
         moved = {x: Fraction(slope) for x, slope in zip(reference.system.symbols.q, aside.tolist(), strict=True)}
-        left = slopes_in([Reducing(first, choice, WithSlopes(reference.numbers, here | moved)).unbalanced])[0]
+        left = slopes_in([Reducing(first, choice, WithSlopes(reference.numbers, here | moved)).at.unbalanced])[0]
         reducing = Reducing(first, choice, Numbers(reference.numbers))
         e = reducing.equations
         K = floats(e.K)
@@ -201,7 +196,7 @@ class ParameterSlopes:
         """(A, dA/dp) of x' = A x."""
         e, none = self.equations, WithSlopes({})
         below = [[*(-x for x in k), *(-x for x in c)] for k, c in zip(e.K, e.C, strict=True)]
-        lower = matrix_solution(none, e.M, below)
+        lower = none.solution(e.M, below)
         upper = [[*f, *x] for f, x in zip(e.F, e.E, strict=True)]
         return floats([[float(x) for x in row] for row in (*upper, *lower)]), slopes_in([*upper, *lower])
 

@@ -7,8 +7,8 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.first_order import Entries
 from eomgen.mechanics.linearization.reduction import LinearEquations, is_second_order
+from eomgen.mechanics.state import Entries
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import simplest, simplest_sum, written_shortest
 from eomgen.symbolic.exact.polynomials import factored, square_root

@@ -14,21 +14,12 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.linearization.first_order import (
     Choice,
-    Entries,
     FirstOrder,
-    MatrixEntry,
-    NumberField,
-    at,
-    matrix_product,
-    matrix_solution,
-    matrix_sum,
-    matrix_transposed,
-    negative,
 )
 from eomgen.mechanics.linearization.reference import ReferenceMotion
+from eomgen.mechanics.state import At, Entries, NumberField
 from eomgen.model.joints.ball import rotation_of
 from eomgen.model.values import quaternions_of
-from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Matrix, apply, vector_of
 from eomgen.symbolic.numeric.dense import without_noise
@@ -85,7 +76,7 @@ class LinearEquations:
 
 @dataclass(frozen=True)
 class Reducing:
-    """The equations at one state of the reference.
+    """The equations at one state of the reference, to first order.
 
     Args:
         first: the equations.
@@ -98,134 +89,71 @@ class Reducing:
     field: NumberField
 
     @cached_property
-    def J(self) -> Entries:
-        """The independent constraint rows; the others follow from them."""
-        return at(self.field, [self.first.equations.J[i] for i in self.choice.constraints])
-
-    @cached_property
-    def M(self) -> Entries:
-        return at(self.field, self.first.equations.M)
-
-    def following(self, right: Entries) -> Entries:
-        """x of all speeds with x_i = 0 and J x + right = 0."""
-        choice = self.choice
-        J_d = [[row[k] for k in choice.du] for row in self.J]
-        found = matrix_solution(self.field, J_d, negative(right)) if choice.du else []
-        width = len(right[0]) if right else 0
-        by_speed = dict(zip(choice.du, found, strict=True))
-        return [by_speed.get(k, [0] * width) for k in range(len(self.first.system.symbols.u))]
-
-    @cached_property
-    def a(self) -> list[MatrixEntry]:
-        """Accelerations, the independent ones 0: J a + gamma = 0."""
-        if not self.choice.constraints:
-            return [0] * len(self.first.system.symbols.u)
-        gamma = self.field.of([self.first.equations.gamma[i] for i in self.choice.constraints])
-        return [row[0] for row in self.following([[x] for x in gamma])]
-
-    @cached_property
-    def forces(self) -> list[MatrixEntry]:
-        """M a - forcing: the force that the constraints must give."""
-        forcing = self.field.of(self.first.equations.forcing)
-        return [self.field.tidy(inner(row, self.a) - x) for row, x in zip(self.M, forcing, strict=True)]
-
-    @cached_property
-    def lam(self) -> list[MatrixEntry]:
-        """Multipliers by J_d^T lam = M a - forcing; 0 of rows that follow from others."""
-        choice = self.choice
-        J_d = [[row[k] for row in self.J] for k in choice.du]
-        found = matrix_solution(self.field, J_d, [[self.forces[k]] for k in choice.du]) if choice.du else []
-        by_row = dict(zip(choice.constraints, (row[0] for row in found), strict=True))
-        return [by_row.get(i, 0) for i in range(len(self.first.equations.J))]
-
-    @cached_property
-    def unbalanced(self) -> list[MatrixEntry]:
-        """Z^T (M a - forcing): the unbalanced force along the independent speeds."""
-        return [self.field.tidy(inner(column, self.forces)) for column in matrix_transposed(self.Z, len(self.choice.u))]
-
-    # -- to first order ------------------------------------------------------------------------------------
+    def at(self) -> At:
+        """Constraints, accelerations and multipliers at the state."""
+        return At(self.first.equations, self.field, self.choice.speeds)
 
     @cached_property
     def _whole(self) -> NumberField:
         """The state with accelerations and multipliers."""
         symbols = self.first.system.symbols
-        known = dict(zip(symbols.a, self.a, strict=True)) | dict(zip(symbols.lam, self.lam, strict=True))
+        known = dict(zip(symbols.a, self.at.a, strict=True)) | dict(zip(symbols.lam, self.at.lam, strict=True))
         return self.field.with_values(known)
 
     def derivative(self, name: str) -> Entries:
-        return at(self._whole, self.first.derivatives[name])
+        """A matrix of first derivatives, by its name."""
+        return self._whole.matrix(self.first.derivatives[name])
 
     def _closing(self, name: str) -> Entries:
         rows = self.first.derivatives[name]
-        return at(self._whole, [rows[i] for i in self.choice.constraints])
-
-    @cached_property
-    def Z(self) -> Entries:
-        """du = Z du_i: J Z = 0."""
-        n, kept = len(self.first.system.symbols.u), self.choice.u
-        found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.constraints else []
-        place = {k: j for j, k in enumerate(kept)}
-        return [[int(place[k] == j) for j in range(len(kept))] if k in place else found[k] for k in range(n)]
+        return self._whole.matrix([rows[i] for i in self.choice.speeds.rows])
 
     @cached_property
     def P(self) -> Entries:
         """dq = P dq_i: G P = 0."""
-        choice, n = self.choice, len(self.first.system.symbols.q)
-        G = [self.first.derivatives["G"][i] for i in choice.relations]
-        entries = at(self._whole, G)
-        G_d = [[row[k] for k in choice.dq] for row in entries]
-        G_i = [[-row[k] for k in choice.q] for row in entries]
-        found = dict(zip(choice.dq, matrix_solution(self.field, G_d, G_i), strict=True)) if choice.dq else {}
-        place = {k: j for j, k in enumerate(choice.q)}
-        return [[int(place[k] == j) for j in range(len(choice.q))] if k in place else found[k] for k in range(n)]
+        places = self.choice.places
+        G = self._whole.matrix([self.first.derivatives["G"][i] for i in places.rows])
+        return places.null_basis(self._whole, G)
 
     @cached_property
     def equations(self) -> LinearEquations:
         """The equations of small motions."""
         field, choice, symbols = self.field, self.choice, self.first.system.symbols
-        Z, P, n = self.Z, self.P, len(symbols.u)
+        at, P, n = self.at, self.P, len(symbols.u)
         R_q, R_u = self.derivative("R_q"), self.derivative("R_u")
-        Y = [[0] * len(choice.q)] * n
-        X_q, X_u = Y, [[0] * len(choice.u)] * n
-        if choice.constraints:
+        Y = [[0] * len(choice.places.free)] * n
+        X_q, X_u = Y, [[0] * len(choice.speeds.free)] * n
+        if choice.speeds.rows:
             A_u = self._closing("A_u")
-            Y = self.following(matrix_product(field, self._closing("V_q"), P))
-            X_q = self.following(
-                matrix_sum(field, matrix_product(field, self._closing("A_q"), P), matrix_product(field, A_u, Y))
-            )
-            X_u = self.following(matrix_product(field, A_u, Z))
-        Z_T = matrix_transposed(Z, len(choice.u))
-        K = matrix_sum(
-            field, matrix_product(field, R_q, P), matrix_product(field, R_u, Y), matrix_product(field, self.M, X_q)
-        )
-        C = matrix_sum(field, matrix_product(field, R_u, Z), matrix_product(field, self.M, X_u))
-        N = at(field, self.first.system.scope.N)
-        rates = matrix_sum(field, matrix_product(field, self.derivative("S_q"), P), matrix_product(field, N, Y))
+            Y = at.following(field.product(self._closing("V_q"), P))
+            X_q = at.following(field.total(field.product(self._closing("A_q"), P), field.product(A_u, Y)))
+            X_u = at.following(field.product(A_u, at.Z))
+        K = field.total(field.product(R_q, P), field.product(R_u, Y), field.product(at.M, X_q))
+        C = field.total(field.product(R_u, at.Z), field.product(at.M, X_u))
+        N = field.matrix(self.first.system.scope.N)
+        rates = field.total(field.product(self.derivative("S_q"), P), field.product(N, Y))
         return LinearEquations(
-            tuple(symbols.q[k] for k in choice.q),
-            tuple(symbols.u[k] for k in choice.u),
+            tuple(symbols.q[k] for k in choice.places.free),
+            tuple(symbols.u[k] for k in choice.speeds.free),
             tuple(symbols.inputs.values()),
             symbols.q,
-            matrix_product(field, Z_T, matrix_product(field, self.M, Z)),
-            matrix_product(field, Z_T, C),
-            matrix_product(field, Z_T, K),
-            matrix_product(field, Z_T, self.derivative("W")),
-            [rates[k] for k in choice.q],
-            matrix_product(field, [N[k] for k in choice.q], Z),
+            at.along(field.product(at.M, at.Z)),
+            at.along(C),
+            at.along(K),
+            at.along(self.derivative("W")),
+            [rates[k] for k in choice.places.free],
+            field.product([N[k] for k in choice.places.free], at.Z),
             P,
         )
 
 
-def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> dict[Node, MatrixEntry]:
+def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> dict[Node, Any]:
     """The dependent speeds by J u + sigma = 0, from the independent ones of the state."""
-    if not choice.constraints:
+    if not choice.speeds.rows:
         return {}
-    there, u = Reducing(first, choice, field), first.system.symbols.u
-    independent = [[x] for x in field.of([u[k] for k in choice.u])]
-    sigma = field.of([first.equations.sigma[i] for i in choice.constraints])
-    pushed = matrix_product(field, [[row[k] for k in choice.u] for row in there.J], independent)
-    found = there.following([[field.tidy(x[0] + s)] for x, s in zip(pushed, sigma, strict=True)])
-    return {u[k]: found[k][0] for k in choice.du}
+    u = first.system.symbols.u
+    found = At(first.equations, field, choice.speeds).dependent([u[k] for k in choice.speeds.free])
+    return {u[k]: found[k] for k in choice.speeds.following}
 
 
 def unsettled(reducing: Reducing, share: float) -> list[int]:
@@ -234,8 +162,8 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
     Args:
         share: of the largest force, below which a force counts as 0.
     """
-    found = reducing.unbalanced
-    scale = max(map(abs, (*reducing.field.of(reducing.first.equations.forcing), *reducing.forces)), default=0)
+    found = reducing.at.unbalanced
+    scale = max(map(abs, (*reducing.field.of(reducing.first.equations.forcing), *reducing.at.forces)), default=0)
     left = [i for i, x in enumerate(found) if abs(x) > share * scale]
     if not left:
         return []
@@ -245,7 +173,7 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
     return [i for i in left if abs(found[i]) > SOLVED * rows[i]]
 
 
-def _size(row: list[MatrixEntry], unit: list[float]) -> float:
+def _size(row: list[Any], unit: list[float]) -> float:
     return float(sum(abs(x) * one for x, one in zip(row, unit, strict=True)))
 
 
@@ -369,12 +297,12 @@ def _second_order(field: NumberField, e: LinearEquations) -> LinearEquations:
         return e
     n = len(e.speeds)
     one = [[int(i == j) for j in range(n)] for i in range(n)]
-    inverse = matrix_solution(field, e.E, one)
-    front = matrix_transposed(inverse, n)
-    M, C = matrix_product(field, e.M, inverse), matrix_product(field, e.C, inverse)
-    K = matrix_sum(field, e.K, negative(matrix_product(field, C, e.F)))
-    C = matrix_sum(field, C, negative(matrix_product(field, M, e.F)))
-    M, C, K, B = (matrix_product(field, front, x) for x in (M, C, K, e.B))
+    inverse = field.solution(e.E, one)
+    front = field.transposed(inverse, n)
+    M, C = field.product(e.M, inverse), field.product(e.C, inverse)
+    K = field.total(e.K, field.negative(field.product(C, e.F)))
+    C = field.total(C, field.negative(field.product(M, e.F)))
+    M, C, K, B = (field.product(front, x) for x in (M, C, K, e.B))
     return replace(e, M=M, C=C, K=K, B=B, E=one, F=[[0] * n for _ in range(n)])
 
 
@@ -442,12 +370,12 @@ def _with_momenta_kept(field: NumberField, e: LinearEquations, c: Indices, o: In
     M_oo, M_co = (_columns([e.M[i] for i in rows], o) for rows in (o, c))
     C_co = _columns([e.C[i] for i in c], o)
     M_oc, C_oc = (_columns([A[i] for i in o], c) for A in (e.M, e.C))
-    by_rates, by_places = matrix_solution(field, M_oo, M_oc), matrix_solution(field, M_oo, C_oc)
-    by_inputs = matrix_solution(field, M_oo, [e.B[i] for i in o])
+    by_rates, by_places = field.solution(M_oo, M_oc), field.solution(M_oo, C_oc)
+    by_inputs = field.solution(M_oo, [e.B[i] for i in o])
     whole = _taken(e, c)
 
     def less(A: Entries, *parts: tuple[Entries, Entries]) -> Entries:
-        return matrix_sum(field, A, *(negative(matrix_product(field, X, Y)) for X, Y in parts))
+        return field.total(A, *(field.negative(field.product(X, Y)) for X, Y in parts))
 
     return replace(
         whole,
@@ -517,11 +445,11 @@ def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]
     speeds = {u.name: u for u in system.symbols.u}
     names = quaternions_of(system.scope.model)
     for four, part in zip(system.scope.quaternions, names, strict=True):
-        carriers = tuple(j for j, k in enumerate(choice.q) if system.symbols.q[k] in four)
+        carriers = tuple(j for j, k in enumerate(choice.places.free) if system.symbols.q[k] in four)
         moves = any(e in reference.moving for e in four)
         if moves and len(carriers) == len(part.speeds) and all(w in speeds for w in part.speeds):
             own = tuple(speeds[w] for w in part.speeds)
-            free = {system.symbols.u[k] for k in choice.u}
+            free = {system.symbols.u[k] for k in choice.speeds.free}
             found.append(SpinAxis(four, own, carriers, choice.standing and free >= {*own}, part.body))
     return tuple(found)
 
@@ -541,21 +469,21 @@ def _over_standing_speeds(field: NumberField, system: System, e: LinearEquations
     """dw = R^T v"""
     own, n = [e.speeds.index(w) for w in turn.speeds], len(e.speeds)
     flat = tuple(x for column in zip(*turn.R, strict=True) for x in column)
-    block, rate = (at(field, [x[k : k + 3] for k in (0, 3, 6)]) for x in (flat, system.scope.time_derivative(flat)))
+    block, rate = (field.matrix([x[k : k + 3] for k in (0, 3, 6)]) for x in (flat, system.scope.time_derivative(flat)))
     U, moved = [[int(i == j) for j in range(n)] for i in range(n)], [[0] * n for _ in range(n)]
     for i, k in enumerate(own):
         U[k], moved[k] = _spread(block[i], tuple(own), n), _spread(rate[i], tuple(own), n)
-    front, MU = matrix_transposed(U, n), matrix_product(field, e.M, U)
-    C = matrix_sum(field, matrix_product(field, e.C, U), matrix_product(field, e.M, moved))
+    front, MU = field.transposed(U, n), field.product(e.M, U)
+    C = field.total(field.product(e.C, U), field.product(e.M, moved))
     labels = dict(zip(own, turn.labels, strict=True))
     return replace(
         e,
         speeds=tuple(system.scope.graph.symbol(labels[k] + "'") if k in labels else u for k, u in enumerate(e.speeds)),
-        M=matrix_product(field, front, MU),
-        C=matrix_product(field, front, C),
-        K=matrix_product(field, front, e.K),
-        B=matrix_product(field, front, e.B),
-        E=matrix_product(field, e.E, U),
+        M=field.product(front, MU),
+        C=field.product(front, C),
+        K=field.product(front, e.K),
+        B=field.product(front, e.B),
+        E=field.product(e.E, U),
     )
 
 
@@ -563,17 +491,17 @@ def _over_turn(field: NumberField, system: System, e: LinearEquations, turn: Spi
     n, graph = len(e.coordinates), system.scope.graph
     T, rate = _by_turn(field, system, e, turn, n)
     one = [[int(i == j) for j in range(n)] for i in range(n)]
-    T_inverse = matrix_solution(field, T, one)
-    F = matrix_product(field, T_inverse, matrix_sum(field, matrix_product(field, e.F, T), negative(rate)))
+    T_inverse = field.solution(T, one)
+    F = field.product(T_inverse, field.total(field.product(e.F, T), field.negative(rate)))
     names = dict(zip(turn.carriers, turn.labels, strict=True))
     labels = tuple(graph.symbol(names[j]) if j in names else q for j, q in enumerate(e.coordinates))
     return replace(
         e,
         coordinates=labels,
-        K=matrix_product(field, e.K, T),
-        P=matrix_product(field, e.P, T),
+        K=field.product(e.K, T),
+        P=field.product(e.P, T),
         F=F,
-        E=matrix_product(field, T_inverse, e.E),
+        E=field.product(T_inverse, e.E),
     )
 
 
@@ -587,7 +515,7 @@ def _by_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinA
         rows = [apply(turn.R, vector_of(row)) for row in rows]  # N R^T
     flat = scope.time_derivative(tuple(x for row in rows for x in row))
     size = len(columns)
-    block, moved = at(field, rows), at(field, [flat[size * i : size * i + size] for i in range(len(rows))])
+    block, moved = field.matrix(rows), field.matrix([flat[size * i : size * i + size] for i in range(len(rows))])
     T, rate = [[int(i == j) for j in range(n)] for i in range(n)], [[0] * n for _ in range(n)]
     for i, j in enumerate(turn.carriers):
         T[j] = _spread(block[i], turn.carriers, n)

@@ -15,9 +15,10 @@ from eomgen.mechanics.constraints.closure import movable, nearest_root
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import places_of_rest
 from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.mechanics.linearization.first_order import Choice, Exact, FirstOrder, Numbers, choice_of, determined
+from eomgen.mechanics.linearization.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, dependent_speeds, floats, unsettled
 from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
+from eomgen.mechanics.state import Exact, Numbers, Split
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
@@ -67,7 +68,7 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
         DerivationError: none was found near the start.
     """
     choice = choice_of(first, reference, wanted)
-    if not choice.u:
+    if not choice.speeds.free:
         what = "the constraints leave no motion free, so none is steady"
         raise DerivationError(what, "linearize.about", 'leave a degree of freedom, or set about = "equilibrium"')
     free = _free(first, choice)
@@ -87,7 +88,7 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
 def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], changed: np.ndarray) -> Steady:
     symbols = first.system.symbols
     values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
-    independent = (*(symbols.q[k] for k in choice.q), *(symbols.u[k] for k in choice.u))
+    independent = (*(symbols.q[k] for k in choice.places.free), *(symbols.u[k] for k in choice.speeds.free))
     return Steady(
         {name: 0.0 if abs(x) < COORDINATE_AT_50 else x for name, x in values.items()},
         tuple(x for x, one in zip(independent, changed, strict=True) if one),
@@ -97,9 +98,9 @@ def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], change
 def _free(first: FirstOrder, choice: Choice) -> np.ndarray:
     """Rank of each independent coordinate and speed: how freely it may change, unstated ones before guesses."""
     symbols, model = first.system.symbols, first.system.scope.model
-    places = [model.coordinates[symbols.q[k].name] for k in choice.q]
+    places = [model.coordinates[symbols.q[k].name] for k in choice.places.free]
     found = [STATED if part.driven else _freedom(part.start, part.near) for part in places]
-    for name in (symbols.u[k].name for k in choice.u):
+    for name in (symbols.u[k].name for k in choice.speeds.free):
         part = model.coordinates.get(name.removesuffix("'"))
         found.append(_freedom(model.speeds[name].start, None) if part is None else _freedom(part.speed, part.near))
     return np.array(found)
@@ -113,7 +114,7 @@ def _needed(here: Here, free: np.ndarray) -> np.ndarray:
     """Mask of the independent variables that suffice to solve the equations: the freest, none below STATED."""
     scaled = here.slopes * here.sizes / here.row_sizes[:, None]
     allowed = np.flatnonzero(free >= STATED)
-    _, columns = determined(scaled[:, allowed], [(int(free[k]), 0.0) for k in allowed])
+    columns = Split.of(scaled[:, allowed], [int(free[k]) for k in allowed]).following
     needed = np.zeros(len(free), dtype=bool)
     needed[allowed[list(columns)]] = True
     return needed
@@ -192,11 +193,11 @@ class Here:
     def rates(self) -> np.ndarray:
         """q_i' of the independent coordinates."""
         found = evaluate(self.first.system.scope.rates, self.state, fifty_digits())
-        return np.array([float(found[k]) for k in self.choice.q])
+        return np.array([float(found[k]) for k in self.choice.places.free])
 
     @property
     def residuals(self) -> np.ndarray:
-        return np.array([*map(float, self.reducing.unbalanced), *self.rates[self.still]])
+        return np.array([*map(float, self.reducing.at.unbalanced), *self.rates[self.still]])
 
     @property
     def slopes(self) -> np.ndarray:
@@ -217,9 +218,9 @@ class Here:
     def sizes(self) -> np.ndarray:
         """Unit of change of each variable: of a coordinate max(1, |q|), of a speed the fastest speed, at least 1."""
         symbols = self.first.system.symbols
-        places = [max(1.0, abs(float(self.state[symbols.q[k]]))) for k in self.choice.q]
-        speeds = [abs(float(self.state[symbols.u[k]])) for k in self.choice.u]
-        return np.array(places + [max(1.0, *speeds, 0.0)] * len(self.choice.u))
+        places = [max(1.0, abs(float(self.state[symbols.q[k]]))) for k in self.choice.places.free]
+        speeds = [abs(float(self.state[symbols.u[k]])) for k in self.choice.speeds.free]
+        return np.array(places + [max(1.0, *speeds, 0.0)] * len(self.choice.speeds.free))
 
     @property
     def is_balanced(self) -> bool:
@@ -233,12 +234,15 @@ class Here:
             NoValue: the constraints cannot be satisfied there.
         """
         symbols, number = self.first.system.symbols, fifty_digits().number(1)
-        n = len(self.choice.q)
+        n = len(self.choice.places.free)
         dq = floats(self.equations.P) @ step[:n]
         state = {**self.state, **{q: self.state[q] + number * d for q, d in zip(symbols.q, dq, strict=True)}}
-        state |= {symbols.u[k]: state[symbols.u[k]] + number * d for k, d in zip(self.choice.u, step[n:], strict=True)}
+        state |= {
+            symbols.u[k]: state[symbols.u[k]] + number * d
+            for k, d in zip(self.choice.speeds.free, step[n:], strict=True)
+        }
         moved = movable(self.first.system.constraints)
-        following = [q for q in (symbols.q[k] for k in self.choice.dq) if q in moved]
+        following = [q for q in (symbols.q[k] for k in self.choice.places.following) if q in moved]
         found = nearest_root(self.first.relations, state, following) if following else state
         if found is None:
             raise NoValue("the constraints cannot be satisfied")
@@ -290,9 +294,10 @@ def family_of(
 def _is_small(first: FirstOrder, choice: Choice) -> bool:
     """True if the conditions are small enough to be written in a second or two."""
     driven = sum(part.driven for part in first.system.scope.model.coordinates.values())
-    if len(choice.dq) - driven + len(choice.du) > MOST_FOLLOWING or operations(first.residual).total > MOST_OPERATIONS:
+    following = len(choice.places.following) - driven + len(choice.speeds.following)
+    if following > MOST_FOLLOWING or operations(first.residual).total > MOST_OPERATIONS:
         return False
-    rows = [x for i in choice.constraints for x in (*first.equations.J[i], first.equations.gamma[i])]
+    rows = [x for i in choice.speeds.rows for x in (*first.equations.J[i], first.equations.gamma[i])]
     return operations(rows).total <= MOST_OF_CONSTRAINTS
 
 
@@ -323,19 +328,19 @@ class _Writing:
     @cached_property
     def _independent(self) -> tuple[Node, ...]:
         symbols = self.first.system.symbols
-        return (*(symbols.q[k] for k in self.choice.q), *(symbols.u[k] for k in self.choice.u))
+        return (*(symbols.q[k] for k in self.choice.places.free), *(symbols.u[k] for k in self.choice.speeds.free))
 
     @cached_property
     def _seen(self) -> tuple[Node, ...]:
         """The independent coordinates that stand still."""
-        q = self.first.system.symbols.q
-        return tuple(q[self.choice.q[j]] for j in Here.at(self.first, self.choice, self.reference.numbers).still)
+        q, here = self.first.system.symbols.q, Here.at(self.first, self.choice, self.reference.numbers)
+        return tuple(q[self.choice.places.free[j]] for j in here.still)
 
     @cached_property
     def _following(self) -> tuple[Node, ...]:
         """Dependent coordinates that are not driven."""
         symbols, coordinates = self.first.system.symbols, self.first.system.scope.model.coordinates
-        return tuple(q for k in self.choice.dq if not coordinates[(q := symbols.q[k]).name].driven)
+        return tuple(q for k in self.choice.places.following if not coordinates[(q := symbols.q[k]).name].driven)
 
     @cached_property
     def _fixed(self) -> State | None:
@@ -384,8 +389,8 @@ class _Writing:
         first, choice = self.first, self.choice
         field = self._at(self._fixed or {})
         rates = [first.system.scope.rates[first.system.symbols.q.index(q)] for q in self._seen]
-        relations = [first.relations[i] for i in choice.relations if i < len(first.relations)]
-        left = (*Reducing(first, choice, field).unbalanced, *field.of((*rates, *relations)))
+        relations = [first.relations[i] for i in choice.places.rows if i < len(first.relations)]
+        left = (*Reducing(first, choice, field).at.unbalanced, *field.of((*rates, *relations)))
         return tuple(x for x in left if not is_zero(x))
 
     @cached_property

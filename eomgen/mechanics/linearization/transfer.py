@@ -9,10 +9,10 @@ import numpy as np
 
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.first_order import Entries, Exact, matrix_solution
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.linearization.reduction import LinearEquations
+from eomgen.mechanics.state import Entries, Exact
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.terms import TooLarge
@@ -145,7 +145,7 @@ def exact_state_space(small: SmallMotions, outputs: Sequence[str]) -> StateMatri
         return None
     reference = small.reference
     field = Exact({}, reference.system.scope.positive, reference.trial)
-    solved = matrix_solution(field, e.M, right)
+    solved = field.solution(e.M, right)
     n, width = len(e.coordinates), len(e.coordinates) + len(e.speeds)
     A = [[*f, *g] for f, g in zip(e.F, e.E, strict=True)] + [[field.tidy(-x) for x in row[:width]] for row in solved]
     B: Entries = [[0] * len(e.inputs) for _ in range(n)] + [row[width:] for row in solved]
