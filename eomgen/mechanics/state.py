@@ -143,6 +143,10 @@ class Numbers(NumberField):
         """
         return floats_of(evaluate(tuple(scalars), self.state, fifty_digits()))
 
+    def on_manifold(self, rows: ScalarMatrix, columns: int) -> np.ndarray:
+        """The rows where the constraints hold: entries that vanish there are 0, not what is left of them."""
+        return dense.closed_entries(self.array(rows, columns))
+
     def with_values(self, more: Mapping[Node, Any]) -> Numbers:
         number = fifty_digits().number
         return Numbers({**self.state, **{node: number(1) * x for node, x in more.items()}})
@@ -233,6 +237,11 @@ class Split:
         late = [0] * A.shape[1] if late is None else late
         rows, following = _determined(A, late, smallest) if len(A) else ((), ())
         return cls(tuple(k for k in range(A.shape[1]) if k not in following), following, rows)
+
+    @classmethod
+    def in_order(cls, A: np.ndarray, order: Sequence[int], smallest: float = RANK) -> Split:
+        """The same where columns follow in this order, the first one first."""
+        return cls.of(A, [-order.index(k) for k in range(A.shape[1])], smallest)
 
     def null_basis(self, field: NumberField, J: Entries) -> Entries:
         """Z of x = Z x_f with J Z = 0, columns of J x free columns; J of the rows that are solved."""

@@ -28,6 +28,7 @@ from eomgen.mechanics.linearization.modes import MATRICES
 from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes
 from eomgen.mechanics.start.exact import Seeds, parameter_seeds, start_seeds
 from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.state import Numbers, Split
 from eomgen.model.fields import AtRest, Table
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, names_of
 from eomgen.model.parts import Model, Output
@@ -48,7 +49,7 @@ from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.text import parse, single_call
 from eomgen.symbolic.expression.units import Typed, Unit, parse_unit, seconds
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
@@ -436,11 +437,8 @@ class _Asking:
         K, reference = self.small.K, self.small.small.reference
         constraints = [row.velocity for row in reference.system.constraints.closing]
         u = reference.system.symbols.u
-        flat = floats_of(
-            evaluate([x for row in jacobian(constraints, u) for x in row], reference.numbers, fifty_digits())
-        )
-        J = np.array(flat).reshape(len(constraints), len(u))
-        free = len(u) - (np.linalg.matrix_rank(J, RANK_NEARBY) if constraints else 0)
+        J = Numbers(reference.numbers).array(jacobian(constraints, u), len(u))
+        free = len(Split.of(J, smallest=RANK_NEARBY).free)
         return bool(K.shape == (free, free) and np.linalg.matrix_rank(K) == free)
 
     def _of_small_motions(self, formula: Expression, name: str) -> Derived:

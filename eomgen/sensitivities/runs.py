@@ -17,6 +17,7 @@ from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.linearization.first_order import FirstOrder
 from eomgen.mechanics.linearization.linearization import CORNERS
 from eomgen.mechanics.start.exact import Seeds
+from eomgen.mechanics.state import Numbers
 from eomgen.model.fields import Table
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import model_at
@@ -211,9 +212,7 @@ class ChangingState:
         """The same with accelerations and multipliers."""
         e, symbols = self._first.equations, self.phase.system.symbols
         n, k, graph = len(e.M), len(e.J), self.phase.system.scope.graph
-        entries = [*(x for row in e.M for x in row), *(x for row in e.J for x in row)]
-        flat = np.array(floats_of(evaluate(entries, self.numbers, fifty_digits())))
-        M, J = flat[: n * n].reshape(n, n), flat[n * n :].reshape(k, n)
+        M, J = np.split(Numbers(self.numbers).array((*e.M, *e.J), n), [n])
         inverse = np.linalg.pinv(np.block([[M, -J.T], [J, np.zeros((k, k))]]), rcond=RANK)
         unknowns, rows = (*symbols.a, *symbols.lam), self._rows
         numbers = dict(self.numbers) | dict.fromkeys(unknowns, fifty_digits().number(0))

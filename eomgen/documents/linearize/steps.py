@@ -32,7 +32,7 @@ from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linearization.modes import MOST_WRITTEN, Frequency, Mode, Modes
 from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable
-from eomgen.mechanics.linearization.reduction import LinearEquations, floats
+from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM, STEADY, Family, ReferenceMotion
 from eomgen.mechanics.linearization.transfer import TransferFunction, exact_state_space, with_outputs
 from eomgen.mechanics.start.exact import known_exactly
@@ -243,7 +243,7 @@ def _polynomial(modes: Modes) -> Side | None:
         return _side(_written(modes, found))
     if not small.reference.valued or len(small.state_matrix) > MOST_WRITTEN:
         return None
-    scale = np.linalg.det(floats(small.numbers.M))
+    scale = np.linalg.det(np.array(small.numbers.M, dtype=float))
     return _in_numbers(scale * np.poly(small.state_matrix))
 
 

@@ -29,6 +29,7 @@ from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.constraints.rows import Constraints, Row
 from eomgen.mechanics.kinematics.places import Located, places_of
 from eomgen.mechanics.kinematics.scene import start_values, with_unit_quaternions
+from eomgen.mechanics.state import Numbers
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
@@ -310,9 +311,8 @@ class _Search:
         return {**self.state, **{u: self.state[u] + float(x) for u, x in zip(self.free, d, strict=True)}}
 
     def _at(self, d: np.ndarray, scalars: Sequence[Scalar]) -> np.ndarray:
-        return np.array([float(x) for x in evaluate(scalars, self._moved(d), fifty_digits())])
+        return np.array(Numbers(self._moved(d)).of(scalars))
 
 
 def _matrix(constraints: Constraints, state: State) -> np.ndarray:
-    values = evaluate([x for row in constraints.J for x in row], state, fifty_digits())
-    return np.array([float(x) for x in values]).reshape(len(constraints.closing), -1)
+    return Numbers(state).array(constraints.J, len(constraints.motion.scope.symbols.u))

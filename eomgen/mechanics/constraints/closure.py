@@ -17,13 +17,14 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, MissingValues, OpenConstraints
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rows import Constraints
+from eomgen.mechanics.state import Numbers
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.symbolic.expression.derivative import depends_on, jacobian
 from eomgen.symbolic.expression.formula import Expression, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.numeric.dense import balanced, closed_entries
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.dense import balanced
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.roots import Newton
 from eomgen.symbolic.numeric.tolerances import (
     CLOSED_AT_50,
@@ -157,8 +158,7 @@ def rows_where_closed(constraints: Constraints, state: State) -> np.ndarray:
     Raises:
         NoValue: it has none there.
     """
-    values = floats_of(evaluate([x for row in constraints.J for x in row], state, fifty_digits()))
-    return closed_entries(np.array(values).reshape(len(constraints.closing), len(constraints.motion.scope.symbols.u)))
+    return Numbers(state).on_manifold(constraints.J, len(constraints.motion.scope.symbols.u))
 
 
 def movable(constraints: Constraints) -> list[Node]:
@@ -230,12 +230,16 @@ def speeds_closed(constraints: Constraints, state: State) -> State:
     u = constraints.motion.scope.symbols.u
     if not constraints.closing or not u:
         return state
-    entries = (*(x for row in constraints.J for x in row), *(row.velocity for row in constraints.closing))
-    values = [float(x) for x in evaluate(entries, state, fifty_digits())]
-    k = len(constraints.closing)
-    J, open_rate = np.reshape(values[:-k], (k, len(u))), np.array(values[-k:])
+    J, open_rate = _rates(constraints, state)
     step = np.linalg.lstsq(J, -open_rate, rcond=LEAST_CHANGE)[0]
     return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}
+
+
+def _rates(constraints: Constraints, state: State) -> tuple[np.ndarray, np.ndarray]:
+    """(J, J u + sigma)."""
+    rows = [(*J, row.velocity) for J, row in zip(constraints.J, constraints.closing, strict=True)]
+    found = Numbers(state).array(rows, len(constraints.motion.scope.symbols.u) + 1)
+    return found[:, :-1], found[:, -1]
 
 
 # -------- consistency -----------------------------------------------------------------------------------------
@@ -287,10 +291,7 @@ def nearest_speeds(constraints: Constraints, state: State, tiers: Tiers, M: np.n
     u = constraints.motion.scope.symbols.u
     if not constraints.closing or not u:
         return state
-    entries = (*(x for row in constraints.J for x in row), *(row.velocity for row in constraints.closing))
-    values = np.array([float(x) for x in evaluate(entries, state, fifty_digits())])
-    closing = len(constraints.closing)
-    J, open_rate = values[:-closing].reshape(closing, len(u)), values[-closing:]
+    J, open_rate = _rates(constraints, state)
     found, step = open_rate, np.zeros(len(u))
     columns = [[u.index(x) for x in tier] for tier in tiers]
     for k in reversed(range(len(columns))):
@@ -470,10 +471,9 @@ def _slope(constraints: Constraints, state: State, free: Sequence[Node]) -> np.n
     """d phi/dq of the free coordinates."""
     gaps: tuple[Scalar, ...] = gaps_of(constraints)
     try:
-        values = evaluate([x for row in jacobian(gaps, free) for x in row], state, fifty_digits())
+        return Numbers(state).array(jacobian(gaps, free), len(free))
     except (NoValue, ZeroDivisionError):
         return np.ones((len(gaps), len(free)))
-    return np.array([float(x) for x in values]).reshape(len(gaps), len(free))
 
 
 def _slopes(J: np.ndarray) -> np.ndarray:

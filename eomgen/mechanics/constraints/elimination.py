@@ -20,11 +20,12 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
 from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics.symbols import Scope, shorter, with_speeds_named
+from eomgen.mechanics.state import Split
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
-from eomgen.symbolic.numeric.dense import divisor, independent, rank
+from eomgen.symbolic.numeric.dense import divisor, rank
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
@@ -155,11 +156,8 @@ def _numbers(constraints: Constraints) -> np.ndarray:
 def _determining_rows(constraints: Constraints, J_d: np.ndarray) -> list[int]:
     """The simplest constraint rows that are independent in the dependent speeds, in their order."""
     speeds = _dependent_speeds(constraints)
-    chosen: list[int] = []
-    for i in sorted(range(len(constraints.closing)), key=lambda i: (*_difficulty(constraints, i, speeds), i)):
-        if len(chosen) < J_d.shape[1] and np.any(J_d[i]) and independent(J_d[[*chosen, i]], smallest=RANK):
-            chosen.append(i)
-    return sorted(chosen)
+    order = sorted(range(len(constraints.closing)), key=lambda i: (*_difficulty(constraints, i, speeds), i))
+    return [*Split.in_order(J_d.T, order).following]
 
 
 def _dependent_speeds(constraints: Constraints) -> list[int]:
@@ -178,11 +176,8 @@ def _difficulty(constraints: Constraints, i: int, dependent: Sequence[int]) -> t
 
 def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept: tuple[int, ...]) -> list[int]:
     """The rows that hold wherever the chosen ones do: J_i - J_d (J_d of the chosen)^-1 J_i of the chosen = 0."""
-    found = []
-    for i in range(len(J)):
-        if i not in rows and not independent(J[[*rows, i]][:, [*dependent, *kept]], smallest=RANK):
-            found.append(i)
-    return found
+    columns = [*dependent, *kept]
+    return [i for i in range(len(J)) if i not in rows and rank(J[[*rows, i]][:, columns]) <= len(rows)]
 
 
 def _released_by(J_d: np.ndarray) -> list[int]:
@@ -194,11 +189,7 @@ def _released_by(J_d: np.ndarray) -> list[int]:
 
 def _undetermined(names: tuple[str, ...], J_d: np.ndarray, constraints: Constraints) -> DerivationError:
     """Names the coordinates that the rows leave free."""
-    solved: list[int] = []
-    for k in range(J_d.shape[1]):
-        if independent(J_d[:, [*solved, k]].T, smallest=RANK):
-            solved.append(k)
-    left = [name for k, name in enumerate(names) if k not in solved]
+    left = [names[k] for k in Split.in_order(J_d, range(len(names))).free]
     what = f"'{left[0]}' is dependent, but " + _why(constraints, len(left))
     return DerivationError(what, f"coordinates.{left[0]}", "add the constraint that moves it, or leave out `dependent`")
 

@@ -16,6 +16,7 @@ from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of, 
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of
 from eomgen.mechanics.kinematics.scene import ContactModes, SystemScene
 from eomgen.mechanics.kinematics.symbols import primitive, scope_of
+from eomgen.mechanics.state import Numbers
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.unbuilt import unbuilt_constraints
@@ -25,7 +26,7 @@ from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import closed_entries, independent_rows
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK, RANK_NEARBY, SHARE
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
@@ -367,7 +368,7 @@ def _shifted(r: np.ndarray) -> np.ndarray:
 
 
 def _numbers(scalars: Sequence[Scalar], state: State) -> np.ndarray:
-    return np.array(floats_of(evaluate(tuple(scalars), state, fifty_digits())))
+    return np.array(Numbers(state).of(scalars))
 
 
 # -------- integrability ---------------------------------------------------------------------------------------
@@ -440,7 +441,7 @@ class _Forms:
         return evaluate(scalars, self.state, fifty_digits())
 
     def numbers(self, scalars: Sequence[Scalar]) -> np.ndarray:
-        return np.array([float(x) for x in self.values(scalars)])
+        return _numbers(scalars, self.state)
 
     def allowed(self, forms: Sequence[DifferentialForm]) -> np.ndarray:
         """A basis of what these forms and the held ones allow, one in each column."""

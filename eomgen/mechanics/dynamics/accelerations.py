@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.dense import balanced, closed_entries, independent, scaled_condition, weighted
+from eomgen.symbolic.numeric.dense import balanced, closed_entries, rank, scaled_condition, weighted
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, REFINED_AT_50
 
@@ -69,7 +69,7 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
     if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the constraints may say
         raise NoValue("the mass matrix is singular")
     wide[n:] *= J != 0
-    regular = k == 0 or independent(J, smallest=LEAST_CHANGE)
+    regular = k == 0 or rank(J, smallest=LEAST_CHANGE) == k
     inverse = _inverse(np.block([[M, -J.T], [J, np.zeros((k, k))]]), regular=regular)
     right = np.array([*values[n * (n + k) : len(values) - k], *(-y for y in values[len(values) - k :])], dtype=object)
     return _refined(wide, n, right, inverse)

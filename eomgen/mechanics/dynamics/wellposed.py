@@ -16,6 +16,7 @@ from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, from_potential
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.mechanics.state import Doubles
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
@@ -151,8 +152,7 @@ def _is_lean(system: System, link: BodyLink) -> bool:
 
 def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
     """True if all motions have kinetic energy, those that the constraints forbid too: M is regular in the state."""
-    values = {node: float(x) for node, x in state.items()}
-    M = np.array(evaluate([x for row in equations.M for x in row], values, FLOAT)).reshape(len(equations.M), -1)
+    M = Doubles({node: float(x) for node, x in state.items()}).array(equations.M, len(equations.M))
     sizes = np.diag(M)
     if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
         return False

@@ -17,11 +17,12 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import is_guess
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import place_near
+from eomgen.mechanics.state import Split
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.tolerances import RANK, SAME_PLACE, SUMMED
+from eomgen.symbolic.numeric.tolerances import SAME_PLACE, SUMMED
 from eomgen.symbolic.solve.solving import vanishes
 
 ASIDE = 0.01  # distance from the first equilibrium at which another one is sought
@@ -95,11 +96,10 @@ class _Near:
         floats |= dict(zip(self.statics.unknowns, map(float, place), strict=True))
         slopes = jacobian(self.statics.equations, self.statics.unknowns)
         A = self.statics.slopes(slopes, place[: len(self.statics.q)], floats)
-        A = dense.balanced(dense.without_noise(A, SUMMED, axis=1))[0]
         n = len(self.statics.q)
         order = [*range(n, A.shape[1]), *sorted(range(n), key=self._place_in_order)]
-        kept = {order[i] for i in dense.independent_rows(A.T[order], RANK)}
-        return [q for k, q in enumerate(self.statics.q) if k not in kept]
+        free = Split.in_order(dense.without_noise(A, SUMMED, axis=1), order).free
+        return [q for k, q in enumerate(self.statics.q) if k in free]
 
     def _place_in_order(self, k: int) -> tuple[bool, bool, int]:
         """Key of a coordinate in the choice: first those that move away from the guess, then those only guessed."""

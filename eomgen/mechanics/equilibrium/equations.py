@@ -27,6 +27,7 @@ from eomgen.mechanics.kinematics.loads import loads_of
 from eomgen.mechanics.kinematics.motion import motion_of
 from eomgen.mechanics.kinematics.scene import start_values
 from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.state import Doubles
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.fields import Table
 from eomgen.model.part import altered
@@ -37,7 +38,7 @@ from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_z
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.text import as_expression
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
@@ -196,8 +197,7 @@ class StaticEquations:
     def slopes(self, rows: Sequence[ScalarRow], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""
         state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
-        flat = [x for row in rows for x in row]
-        return np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), -1 if rows else len(self.q))
+        return Doubles(state).array(rows, len(rows[0]) if rows else len(self.q))
 
 
 def static_equations(system: System) -> StaticEquations:

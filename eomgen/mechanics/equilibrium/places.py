@@ -33,7 +33,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.evaluation import FLOAT, Layers, NoValue, digits_at, evaluate, fifty_digits
-from eomgen.symbolic.numeric.isolation import can_isolate, isolated
+from eomgen.symbolic.numeric.isolation import isolated
 from eomgen.symbolic.numeric.roots import Descent
 from eomgen.symbolic.numeric.tolerances import COMPUTED, NEAR_ROOT, NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
 from eomgen.symbolic.numeric.work import Work
@@ -110,8 +110,9 @@ class _Search:
         if self._is_linear:
             return self._linear()
         reduced = self._reduced
-        if reduced is not None and len(statics.q) <= MOST_ISOLATED and can_isolate(reduced):
-            return self._isolated(reduced)
+        boxed = None if reduced is None or len(statics.q) > MOST_ISOLATED else self._isolated(reduced)
+        if boxed is not None:
+            return boxed
         found = self._measured._from_guesses()
         return replace(found, found=tuple(z * self._units for z in found.found))
 
@@ -189,9 +190,12 @@ class _Search:
             return (readable(determinant, Work.VALUE), *relations)
         return None
 
-    def _isolated(self, equations: tuple[Scalar, ...]) -> Places:
+    def _isolated(self, equations: tuple[Scalar, ...]) -> Places | None:
+        """All roots of the reduced equations in the range; None where they have jumps."""
         low, high = self._range
         boxes = isolated(equations, self.statics.q, self.floats, low, high)
+        if boxes is None:
+            return None
         found, guesses = [], boxes.undecided[:: 1 + len(boxes.undecided) // UNDECIDED]
         for z in self._with_multipliers(boxes.roots):
             polished = self._descent.polished(z)

@@ -26,6 +26,7 @@ from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.kinematics.scene import CLOSED, start_values
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.start.exact import known_exactly, shown_numbers, values_of_parameters
+from eomgen.mechanics.state import Doubles
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on_any, jacobian, symbols_of
@@ -398,7 +399,7 @@ def _shifted(statics: StaticEquations, state: dict[Node, float], by: np.ndarray)
 
 
 def _numbers(scalars: Any, state: State) -> np.ndarray:
-    return np.array([float(x) for x in evaluate(tuple(scalars), state, FLOAT)])
+    return np.array(Doubles(state).of(scalars))
 
 
 # -------- one sided -------------------------------------------------------------------------------------------
@@ -534,9 +535,9 @@ class _Way:
     def _at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(F, F') of a place."""
         values = {**self.floats, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
-        equations = self.statics.equations
-        flat = np.array(evaluate([*equations, *(x for row in self._slopes for x in row)], values, FLOAT), dtype=float)
-        return flat[: len(equations)], flat[len(equations) :].reshape(len(equations), -1)
+        rows = [(*row, x) for row, x in zip(self._slopes, self.statics.equations, strict=True)]
+        found = Doubles(values).array(rows, len(z) + 1)
+        return found[:, -1], found[:, :-1]
 
     def _along(self, z: np.ndarray) -> np.ndarray | None:
         """t, its part of the coordinates 1 long; None where there is not one such direction."""
@@ -617,7 +618,7 @@ def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: 
     """V, and the eigenvalues of K along the constraints, by size."""
     n = len(statics.q)
     J = statics.slopes(statics.J, z[:n], values)
-    H = -np.array(evaluate([x for row in slopes for x in row], values, FLOAT), dtype=float).reshape(n, n)
+    H = -Doubles(values).array(slopes, n)
     _, sizes, axes = np.linalg.svd(J)
     Z = axes[int(np.sum(sizes > CARRIED * sizes[0])) :].T
     symbols = statics.system.symbols

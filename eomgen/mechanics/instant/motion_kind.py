@@ -16,6 +16,7 @@ from eomgen.mechanics.constraints.closure import generic_state, of_50_digits
 from eomgen.mechanics.constraints.rank import degrees_of_freedom
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import VelocityField, axis_point, field_of, rotation_center
+from eomgen.mechanics.state import Numbers
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.formula import over, sqrt
@@ -448,7 +449,7 @@ def _closed(J: Sequence[Scalar], rows: Sequence[Scalar], unknowns: Sequence[Node
     """The state with the nearest values of the unknowns at which the rows, linear in them by J, vanish."""
     if not rows or not unknowns:
         return state
-    slopes = np.array([float(x) for x in evaluate(J, state, fifty_digits())]).reshape(len(rows), len(unknowns))
+    slopes = Numbers(state).array((J,), len(J)).reshape(len(rows), len(unknowns))
     found = CORRECTED.root(_LinearRows(tuple(rows), slopes, tuple(unknowns)), state)
     if math.isnan(found.left):
         raise DerivationError(

@@ -18,7 +18,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
+from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.rank import redundant_rows
 from eomgen.mechanics.constraints.rows import Constraints, Row, holds_identically
@@ -37,6 +37,7 @@ from eomgen.mechanics.kinematics.scene import let_go
 from eomgen.mechanics.kinematics.tree import applied_wrenches, bias_forces, branches_of
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.start.state import begun_state
+from eomgen.mechanics.state import Numbers, Split
 from eomgen.model.diagnostics import nearest
 from eomgen.model.driven import driving_constraints
 from eomgen.model.fields import Table
@@ -46,8 +47,7 @@ from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.dense import independent_rows
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, transplanted
+from eomgen.symbolic.numeric.evaluation import transplanted
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.solve import cramer
 
@@ -192,19 +192,13 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
     """
     constraints, nu = system.constraints, len(system.symbols.u)
     state = generic_state(constraints)
-    A = _numbers([x for column in columns for x in column], state, nu)
-    J = rows_where_closed(constraints, state)
+    A, J = Numbers(state).array(columns, nu), Numbers(state).on_manifold(constraints.J, nu)
     whole, own = (dense.rank(rows, smallest=RANK_NEARBY) for rows in (np.vstack([A, J]), J))
     reported = f"{len(names)} actuated, and {nu - own} degrees of freedom"
     if whole < nu:
         raise UsageError(f"{reported}: {nu - whole} would have no actuator", fix=NAME)
     if whole - own < len(names):
         raise UsageError(f"{reported}: the forces of the actuators are indeterminate", fix=NAME)
-
-
-def _numbers(entries: Sequence[Scalar], state: dict[Node, object], width: int) -> np.ndarray:
-    values = evaluate(entries, state, fifty_digits())
-    return np.array([float(x) for x in values]).reshape(-1, width)
 
 
 def _solved_for(found: Inverse, columns: Sequence[ScalarRow], r: ScalarRow) -> Inverse:
@@ -430,14 +424,12 @@ def _moved(equations: EquationsOfMotion, Z: Sequence[Sequence[Scalar]], X: Seque
 
 def _dependent(system: System, J: Sequence[Sequence[Scalar]]) -> list[int]:
     """The speeds that follow from the others at the start, if it is not special; the last ones rather."""
-    entries = [x for row in J for x in row]
     many = len(system.symbols.u)
     for state in _states(system):
-        columns = np.array([float(x) for x in evaluate(entries, state, fifty_digits())]).reshape(len(J), many).T
-        found = sorted(many - 1 - k for k in independent_rows(columns[::-1], RANK_NEARBY))
-        if len(found) == len(J):
+        split = Split.of(Numbers(state).array(J, many), range(many), RANK_NEARBY)
+        if len(split.following) == len(J):
             break
-    return found
+    return [*split.following]
 
 
 def _states(system: System) -> Iterator[State]:

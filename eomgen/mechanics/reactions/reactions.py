@@ -37,13 +37,13 @@ from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
 from eomgen.mechanics.start.exact import values_where_at_rest
+from eomgen.mechanics.state import Numbers
 from eomgen.model.driven import driven_coordinates, driving_constraints
 from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
@@ -486,9 +486,7 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
     rows, columns = len(balance.equations), len(balance.components)
     state = generic_state(system.constraints)
 
-    def numbers(scalars: Sequence[Scalar]) -> list[float]:
-        return [float(x) for x in evaluate(tuple(scalars), state, fifty_digits())]
-
+    numbers = Numbers(state).of
     G = np.zeros((rows, columns))
     for i, e in enumerate(balance.equations):
         if e.coefficients:

@@ -15,12 +15,12 @@ from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.state import Doubles, Split
 from eomgen.model.forces.load import PointForce
 from eomgen.model.units import in_own_unit
 from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.numeric.dense import independent_rows
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.roots import Newton
 from eomgen.symbolic.numeric.tolerances import BRANCHES_MEET, COMPUTED, GAP_CLOSED, RANK_NEARBY, SAME_PLACE, SOLVED
@@ -191,10 +191,9 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     known: State = {symbols.parameters[name]: value for name, value in p.items()} | {symbols.t: 0.0}
     known |= dict(zip(symbols.inputs.values(), evaluate(tuple(system.inputs.values()), known, FLOAT), strict=True))
     known |= {q: start[q.name] for q in symbols.q}
-    J = np.array(evaluate([x for row in jacobian(gaps, free) for x in row], known, FLOAT)).reshape(len(gaps), -1)
-    sought = _following(system, free, J)
-    rows = independent_rows(J[:, [free.index(q) for q in sought]], RANK_NEARBY)
-    if not 0 < len(sought) <= MOST or len(rows) < len(sought):
+    split = _split(system, free, Doubles(known).array(jacobian(gaps, free), len(free)))
+    sought = [free[k] for k in split.following]
+    if not 0 < len(sought) <= MOST:
         return None
     slopes = tuple(x for row in jacobian(gaps, sought) for x in row)
     turns = np.array([_is_angle(gaps, known, q) for q in sought])
@@ -207,19 +206,17 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
         for x in constraint.agreeing(SystemScene(system.motion, f"constraints.{name}"))
     )
     reach = 2 * max(lengths, default=1.0)
-    return _Search(system, gaps, slopes, tuple(rows), known, tuple(sought), kept, agreeing, here, turns, reach)
+    return _Search(system, gaps, slopes, split.rows, known, tuple(sought), kept, agreeing, here, turns, reach)
 
 
-def _following(system: System, free: Sequence[Node], J: np.ndarray) -> list[Node]:
+def _split(system: System, free: Sequence[Node], J: np.ndarray) -> Split:
     """The coordinates that follow from the others: dependent ones, then those without a given start, then others."""
     dependent = dependent_coordinates(system.scope)
 
     def place(k: int) -> tuple[bool, bool, int]:
         return free[k].name not in dependent, not is_guess(system.scope.model, free[k].name), -k
 
-    order = sorted(range(len(free)), key=place)
-    chosen = {order[i] for i in independent_rows(J[:, order].T, RANK_NEARBY)}
-    return [q for k, q in enumerate(free) if k in chosen]
+    return Split.in_order(J, sorted(range(len(free)), key=place), RANK_NEARBY)
 
 
 def _is_angle(gaps: Sequence[Any], known: State, q: Node) -> bool:

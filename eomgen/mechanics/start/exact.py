@@ -22,13 +22,14 @@ from eomgen.mechanics.kinematics.scene import start_values, with_unit_quaternion
 from eomgen.mechanics.kinematics.symbols import Scope
 from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
+from eomgen.mechanics.state import Doubles, Numbers, Split
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import constant_parameters, exact_parameters
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, digits_at, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.evaluation import NoValue, digits_at, evaluate, fifty_digits
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RANK, ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
@@ -294,15 +295,10 @@ class _Sought:
         if not flat or not set(symbols_of(flat)) <= self.located.numbers.keys():
             return []
         try:
-            values = np.array(evaluate(flat, self.located.numbers, FLOAT), dtype=float).reshape(len(J), -1)
+            values = Doubles(self.located.numbers).array(J, len(J[0]))
         except (NoValue, ZeroDivisionError):
             return []
-        kept: list[int] = []
-        size = float(np.max(np.abs(values), initial=0.0))
-        for i in range(len(J)):
-            if size and np.linalg.matrix_rank(values[[*kept, i]], tol=RANK * size) > len(kept):
-                kept.append(i)
-        return kept
+        return [*Split.of(values).rows]
 
 
 # -------- start slopes ----------------------------------------------------------------------------------------
@@ -341,7 +337,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     scope, symbols = system.scope, system.symbols
 
     def at(scalars: Sequence[Scalar], along: Seeds) -> list[float]:
-        return floats_of(evaluate(tangent(tuple(scalars), along), numbers, fifty_digits()))
+        return Numbers(numbers).of(tangent(tuple(scalars), along))
 
     begun = with_unit_quaternions(scope, start_values(scope))
     dq = dict(zip(symbols.q, map(Fraction, at([begun[q] for q in symbols.q], seeds)), strict=True))
@@ -382,8 +378,7 @@ def _kept(
     """
     if not moved and not np.any(np.abs(left) > CARRIED):
         return seeds
-    flat = evaluate([x for row in jacobian(scalars, silent) for x in row], numbers, fifty_digits())
-    A = np.array(floats_of(flat)).reshape(len(scalars), len(silent))
+    A = Numbers(numbers).array(jacobian(scalars, silent), len(silent))
     step, _, rank, _ = np.linalg.lstsq(A, -np.array(left), rcond=RANK)
     several = rank < np.count_nonzero(np.any(A, axis=0)) or not {*moved} <= {*silent}
     if several or np.max(abs(A @ step + left)) > CARRIED * max(1.0, np.max(np.abs(left))):
@@ -397,7 +392,7 @@ def _kept(
 
 def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapping[Node, Any]) -> list[Node]:
     """Variables whose start the constraints move away from the value that the model says."""
-    found = floats_of(evaluate([said[x] for x in variables], numbers, fifty_digits()))
+    found = Numbers(numbers).of([said[x] for x in variables])
     own = [float(numbers[x]) for x in variables]
     return [x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > CARRIED * max(1.0, abs(b))]
 

@@ -41,6 +41,7 @@ from eomgen.mechanics.dynamics.formulations import mass
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.dynamics.wellposed import reason_without_value
 from eomgen.mechanics.kinematics.tree import branches_of
+from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.contacts import contacts_of
 from eomgen.model.forces.load import PointForce
@@ -218,7 +219,7 @@ def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | 
     after = None if M is None else nearest_speeds(system.constraints, state, [(), u], M)
     if M is None or after is None:
         return state, ()
-    J = np.array([[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.constraints.J])
+    J = Numbers(state).array(system.constraints.J, len(u))
     moved = M @ np.array([float(after[x] - state[x]) for x in u])
     impulses = np.linalg.lstsq(J.T, moved, rcond=None)[0]
     if any(impulses[k] < -COMPUTED * np.max(np.abs(impulses)) for k, _ in rows):  # another one would have to hold on
@@ -235,7 +236,7 @@ def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None)
     entries = [x for row in rows for x in row]
     if not set(symbols_of(entries)) <= values.keys():
         return None
-    M = np.array(evaluate(entries, values, FLOAT)).reshape(len(rows), -1)
+    M = Doubles(values).array(rows, len(rows))
     return M if np.all(np.isfinite(M)) else None
 
 

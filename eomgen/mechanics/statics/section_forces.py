@@ -307,7 +307,7 @@ def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vec
     return next((e.place for e in mine if e.place is not None), None)
 
 
-At = tuple[Vector, Vector, Scalar]
+_At = tuple[Vector, Vector, Scalar]
 """(place, force, couple), body axes."""
 MemberLoad = tuple[Vector, Vector, Vector, Vector]
 """(start, end, load per length at the start, at the end), body axes."""
@@ -322,9 +322,9 @@ class MemberLoads:
     sizes: Sizes
 
     @cached_property
-    def actions(self) -> list[At]:
+    def actions(self) -> list[_At]:
         """Forces and couples at places; those at one place together."""
-        found: list[At] = []
+        found: list[_At] = []
         for place, force, couple in (self._at(effect) for effect in self._effects()):
             same = next((k for k, (p, _, _) in enumerate(found) if self._is_zero(minus(p, place))), None)
             if same is None:
@@ -377,7 +377,7 @@ class MemberLoads:
             )
         return effect
 
-    def _at(self, effect: Effect) -> At:
+    def _at(self, effect: Effect) -> _At:
         assert effect.place is not None, "placed before"
         return effect.place, self._turned(effect.force), effect.couple[2]
 

@@ -63,12 +63,14 @@ def can_isolate(equations: Sequence[Scalar]) -> bool:
 
 def isolated(
     equations: Sequence[Scalar], unknowns: Sequence[Node], values: Mapping[Node, Any], low: np.ndarray, high: np.ndarray
-) -> Isolation:
-    """The roots of as many equations as unknowns in the box from `low` to `high`.
+) -> Isolation | None:
+    """The roots of as many equations as unknowns in the box from `low` to `high`; None where they have jumps.
 
     Args:
         values: of every other symbol.
     """
+    if not can_isolate(equations):
+        return None
     return _Boxes(tuple(equations), tuple(unknowns), dict(values), high - low).examined(low, high)
 
 
