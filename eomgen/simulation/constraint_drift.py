@@ -35,7 +35,7 @@ from eomgen.mechanics.kinematics.motion import locks_of
 from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.numeric.dense import divisor, weighted, without_rounding
+from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.roots import Newton
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR
 
@@ -178,9 +178,9 @@ def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
     M + J^T W J measures alike where J ds is given, and is positive definite also where M is so on J ds = 0 only. Then
     ds = M^-1 J^T lam with J M^-1 J^T lam = right, rows brought to one length, damped where they depend on one another.
     """
-    J = without_rounding(J)
+    J = dense.without_rounding(J)
     try:
-        moved = np.linalg.solve(weighted(M, J), J.T)
+        moved = np.linalg.solve(dense.weighted(M, J), J.T)
     except np.linalg.LinAlgError:  # bodies without mass
         moved = J.T
     S = J @ moved
@@ -411,7 +411,7 @@ class ConstraintRank:
         """
         J = self.J(t, x)
         greatest: np.ndarray = np.maximum(lengths, _lengths(J))
-        return np.linalg.svd(J / divisor(greatest), compute_uv=False)[:, self.rank - 1 : self.rank], greatest
+        return np.linalg.svd(J / dense.divisor(greatest), compute_uv=False)[:, self.rank - 1 : self.rank], greatest
 
     def J(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """J at n states, n x k x nu; 0 where it has no value."""
@@ -421,7 +421,7 @@ class ConstraintRank:
 
     def _scaled(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         J = self.J(t, x)
-        return np.asarray(J / divisor(_lengths(J)))
+        return np.asarray(J / dense.divisor(_lengths(J)))
 
 
 def _lengths(J: np.ndarray) -> np.ndarray:

@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.dense import balanced, closed_entries, rank, scaled_condition, weighted
+from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, REFINED_AT_50
 
@@ -65,11 +65,11 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
     entries = [x for row in (*equations.M, *equations.J) for x in row]
     values = evaluate((*entries, *equations.forcing, *equations.gamma), state, fifty_digits())
     wide = np.array(values[: n * (n + k)], dtype=object).reshape(n + k, n)
-    M, J = wide[:n].astype(float), closed_entries(wide[n:].astype(float))
-    if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the constraints may say
+    M, J = wide[:n].astype(float), dense.closed_entries(wide[n:].astype(float))
+    if dense.scaled_condition(dense.weighted(M, J)) > SINGULAR:  # what no mass measures the constraints may say
         raise NoValue("the mass matrix is singular")
     wide[n:] *= J != 0
-    regular = k == 0 or rank(J, smallest=LEAST_CHANGE) == k
+    regular = k == 0 or dense.rank(J, smallest=LEAST_CHANGE) == k
     inverse = _inverse(np.block([[M, -J.T], [J, np.zeros((k, k))]]), regular=regular)
     right = np.array([*values[n * (n + k) : len(values) - k], *(-y for y in values[len(values) - k :])], dtype=object)
     return _refined(wide, n, right, inverse)
@@ -77,7 +77,7 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
 
 def _inverse(A: np.ndarray, *, regular: bool) -> np.ndarray:
     """Its inverse in doubles, scaled first; where rows follow from others that which leaves least."""
-    scaled, rows, columns = balanced(A)
+    scaled, rows, columns = dense.balanced(A)
     try:
         found = np.linalg.inv(scaled) if regular else np.linalg.pinv(scaled, rcond=LEAST_CHANGE)
     except np.linalg.LinAlgError as error:
