@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from runpy import run_path
 
@@ -86,14 +87,21 @@ def statements(tree: ast.AST) -> Iterator[ast.stmt]:
             yield from statements(node)
 
 
+@cache
+def import_statements(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
+    """All imports of a module, read once: at its top, inside functions, or for type checking only."""
+    found = statements(ast.parse(path.read_text("utf-8")))
+    return tuple(node for node in found if isinstance(node, ast.Import | ast.ImportFrom))
+
+
 def imported(name: str, path: Path, modules: dict[str, Path]) -> set[str]:
     """The package's modules that a module imports, at its top, inside functions, or for type checking only."""
     found = set()
     base = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in statements(ast.parse(path.read_text())):
+    for node in import_statements(path):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names if alias.name in modules}
-        elif isinstance(node, ast.ImportFrom):
+        else:
             if node.level:
                 above = base.split(".")[: len(base.split(".")) - node.level + 1]
                 source = ".".join([*above, *([node.module] if node.module else [])])
@@ -249,7 +257,7 @@ def test_a_room_with_a_door_is_entered_by_its_door(own):
     for name, path in module_names(PACKAGE).items():
         if room(name) == own or name == "eomgen":
             continue
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
+        for node in import_statements(path):
             if isinstance(node, ast.ImportFrom) and room(node.module or "") == own:
                 names = {alias.name for alias in node.names}
                 assert node.module == f"eomgen.{own}" and names <= given(node.module), f"{name}:{node.lineno}"

@@ -55,11 +55,11 @@ def of_law(table: str, law: str) -> compare.Product:
     if table == "JOINTS":
         level = {"spherical": "quaternion"}.get(law, law)
         return product(joint=level, space="space" if level in IN_SPACE else "plane")
-    if table == "TIES":
+    if table == "CONSTRAINTS":
         constraints = {"equation": "points", "pin": "none"}
         space = "space" if law == "string" else "plane"
         return product(
-            constraint=constraints.get(law, law),
+            tie=constraints.get(law, law),
             loop="four_bar" if law == "pin" else "none",
             base="ground",
             space=space,
@@ -102,14 +102,14 @@ def planted(table: str, law: str) -> Callable:
 
     if table == "STICKING":
         return lambda *arguments: 0.1 * own(*arguments)
-    by_table = {"JOINTS": joint, "TIES": constraint, "FORCES": force}
+    by_table = {"JOINTS": joint, "CONSTRAINTS": constraint, "FORCES": force}
     return by_table.get(table, kinetic if law == "kinetic" else lambda *arguments: 1.5 * own(*arguments))
 
 
 STICKS = ("answers", "run")  # code and `reactions` have friction by the law of sliding
 LAWS = [
     *(("JOINTS", law) for law in laws.JOINTS),
-    *(("TIES", law) for law in laws.CONSTRAINTS),
+    *(("CONSTRAINTS", law) for law in laws.CONSTRAINTS),
     *(("FORCES", law) for law in laws.FORCES if law != "kinetic"),
     *(("EFFORTS", law) for law in ("spring", "damper", "torque")),
     ("ARMATURE", "armature"),
