@@ -51,6 +51,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("verb", "name"), CASES)
 def test_the_exact_text_of_every_quantity_gives_its_number(verb, name):
     """value = exact, read back by the grammar with the parameters put in; a unit of an output scales it."""

@@ -116,6 +116,7 @@ forces.w = { kind = "gravity", acceleration = [0, "-g"] }
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("condition", ["x' = 0", "speed(bob.center) = 0", "y = 0", "x = -L"])
 def test_a_root_of_any_order_is_found_to_all_digits(condition):
     """Let go level, it is so after 2 K(1/sqrt 2) sqrt(L/g): x' has a triple root, x one of order 4, |v| an edge."""

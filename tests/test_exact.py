@@ -61,6 +61,7 @@ def test_turns_of_pi_have_their_roots_in_the_field(graph, angles, turn):
     assert (verdict.equal, verdict.arithmetic) == (True, "prime field")
 
 
+@pytest.mark.slow
 @given(trigonometric)
 def test_an_expression_equals_itself_written_otherwise(tree):
     """f (x + y) = f x + f y, and not with one more term."""

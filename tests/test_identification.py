@@ -483,6 +483,7 @@ joint = { kind = "revolute", angle = "q" }
     assert all(value for value, _ in found.base.values())
 
 
+@pytest.mark.slow
 def test_a_base_parameter_that_follows_from_the_others_is_told():
     """Columns of Y_base at many states are independent: rank = their number."""
     found = eomgen.regressor(MODELS / "arm3.toml")

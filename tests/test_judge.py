@@ -712,6 +712,7 @@ acceleration = [0, "-g"]
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("equation", "words"),
     usual(

@@ -36,6 +36,7 @@ def point(rng, generators=3):
     return [Fraction(rng.randint(2, 99), rng.randint(1, 9)) for _ in range(generators)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("find", [RationalPolynomial.factors, RationalPolynomial.square_free])
 def test_the_factors_multiply_to_the_polynomial_in_whole_numbers(find):
     """f = c prod p^n; each p in whole numbers without common divisor, the leading one positive."""

@@ -150,6 +150,7 @@ MACHINES = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("change", MACHINES)
 def test_a_change_of_what_machines_get_is_seen(change: str):
     """Where it stands first and where it stands last."""

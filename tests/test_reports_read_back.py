@@ -126,6 +126,7 @@ def test_a_report_of_several_verbs_says_what_was_found(form: str):
     assert checks and not [x for x in checks if x.status == "fails"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_of_a_report_is_seen(form: str, change: str):

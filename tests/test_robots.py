@@ -417,6 +417,7 @@ def test_sdf_takes_the_models_that_a_world_includes_and_a_model_merges(tmp_path)
         robot(tmp_path, SDF[: SDF.index("<model")] + world, "sdf")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", [0, 3])
 def test_what_is_exported_is_imported_with_the_same_equations(seed, tmp_path):
     """M and c - Q of import(export(import(F))) are those of import(F); nothing is left out."""

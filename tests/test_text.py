@@ -160,6 +160,7 @@ def number(x) -> float:
     return float(evaluate([x], STATE, FLOAT)[0])
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(scalars(GRAPH))
 def test_the_grammar_reads_back_what_is_printed(x):

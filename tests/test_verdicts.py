@@ -255,6 +255,7 @@ def test_the_start_that_ties_complete_is_one_for_every_verb(text):
         assert float(found) == pytest.approx(run[q][-1], abs=1e-9)
 
 
+@pytest.mark.slow
 @each(
     "text, equation, verdict",
     [

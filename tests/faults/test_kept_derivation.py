@@ -58,6 +58,7 @@ def test_a_derivation_is_told_again_as_it_was(place, reported):
     assert len(entries(place)) == 5
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "change", [("value = 9.81", "value = 9.82"), ("Simple", "Plain"), ("# The first system", "# A first system")]
 )
@@ -106,6 +107,7 @@ def put_alone(place: Path, name: str, entry: object) -> None:
     assert disk_cache.content_of(disk_cache.put_whole(made, place, name)) is not None
 
 
+@pytest.mark.slow
 def test_an_entry_of_another_model_is_not_believed(place, reported):
     """Whole, of this user, under this model's name and key: its equations of motion have other values."""
     first, _ = reported(MODEL)

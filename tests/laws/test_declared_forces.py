@@ -175,6 +175,7 @@ def test_what_acts_in_a_joint_is_that_of_its_fields(kind, monkeypatch):
     assert "as they are declared" in contradicted(SPACE)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("way", ["", ', ends = "natural"', ', ends = "rest"', ', between = "linear"'])
 def test_functions_through_samples_are_those_of_the_samples(way, monkeypatch):
     """Another program's interpolation of the same samples."""

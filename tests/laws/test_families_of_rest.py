@@ -55,6 +55,7 @@ def test_folded_bars_of_a_column_may_stand_at_any_angle(column):
     assert column.certify().ok
 
 
+@pytest.mark.slow
 def test_places_are_told_in_the_units_of_the_file(column):
     """u = L is 1200 mm, the bars folded stand at 180 deg to one another."""
     text = " ".join(column.render("text").split())

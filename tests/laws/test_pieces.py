@@ -327,6 +327,7 @@ outputs = { y0 = { value = "y", at = "equilibrium" }, z0 = { value = "z", at = "
 """
 
 
+@pytest.mark.slow
 def test_a_place_of_rest_is_exact_only_as_a_function_of_the_parameters(tmp_path):
     """sin(q y) = 0 at y = 3 pi/q, which is pi at q = 3 alone."""
     found = eomgen.solve(at(SEA, tmp_path))

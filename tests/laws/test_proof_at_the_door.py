@@ -39,6 +39,7 @@ def test_nothing_that_leaves_is_contradicted(path: Path):
     assert not {verb: str(each.certificate) for verb, each in found.items() if each is not None and each.distrust}
 
 
+@pytest.mark.slow
 def test_small_motions_about_a_change_point_are_refused():
     """Bricard's loop comes to rest folded, where its constraints leave two degrees of freedom to first order and no
     motion has both."""

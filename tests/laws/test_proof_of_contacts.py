@@ -211,6 +211,7 @@ ELEMENT_ERRORS = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("place", "attribute", "wrong"), ELEMENT_ERRORS)
 def test_an_error_in_the_law_of_an_element_is_seen(monkeypatch, place, attribute, wrong):
     """A damper that drives, a spring that is slack elsewhere, a couple without its opposite: all routes share it."""

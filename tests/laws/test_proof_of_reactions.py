@@ -112,6 +112,7 @@ damping = "c"
 """
 
 
+@pytest.mark.slow
 def test_a_reaction_divides_by_nothing_that_its_loads_do_not_divide_by():
     """Hanging straight N = (mt + mp) g + F cos, not (mt x'' - ...)/tan(phi), which has no value there; F = c |r'|."""
     found = eomgen.reactions(eomgen.loads(CRAB))

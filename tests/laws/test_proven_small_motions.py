@@ -28,6 +28,7 @@ def scaled(rows: Any, factor: float = 2) -> Any:
     return [[x * factor for x in row] for row in rows]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("letter", "what"), [("K", "motions near"), ("M", "kinetic energy"), ("C", "motions near")])
 def test_a_wrong_matrix_is_seen(monkeypatch: pytest.MonkeyPatch, letter: str, what: str) -> None:
     """M q'' + C q' + K q = 0 of motions beside the reference; d . M d of the kinetic energy."""
