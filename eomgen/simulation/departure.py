@@ -23,7 +23,7 @@ from eomgen.symbolic.expression.formula import inner
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.roots import least_left
+from eomgen.symbolic.numeric.roots import all_roots, least_left
 from eomgen.symbolic.numeric.tolerances import (
     CARRIED,
     COMPUTED,
@@ -345,17 +345,22 @@ class Configurations:
         """
         rng = np.random.default_rng(1)
         sought = list(self.sought)
-        found = []
-        for _ in range(GUESSES):
+
+        def guess() -> np.ndarray:
             q = start.copy()
             q[self.leading] += step
             q[sought] += abs(step) * rng.uniform(-AROUND / 2, AROUND / 2, len(sought))
+            return q
+
+        def beside(q: np.ndarray) -> np.ndarray | None:
             closed = self._closed(q)
-            if closed is not None and np.max(np.abs(closed - start)) < AROUND * abs(step):
-                found.append(closed)
+            return None if closed is None or not np.max(np.abs(closed - start)) < AROUND * abs(step) else closed
+
+        guesses = (guess() for _ in range(GUESSES))
+        found = all_roots(beside, guesses, lambda q: (round(float(np.linalg.norm((q - near)[sought])), 9), *q))
         if not found:
             raise NeverReached("no configuration leads away from the start")
-        return min(found, key=lambda q: (round(float(np.linalg.norm((q - near)[sought])), 9), *q))
+        return found[0]
 
     def _closed(self, q: np.ndarray) -> np.ndarray | None:
         """The nearest configuration with all gaps 0, moved by the sought coordinates."""

@@ -39,7 +39,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import Newton
+from eomgen.symbolic.numeric.roots import Newton, all_roots
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, OPEN_GAP, RANK, SHARE, SOLVED, TINIEST
 
 SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
@@ -269,9 +269,12 @@ class _Search:
         reach = max([1.0, *(abs(float(self.state[u])) for u in self.constraints.motion.scope.symbols.u)])
         starts = [np.zeros(len(self.free))]
         starts += [reach * np.array([rng.uniform(-1, 1) for _ in self.free]) for _ in range(TRIES)]
-        roots = [ALONG_A_BRANCH.root(self, start) for start in starts]
-        found = [root.x for root in roots if root.met]
-        return min(found, key=lambda d: float(np.linalg.norm(d)), default=None)
+        found = all_roots(self._reached, starts, lambda d: float(np.linalg.norm(d)))
+        return found[0] if found else None
+
+    def _reached(self, start: np.ndarray) -> np.ndarray | None:
+        root = ALONG_A_BRANCH.root(self, start)
+        return root.x if root.met else None
 
     def size(self, d: np.ndarray) -> float:
         """Largest residual of both equations, relative to the size of the terms."""

@@ -22,7 +22,7 @@ from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.roots import Newton
+from eomgen.symbolic.numeric.roots import Newton, all_roots
 from eomgen.symbolic.numeric.tolerances import BRANCHES_MEET, COMPUTED, GAP_CLOSED, RANK_NEARBY, SAME_PLACE, SOLVED
 
 # -------- assembly modes --------------------------------------------------------------------------------------
@@ -83,15 +83,12 @@ def branches_of_loops(system: System, start: Mapping[str, float]) -> Branches | 
     search = _search(system, start)
     if search is None:
         return None
-    found = [search.here]
     rng = Random(1)
-    for _ in range(TRIES * len(search.sought)):
-        place = search.closed(search.scattered(rng))
-        if place is not None and not any(search.same(place, each) for each in found):
-            found.append(place)
-    found[1:] = sorted(found[1:], key=lambda place: float(np.linalg.norm(search.apart(place, search.here))))
-    here, *others = [search.branch(place) for place in found]
-    return Branches(search.kept, here, tuple(others))
+    starts = (search.scattered(rng) for _ in range(TRIES * len(search.sought)))
+    found = all_roots(
+        search.other, starts, lambda place: float(np.linalg.norm(search.apart(place, search.here))), search.same
+    )
+    return Branches(search.kept, search.branch(search.here), tuple(map(search.branch, found)))
 
 
 @dataclass(frozen=True)
@@ -130,6 +127,11 @@ class _Search:
         if not found.met or not self.is_regular(self.slopes(found.x)) or not self._is_upright(found.x):
             return None
         return np.asarray(self.here + self.apart(found.x, self.here))
+
+    def other(self, place: np.ndarray) -> np.ndarray | None:
+        """The same where it is another one than the start's."""
+        found = self.closed(place)
+        return None if found is None or self.same(found, self.here) else found
 
     def left(self, place: np.ndarray) -> Sequence[float]:
         """The gaps."""

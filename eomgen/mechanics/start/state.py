@@ -52,7 +52,7 @@ from eomgen.symbolic.expression.derivative import depends_on, jacobian, substitu
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.spatial import minus
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import least_left
+from eomgen.symbolic.numeric.roots import all_roots, least_left
 from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, LARGEST_AT_50, OPEN_GAP, SAME_PLACE, SUMMED
 
 # -------- initial state ---------------------------------------------------------------------------------------
@@ -520,8 +520,9 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     here = np.array([search.known[q] for q in free])
     rng = Random(1)
     starts = [here, *(here + np.array([rng.uniform(-REACH, REACH) for _ in free]) for _ in range(TRIES))]
-    found = [search.least(start) for start in starts]
-    best = min(found, key=lambda place: (round(search.size(place) / COMPUTED), float(np.linalg.norm(place - here))))
+    best, *_ = all_roots(
+        search.least, starts, lambda place: (round(search.size(place) / COMPUTED), float(np.linalg.norm(place - here)))
+    )
     values = search.at(best)[: len(gaps)]
     size = float(np.max(np.abs(values), initial=0.0))
     rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]

@@ -1,9 +1,14 @@
-"""Equations, guesses -> their roots nearby, in any arithmetic."""
+"""Equations, guesses -> their roots nearby, in any arithmetic.
+
+`Newton` is the iteration from one place, `Descent` that of many places at once, `least_left` the least squares where
+there may be no root; `all_roots` asks any of them from many starts. Apart stay `isolation`, which misses no root in a
+box, and the location of events in compiled runs, which brackets a sign change of a dense output.
+"""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any, Generic, Protocol, TypeVar
@@ -158,6 +163,27 @@ class Newton:
         if not self.again or not size:
             return x
         return sought.moved(x, [size * float(d) for d in self._unit_step(sought.slopes(x), f, size)])
+
+
+def all_roots(
+    root: Callable[[X], X | None],
+    starts: Iterable[X],
+    far: Callable[[X], Any],
+    same: Callable[[X, X], bool] | None = None,
+) -> list[X]:
+    """The roots to which the starts lead, each once, the nearest first.
+
+    Args:
+        root: the root that is reached from a start; None where none is.
+        far: how far a root is, in any order.
+        same: whether two of them are one (None: they are not compared).
+    """
+    found: list[X] = []
+    for start in starts:
+        reached = root(start)
+        if reached is not None and (same is None or not any(same(reached, each) for each in found)):
+            found.append(reached)
+    return sorted(found, key=far)
 
 
 def least_left(
