@@ -210,7 +210,7 @@ joint = {{ kind = "revolute", on = "arm.end", angle = "ph" }}
 [forces.weight]
 kind = "gravity"
 acceleration = [0, -9.81]
-{tie}
+{constraint}
 """
 
 DRIVEN_CRANK = """eomgen = 1
@@ -233,7 +233,7 @@ inertia = [1, 1, 1]
 joint = {{ kind = "prismatic", axis = [1, 0, 0], displacement = "x" }}
 [constraints]
 pin = {{ kind = "pin", points = ["rod.end", "slide.origin"], axis = [0, 0, 1] }}
-{tie}
+{constraint}
 [forces.weight]
 kind = "gravity"
 acceleration = [0, -9.81, 0]
