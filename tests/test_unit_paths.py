@@ -1,6 +1,6 @@
 """Every way by which a value with a unit gets in: each verb by each of its options, and the functions of Python.
 
-python tests/test_unit_paths.py > docs/unit_paths.md        writes the table
+PYTHONPATH=tests/helpers python tests/test_unit_paths.py > docs/unit_paths.md        writes the table
 """
 
 from __future__ import annotations
@@ -122,7 +122,8 @@ def table() -> str:
     """The ways in, as a page."""
     head = "# By which way a value with a unit gets in\n\n"
     head += "Each verb by its options, what is typed and what is taken of it; written by\n"
-    head += "`python tests/test_unit_paths.py`, whose tests run each row. The model: lengths in cm, angles in deg.\n\n"
+    head += "`PYTHONPATH=tests/helpers python tests/test_unit_paths.py`, whose tests run each row.\n"
+    head += "The model: lengths in cm, angles in deg.\n\n"
     rows = ["| verb | option | typed | taken |", "|---|---|---|---|"]
     for verb, option in paths():
         for typed, taken in TAKEN[option].items():
