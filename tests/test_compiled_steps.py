@@ -13,6 +13,7 @@ from eomgen.codegen.build import compiler
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.contacts import ContactSignals, divisors
 from eomgen.simulation.integrator import Stepping, march
+from eomgen.simulation.many_runs import March
 from eomgen.symbolic.expression.graph import Graph
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -201,3 +202,9 @@ def test_a_formula_divides_by_what_its_quotients_and_roots_have_below():
     graph = Graph()
     a, b, c, d = (graph.symbol(name) for name in "abcd")
     assert set(divisors(a / b + c**2 + 1 / (1 + d))) == {b, 1 + d}
+
+
+def test_a_name_that_the_march_does_not_have_is_no_field_of_it():
+    """A struct of C takes what stands in it, and refuses the rest: a value that C never reads would be lost."""
+    with pytest.raises(AttributeError):
+        March().n_spheres = 1  # type: ignore[attr-defined]

@@ -69,7 +69,7 @@ const told = {json.dumps(live.reported())}, motion = new Motion(told, {{ {progra
 motion.parametersSet({json.dumps(parameters)});
 const run = motion.run({json.dumps(given)}, {{ time: {time}, rtol: {rtol} }});
 const x = [0, {time / 2}, {time}].map(t => Array.from(motion.at(run, t)));
-const open = Math.max(...run.t.flatMap(t => motion.constraints.open(t, run.at(t))));
+const open = Math.max(...run.t.flatMap(t => motion.ties.open(t, run.at(t))));
 const names = [...told.phase.coordinates, ...told.phase.speeds];
 console.log(JSON.stringify({{ x, names, open, message: run.message }}));
 """)

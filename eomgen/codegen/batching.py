@@ -66,6 +66,7 @@ def _struct(lanes: int) -> Any:
     """`struct batch` of batch.c, in its order."""
 
     class Struct(ctypes.Structure):
+        __slots__ = ()  # a name that is no field is an error
         _fields_ = (
             *_fields(_SIZE, "n parameters constants samples next last"),
             *_fields(_REAL, "start end rtol atol"),
@@ -73,7 +74,7 @@ def _struct(lanes: int) -> Any:
             *_fields(_AT, "instants x0 p x reached status steps stops"),
             ("n_stops", _SIZE),
             ("unit_quaternions", _AT),
-            *_fields(_SIZE, "n_spheres begun"),
+            *_fields(_SIZE, "n_unit_quaternions begun"),
             ("work", _AT),
             ("room", _SIZE),
             *_fields(_SIZE * lanes, "run sample stop taken stiff easy"),

@@ -97,6 +97,7 @@ def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
 class March(ctypes.Structure):
     """`struct march` of march.c, in its order."""
 
+    __slots__ = ()  # a name that is no field is an error
     _fields_ = (
         ("n", SIZE),
         ("rate", MarchFunction),
@@ -108,7 +109,7 @@ class March(ctypes.Structure):
         *_fields(_AT, "rows track_t track_x"),
         ("tracked", SIZE),
         ("unit_quaternions", _AT),
-        *_fields(SIZE, "n_spheres holds"),
+        *_fields(SIZE, "n_unit_quaternions holds"),
         ("gaps", MarchFunction),
         *_fields(SIZE, "n_gaps placed coordinates speeds"),
         ("places", MarchRows),

@@ -280,8 +280,8 @@ def state(name: str, *, units: bool = False) -> NumericState:
     return NumericState(recursive.assembled_by_recursion(found), parameters, numbers)
 
 
-def worth(name: str, call: str, *, units: bool = False) -> float:
-    return state(name, units=units).worth(parse(call, references=True))
+def value_of(name: str, call: str, *, units: bool = False) -> float:
+    return state(name, units=units).value_of(parse(call, references=True))
 
 
 def test_every_function_is_named_once_and_has_an_example():
@@ -330,9 +330,9 @@ def test_its_unit_is_the_one_in_which_its_number_grows(name, call):
         unit = parse_unit(GAPS[argument]) if argument in GAPS else model.coordinates.get(argument).unit
         factor /= 1 if unit is None else scaled(unit)
         factor *= SIZES["time"] if "speed" in function.kinds[k] else 1
-    found = worth(name, call)
+    found = value_of(name, call)
     assert math.isfinite(found)
-    assert worth(name, call, units=True) == pytest.approx(float(factor) * found, rel=CARRIED, abs=CARRIED)
+    assert value_of(name, call, units=True) == pytest.approx(float(factor) * found, rel=CARRIED, abs=CARRIED)
 
 
 def test_functions_of_small_motions_are_none_of_a_state():
@@ -341,7 +341,7 @@ def test_functions_of_small_motions_are_none_of_a_state():
     small = linearize(eomgen.loads(free))
     for call in LINEAR["plane"]:
         with pytest.raises(DerivationError, match="of the linearized system, not of a state"):
-            worth("plane", call)
+            value_of("plane", call)
         assert small.value(parse(call, references=True).calls[0])[0] is not None
 
 
@@ -349,7 +349,7 @@ def test_functions_of_a_run_are_none_of_a_state():
     """Of a state they say so; of a run each has a value, in the unit of its formula."""
     for call in ALONG:
         with pytest.raises(DerivationError, match="of a run, not of a state"):
-            worth("plane", call)
+            value_of("plane", call)
     run = eomgen.simulate(eomgen.loads(MODELS["coupled"]), time=20, samples=5)
     assert all(math.isfinite(run.ask(call).value) for call in ALONG)
 
