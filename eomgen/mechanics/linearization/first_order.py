@@ -34,7 +34,7 @@ class Choice:
 
     Args:
         places: of the coordinates, by the relations between them.
-        speeds: of the speeds, by the closing rows.
+        speeds: of the speeds, by the constraint rows.
         standing: True if small turns of spinning bodies are about axes fixed in space; else about body axes.
     """
 
