@@ -448,3 +448,20 @@ def test_a_law_of_a_body_that_slides_holds_while_it_slides_on(equation, verdict)
     """sign(v - mu g t) = 1 while v >= mu g t."""
     found = eomgen.verify(eomgen.loads(SLIDING), equation)
     assert found.verdict == verdict and ("while" in found.up_to) == (verdict == "right")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("text", "equation", "reported"),
+    [
+        (PENDULUM, "l*theta'' = -g*sin(theta)", {"up_to": "the factor 0"}),
+        (CART, "m*x'' + m*l*phi'' = 0", {"difference": "(M + m)*x'' + m*l*(phi''*cos(phi) - phi'^2*sin(phi))"}),
+    ],
+)
+def test_a_factor_and_a_difference_that_vanish_are_contradicted(text, equation, reported):
+    """What an equation was multiplied by is not 0, and what is too much in it does not vanish by the equations."""
+    judge = Judge(Case(eomgen.loads(text)))
+    said = judge.said(judge.verdict(equation))
+    assert [check.status for check in verdicts_again([said])] == ["holds"]
+    (check,) = verdicts_again([replace(said, **reported)])
+    assert check.status == "fails" and "0 at every state" in check.detail

@@ -159,6 +159,7 @@ class Judge:
             verdict.substitution,
             tuple(names),
             self.case.at_rest,
+            verdict.difference,
         )
 
     def _judged(self, written: HandEquation, kind: str, at: Instant) -> Verdict:

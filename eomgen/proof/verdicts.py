@@ -70,6 +70,7 @@ class Judged:
         constants: names of the author that stand for nothing.
         equations: the equations of motion against which it was judged.
         at_rest: the motion starts with all speeds 0.
+        difference: what is reported as too much on the left, as a text; "".
     """
 
     text: str
@@ -82,6 +83,7 @@ class Judged:
     stands_for: Mapping[str, str] = field(default_factory=dict)
     constants: tuple[str, ...] = ()
     at_rest: bool = False
+    difference: str = ""
 
     @property
     def is_of_start(self) -> bool:
@@ -128,7 +130,7 @@ class _Again:
             raise NoValue(f"it holds {each.up_to}, and not elsewhere")
         if len(each.constants) > 1 or (each.constants and not each.is_right):
             raise NoValue("constants of the author's own")
-        return self._of_right() if each.is_right else self._of_wrong()
+        return (self._of_right() if each.is_right else self._of_wrong()) or self._of_reported()
 
     def _of_right(self) -> str:
         states = list(self._along() if self.judged.is_of_start else self._nearby())
@@ -147,6 +149,24 @@ class _Again:
         if len(apart) < 2:
             raise NoValue("no state has values for it")
         return "it is judged wrong, and its sides agree" if all(x.may_vanish for x in apart) else ""
+
+    def _of_reported(self) -> str:
+        """Message if the reported factor, or the reported difference, is 0 at every state; ""."""
+        each, factor = self.judged, _FACTOR.search(self.judged.up_to)
+        if each.is_of_start:
+            return ""
+        for what, text in (("factor", factor[1] if factor else ""), ("difference", each.difference)):
+            found = [x for state in self._nearby() if (x := self._reported(text, state)) is not None] if text else []
+            if found and all(x.may_vanish for x in found):
+                return f"its {what} is reported as {text}, which is 0 at every state"
+        return ""
+
+    def _reported(self, text: str, state: NumericState) -> Rounded | None:
+        """Value of a reported text at a state; None where it has none."""
+        try:
+            return Sides(state, self.judged.stands_for, ITERATED).worked(parse(text, references=True))
+        except (ExpressionError, NoValue, ZeroDivisionError, OverflowError, ValueError, KeyError):
+            return None
 
     def _apart(self, state: NumericState) -> Rounded | None:
         return _at(state, self.judged)
@@ -284,6 +304,7 @@ def _conditions(up_to: str) -> list[Expression]:
     return found
 
 
+_FACTOR = re.compile(r"the factor (\S+(?: [-+] \S+)*)")
 _COMPARED = re.compile(r"([^<>=]+?)\s*(<=|>=|<|>)\s*([^<>=]+)")
 
 
