@@ -33,8 +33,20 @@ from refusals import lacking
 import eomgen
 from eomgen.cli import main
 from eomgen.cli_errors import problems_of
+from eomgen.model import constraints, forces, joints, shapes
 
 pytestmark = pytest.mark.slow
+
+
+UNDER_ANOTHER_NAME = {"pin": "four_bar", "equation": "gap"}  # a kind that is drawn by the level of another name
+
+
+def test_every_kind_of_part_is_a_level_of_what_is_drawn():
+    """A joint, constraint, force or shape enters the combinations on the day it is written."""
+    levels = {level for factor in FACTORS.values() for level in factor}
+    kinds = [kind.kind for seam in (joints, constraints, forces, shapes) for kind in seam.ALL]
+    assert {UNDER_ANOTHER_NAME.get(kind, kind) for kind in kinds} <= levels
+
 
 PLAIN = {
     "space": "plane", "base": "turning", "loop": "none", "tie": "none", "closure": "multipliers", "joint": "revolute",
