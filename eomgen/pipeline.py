@@ -1,5 +1,4 @@
-"""Model, contact modes -> motion -> inertia | loads | constraints -> Equations -> code -> Trajectory: all on one
-screen."""
+"""Model, contact modes -> Study -> Equations -> code -> Trajectory: all on one screen."""
 
 from __future__ import annotations
 
@@ -47,8 +46,7 @@ def derive(
         method: by which way they are derived, one of METHODS: energies, wrenches along the motions that are free, or
             these with every body cut free first.
         contacts: how the contacts are that can end, slide or stick, by constraint or body on a path, what is not named
-            closed;
-            None: as they are at the start. What had to be assumed of them is among the equations' `assumptions`.
+            closed; None: as they are at the start. Assumptions about them are the equations' `assumptions`.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: an unknown method.
@@ -60,18 +58,16 @@ def derive(
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", fix=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
-    study = study_of(model) if contacts is None else study_of_modes(model, contacts)
-    if contacts is None:
-        return recalled(model, method, lambda: _derived(model, method, study))
-    return _derived(model, method, study)
+    if contacts is not None:
+        return _derived(model, method, study_of_modes(model, contacts))
+    return recalled(model, method, lambda: _derived(model, method, study_of(model)))
 
 
 def _derived(model: Model, method: str, study: Study) -> Equations:
     if method == "kinetostatic":
         _ = study.reactions  # refuses joints and constraints that cannot carry the motion
-    equations = Equations(model, method, study)
-    _ = equations.graph
-    return equations
+    _ = study.derived  # what cannot be derived is refused here, not where a matrix is first read
+    return Equations(model, method, study)
 
 
 def inverse_dynamics(

@@ -19,18 +19,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from eomgen.codegen.program import Program, right_hand_side
-from eomgen.codegen.programs import (
-    RateSlopes,
-    RequestedOutputs,
-    accelerations_and_multipliers,
-    determinate,
-    outputs_of_state,
-    reactions_program,
-    slopes_of,
-)
 from eomgen.errors import MissingValues
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rank import degrees_of_freedom
@@ -45,8 +35,6 @@ from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_rest
 from eomgen.mechanics.free_bodies.solution import values_at_a_state
 from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.mechanics.linearization.first_order import FirstOrder
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.start.exact import ExactStart, known_exactly
 from eomgen.mechanics.start.state import start_state
 from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start, modes_at_rest
@@ -64,6 +52,12 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work, growing
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear import LinearSystem, general_solution
+
+if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
+    from eomgen.codegen.program import Program
+    from eomgen.codegen.programs import RateSlopes, RequestedOutputs
+    from eomgen.mechanics.linearization.first_order import FirstOrder
+    from eomgen.mechanics.reactions.reactions import Reactions
 
 LONG = 400  # characters from which a formula is no easier to read than it came
 NO_FORMULA = 10 * LONG  # characters of an unreadable formula: rows are shortened before they are eliminated
@@ -119,6 +113,8 @@ class Study:
         Raises:
             ModelError: a free coordinate moves no mass.
         """
+        from eomgen.codegen.program import right_hand_side
+
         refuse_massless(self.derived)
         with growing():
             return right_hand_side(self.explicit)
@@ -130,12 +126,16 @@ class Study:
         Raises:
             DerivationError: the mass matrix is singular whatever the state.
         """
+        from eomgen.codegen.programs import slopes_of
+
         refuse_massless(self.derived)
         return slopes_of(self.explicit)
 
     @cached_property
     def first_order(self) -> FirstOrder:
         """The linearized equations beside any motion, for numbers at a state."""
+        from eomgen.mechanics.linearization.first_order import FirstOrder
+
         return FirstOrder(self.system, ())
 
     # -- reactions and outputs ---------------------------------------------------------------------
@@ -147,23 +147,31 @@ class Study:
         Raises:
             DerivationError: an unsupported body; a force that acts at no place.
         """
+        from eomgen.mechanics.reactions.reactions import reactions_of
+
         return reactions_of(self.system)
 
     @cached_property
     def reaction_values(self) -> dict[str, Scalar]:
         """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
+        from eomgen.codegen.programs import determinate
+
         values = determinate(self.reactions)
         return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
 
     @cached_property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
+        from eomgen.codegen.programs import reactions_program
+
         refuse_massless(self.derived)
         return reactions_program(self.reaction_values, self.explicit)
 
     @cached_property
     def requested_outputs(self) -> RequestedOutputs:
         """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
+        from eomgen.codegen.programs import outputs_of_state
+
         found = outputs_of_state(self.system)
         values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
         return replace(found, values=values)
@@ -171,6 +179,8 @@ class Study:
     @cached_property
     def outputs_program(self) -> Program:
         """The outputs that are functions of the state; accelerations as in the right-hand side."""
+        from eomgen.codegen.programs import reactions_program
+
         refuse_massless(self.derived)
         return reactions_program(self.requested_outputs.values, self.explicit)[1]
 
@@ -203,6 +213,8 @@ class Study:
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
         """Accelerations and multipliers as functions of q, u, t and inputs."""
+        from eomgen.codegen.programs import accelerations_and_multipliers
+
         found = accelerations_and_multipliers(self.equations)
         size = max(map(text_size, found.values()), default=0)
         if size <= NO_FORMULA or not self.equations.J or self.equations.friction:

@@ -23,7 +23,7 @@ from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.dynamics.pieces import Extent
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.kinematics.places import Located
-from eomgen.mechanics.start.exact import ExactStart, known_exactly
+from eomgen.mechanics.start.exact import ExactStart
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
@@ -375,7 +375,7 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
 
 def parameters_in_numbers(motion: MotionFromStart) -> np.ndarray:
     """Parameters of the phase; nan for those without a value."""
-    known = known_exactly(motion.phase.system.scope)
+    known = motion.phase.parameters
     symbols = motion.phase.system.symbols
     return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
 
