@@ -349,6 +349,71 @@ def test_verbs_say_of_one_quantity_one_number(number):
     assert not found.faults
 
 
+BROKEN = """
+eomgen = 1
+name = "A bead comes to an arc, beside a mass that swings fast"
+space = "plane"
+[parameters]
+m = 1
+k = 40000
+[coordinates]
+s = { start = 0.3, speed = 1 }
+x = { start = 0.2, speed = 4 }
+[inputs]
+F = { value = { samples = [[0, 1], [0.2, 3]], between = "BETWEEN" }, unit = "N" }
+[points]
+wall = [-2, 0]
+[bodies.bead]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "path", along = "s", pieces = [{ line = 0.5 }, { arc = 1, turn = "ccw", angle = 1 }] }
+[bodies.mass]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces.spring]
+kind = "spring"
+points = ["wall", "mass.center"]
+along = [1, 0]
+stiffness = "k"
+length = 2
+[forces.push]
+kind = "force"
+point = "bead.center"
+force = ["F", 0]
+[outputs]
+acc_s = "s''"
+acc_x = "x''"
+"""
+
+
+@pytest.mark.parametrize("between", ["steps", "linear"])
+def test_a_row_of_a_run_at_a_break_has_the_values_of_one_side(monkeypatch, between):
+    """Where a path or an input changes its piece an acceleration has two values, and each is right; a row that mixes
+    them is not, nor, at any instant, a row that is off by 1e-5 of its size.
+    """
+    known = compare.product_of(BROKEN.replace("BETWEEN", between))
+    right = cross.across(known, parts=("run",))
+    assert any("switch" in x for x in right.skipped)
+    assert not right.faults
+    run = eomgen.simulate(known.equations.model, time=0.6, samples=4)
+    columns = {name: np.array(values) for name, values in run.columns().items()}
+    at = next(i for i, x in enumerate(run.x) if abs(x[run.coordinates.index("s")] - 0.5) < 1e-9)
+    oracle = Oracle(known.text, run.x[0][:2])
+    s = State(float(run.t[at]), run.x[at][:2], run.x[at][2:])
+    assert cross._beyond(oracle, s, oracle.solve(s), columns, at)
+    columns["reaction_n(bead)"][at] *= 0.5
+    assert not cross._beyond(oracle, s, oracle.solve(s), columns, at)
+    own = laws.FORCES["spring"]
+
+    def stiffer(*arguments: Any) -> Any:
+        found = own(*arguments)
+        for load in found:
+            load.force = None if load.force is None else 1.00003 * load.force
+        return found
+
+    monkeypatch.setitem(laws.FORCES, "spring", stiffer)
+    assert len({x for x in cross.across(known, parts=("run",)).faults if "acc_x" in x[1]}) > 1
+
+
 @pytest.mark.parametrize("closure", ["multipliers", "dependent"])
 def test_forces_that_accelerations_take_along_a_loop_are_the_oracles(monkeypatch, closure):
     """tau of J a + gamma = 0: along the crank, the rest by the constraints; an error of the oracle's masses is
