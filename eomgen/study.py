@@ -37,7 +37,7 @@ from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.mechanics.start.exact import ExactStart, known_exactly
 from eomgen.mechanics.start.state import start_state
-from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start, modes_at_rest
+from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
@@ -430,8 +430,10 @@ def study_of(model: Model) -> Study:
 
 
 def study_at_rest(model: Model) -> Study:
-    """The study of a model with its contacts as they are at rest; of one frozen model it is made once."""
-    return recalled(model, study_at_rest, lambda: Study(system_of(model, modes_at_rest(model))))
+    """The study of a model with its contacts as they are where it rests; of one frozen model it is made once."""
+    from eomgen.mechanics.equilibrium.contacts_at_rest import contacts_at_rest
+
+    return recalled(model, study_at_rest, lambda: _with_contacts(model, contacts_at_rest(model)))
 
 
 def study_of_modes(model: Model, modes: ContactModes | None = None) -> Study:

@@ -239,6 +239,12 @@ def data_step(system: System) -> Step:
     return Step("data", "Data", tuple(statements))
 
 
+def open_at_rest(system: System) -> list[Statement]:
+    """Statement that names the contacts that are open where the system rests; none where all are closed."""
+    names = [name for name, mode in system.modes.items() if not mode.closed]
+    return [prose(f"Open at rest, without a force: {', '.join(names)}.")] if names else []
+
+
 def _unit(part: Quantified) -> str:
     return "" if part is None or part.unit is None else str(part.unit)
 

@@ -81,7 +81,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
     """Equilibrium that is nearest to the start; with unknowns in the loads, the start itself.
 
     Args:
-        system: as it is at the start.
+        system: its contacts as they are at rest.
         guess: values of coordinates in place of `near` and `start`.
     Raises:
         DerivationError: there is no equilibrium, or a contact would have to pull there.
@@ -95,7 +95,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
     equilibria = all_equilibria(system, guess)
     place = equilibria.nearest()
     system = standing_system(place.statics.system)
-    place.refuse_pulling()
+    place.refuse_contradicted()
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
     exact = {**place.exact, **_still(system)}
     numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}

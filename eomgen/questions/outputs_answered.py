@@ -48,7 +48,7 @@ from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.motion_from_start import MotionFromStart, leaves_at
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
-from eomgen.study import Study, exact_numbers
+from eomgen.study import Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.formula import Call
@@ -462,7 +462,7 @@ class _Solver:
     @cached_property
     def at_rest(self) -> StateAtInstant:
         """Equilibrium, or the start held by the unknowns of the loads."""
-        return resting(self.phase.system)
+        return resting(study_at_rest(self.model).system)
 
     def _number_at(self, moment: StateAtInstant, output: Output) -> float:
         """The value in floating point.

@@ -32,8 +32,10 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
+from eomgen.mechanics.statics.contacts import modes_at_rest
 from eomgen.mechanics.statics.virtual_work import released_in
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
@@ -46,7 +48,6 @@ from eomgen.questions import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
-from eomgen.study import study_at_rest
 from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.verbs.outcome import with_start_reported
@@ -254,7 +255,7 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
         UsageError: there is no such reaction.
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
-    system = study_at_rest(model).system
+    system = system_of(model, modes_at_rest(model))
     stands = not has_degrees_of_freedom(system)
     structure = structure_of(with_drives_held(system)[0] if stands else system)
     if stands:

@@ -546,6 +546,88 @@ th = { value = "th", at = "equilibrium" }
     assert "'floor' would have to pull" in (eomgen.solve(model_of(text + WEIGHT, m=1, g=10))["th"].message or "")
 
 
+ON_AN_END = """
+[coordinates]
+y = START
+[points]
+hook = [0, "L"]
+[bodies.block]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+CARRIED
+[forces.spring]
+kind = "spring"
+points = ["hook", "block.center"]
+along = [0, 1]
+length = 0
+stiffness = "k"
+END
+[outputs]
+y = { value = "y", at = "equilibrium" }
+N = { value = "FORCE", at = "equilibrium" }
+"""
+FLOOR = """[constraints.end]
+kind = "support"
+point = "block.center"
+at = [0, 0]
+normal = [0, 1]
+unilateral = true
+"""
+THREAD = """[constraints.end]
+kind = "link"
+points = ["hook", "block.center"]
+length = "L"
+unilateral = true
+"""
+RIDER = """[coordinates.x]
+start = 0.1
+[bodies.rider]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", on = "block", axis = [1, 0], displacement = "x" }
+[forces.back]
+kind = "spring"
+points = ["block.center", "rider.center"]
+along = [1, 0]
+length = 0
+stiffness = "k"
+"""
+ENDS = [(end, L) for end in (FLOOR, THREAD) for L in (0.05, 0.5)]
+
+
+@pytest.mark.parametrize("start", ["0", "{ start = 0, speed = 1 }", "0.06"])
+@pytest.mark.parametrize(("end", "L"), ENDS, ids=["floor", "above floor", "thread", "slack thread"])
+@pytest.mark.parametrize("carried", ["", RIDER], ids=["alone", "carrying"])
+def test_a_contact_at_rest_pushes_or_is_open_whatever_the_start(end, L, start, carried):
+    """A block of weight W on a spring k that ends at the height L, above a floor or on a thread of length L:
+
+        y = max(0, L - W/k),   N = max(0, W - k L)
+
+    Statics, `solve` at equilibrium and small motions rest there, where it starts above the floor or leaves it at once
+    too.
+    """
+    force = "reaction_n(end)" if end == FLOOR else "tension(end)"
+    text = ON_AN_END.replace("START", start).replace("CARRIED", carried).replace("END", end).replace("FORCE", force)
+    model = model_of(text + WEIGHT, m=1, g=9.81, k=100, L=L)
+    W = 9.81 * (2 if carried else 1)
+    y, N = max(0.0, L - W / 100), max(0.0, W - 100 * L)
+    answers = eomgen.solve(model)
+    assert [answers[name].value for name in ("y", "N")] == pytest.approx([y, N], abs=1e-12)
+    assert answers.certify().ok
+    found = eomgen.statics(model)
+    assert found.certify().ok
+    if N and not carried:
+        with pytest.raises(DerivationError, match="no degree of freedom"):
+            eomgen.linearize(model)
+        return
+    place = found.as_dict()["equilibria"][0]
+    assert place["coordinates"]["y"]["value"] == pytest.approx(y, abs=1e-12)
+    assert (place["pulling"], place["passed"]) == ([], [])
+    assert ("Open at rest, without a force: end." in rendered(found.document)) == (N == 0)
+    small = eomgen.linearize(model)
+    assert small.as_dict()["state"]["y"]["value"] == pytest.approx(y, abs=1e-12)
+    assert small.certify().ok
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = 'eomgen = 1\nname = "turning"\nspace = "space"\n'
+PLANE = 'eomgen = 1\nname = "turning"\nspace = "plane"\n'
 INERTIA = "[parameters]\nA = 1.1\nB = 2.3\nC = 3.1\nm = 0.7\nd = 0.2\ng = 9.81\n"
 ANGLES = "[coordinates]\npsi = { start = 0.2 }\ntheta = { start = 0.7 }\nphi = { start = 0.4 }\n"
 SPEEDS = "[speeds]\nw1 = { start = 0.5 }\nw2 = { start = -1 }\nw3 = { start = 2 }\n"
@@ -163,6 +164,51 @@ def test_a_free_particle_needs_no_orientation():
     run = eomgen.simulate(eomgen.loads(HEAD + text), time=1, samples=2)
     assert run["z"][-1] == pytest.approx(-2 - 9.81 / 2)
     assert eomgen.freedom_of(eomgen.loads(HEAD + text)).by_rank == 3
+
+
+@pytest.mark.parametrize("turned", ["", ", angle = 0"], ids=["without", "with"])
+def test_a_free_particle_in_the_plane_needs_no_angle(turned):
+    """On a table that turns by b: v = l (b' + 3/l), T = m (g + v^2/l); nothing of the particle can turn."""
+    text = """
+[parameters]
+m = 0.7
+[coordinates]
+x = { speed = 3 }
+y = -2
+b = { motion = "0.3*t" }
+[points]
+O = [0, 0]
+[bodies.table]
+mass = 1
+inertia = 1
+joint = { kind = "revolute", angle = "b" }
+[bodies.bob]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "free", on = "table", x = "x", y = "y"TURNED }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+[constraints.thread]
+kind = "link"
+points = ["O", "bob.center"]
+[outputs]
+T = "tension(thread)"
+v = "speed(bob.center)"
+"""
+    model = eomgen.loads(PLANE + text.replace("TURNED", turned))
+    answers = eomgen.solve(model)
+    assert answers["v"].value == pytest.approx(3 + 2 * 0.3)
+    assert answers["T"].value == pytest.approx(0.7 * (9.81 + 3.6**2 / 2))
+    assert answers.certify().ok
+    assert eomgen.freedom_of(model).by_rank == 1
+
+
+@pytest.mark.parametrize("body", ['shape = { kind = "rod", mass = 1, length = 2 }', "mass = 1\ninertia = 0.1"])
+def test_a_free_body_in_the_plane_that_can_turn_needs_an_angle(body):
+    """A rod without one is an error that names it."""
+    joint = 'joint = { kind = "free", x = "x", y = "y" }'
+    with pytest.raises(eomgen.ModelError, match="the joint of body 'b' has no 'angle'"):
+        eomgen.loads(PLANE + f"[coordinates]\nx = 0\ny = 0\n[bodies.b]\n{body}\n{joint}\n")
 
 
 def test_a_free_body_that_can_turn_needs_an_orientation():

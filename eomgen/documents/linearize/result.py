@@ -27,10 +27,11 @@ from eomgen.mechanics.linearization.linearization import SmallMotions, small_mot
 from eomgen.mechanics.linearization.modes import Frequency, Mode, Modes, Spectrum
 from eomgen.mechanics.linearization.polynomial import Polynomial
 from eomgen.mechanics.linearization.reduction import LinearEquations
-from eomgen.mechanics.linearization.reference import Family
+from eomgen.mechanics.linearization.reference import EQUILIBRIUM, Family
 from eomgen.mechanics.linearization.transfer import StateMatrices, exact_state_space, with_outputs
 from eomgen.mechanics.start.exact import known_exactly
 from eomgen.mechanics.state import Entries
+from eomgen.model.contacts import rough_contacts
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
@@ -46,7 +47,7 @@ from eomgen.proof.small_motions_reported import (
     roots_drawn,
     small_motions_reported,
 )
-from eomgen.study import study_of
+from eomgen.study import study_at_rest, study_of
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -193,7 +194,8 @@ class Linearization(Result):
         entries, values = self.entries(), exact_parameters(self.model)
         reported = linear_entries(entries, self.A, self.B) if self.valued else ()
         printed = small_motions_reported(entries, printed_modes(self.derivation), values)
-        return certify(first.equations) + small_motion_checks(self.modes) + reported + printed
+        begun = certify(first.equations, begins=self.small.reference.about != EQUILIBRIUM)
+        return begun + small_motion_checks(self.modes) + reported + printed
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
         """Bode's diagrams and roots over a parameter, by M, C, K and B as machines get them; the modes by these."""
@@ -467,7 +469,7 @@ def linearize(
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", fix=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
-    study = study_of(model)
+    study = study_at_rest(model) if about == EQUILIBRIUM and not rough_contacts(model) else study_of(model)
     modes = Modes(small_motions_of(study.system, about, wanted))
     return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *study.assumptions))
 

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.document import Document
-from eomgen.documents.motion_steps import listed_symbols
+from eomgen.documents.motion_steps import listed_symbols, open_at_rest
 from eomgen.documents.statements import (
     Cell,
     Formula,
@@ -501,6 +501,8 @@ def reference_step(modes: Modes) -> Step:
         statements += _family(modes, reference.family)
     if reference.place is not None and reference.place.statics.held:
         statements.append(prose(f"Driven coordinates are held there: {', '.join(reference.place.statics.held)}."))
+    if reference.about == EQUILIBRIUM:
+        statements += open_at_rest(reference.system)
     if small.left_out:
         one = len(small.left_out) == 1
         why = "nothing depends on it, and it has no speed of its own" if one else NOTHING_DEPENDS

@@ -14,7 +14,7 @@ from eomgen.documents.bounded import page
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.drawing import Sketch, draw_model
 from eomgen.documents.figures import Picture
-from eomgen.documents.motion_steps import count, data_step, listed_symbols
+from eomgen.documents.motion_steps import count, data_step, listed_symbols, open_at_rest
 from eomgen.documents.reaction_values import said
 from eomgen.documents.reading import Reader, Written, with_roots_named
 from eomgen.documents.result import Result
@@ -141,6 +141,7 @@ def _place(place: Equilibrium) -> dict[str, Any]:
         "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
         "stability": _stability_entry(place.stability),
         "pulling": list(place.pulling),
+        "passed": list(place.passed),
         "family": None if place.curve is None else _family(place, place.curve),
     }
 
@@ -260,9 +261,9 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     law = REST_WITH_CONSTRAINTS if statics.lam else REST
     words = "At rest the virtual work of all forces vanishes for every displacement"
     words += ", those of the constraints included: " if statics.lam else ": "
-    held: list[Statement] = []
+    held = open_at_rest(statics.system)
     if statics.held:
-        held = [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
+        held += [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
     forces = _all_forces(reader, statics)
     own = len(statics.phi) - statics.norms
     constraints = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
@@ -314,7 +315,12 @@ def _places(found: Equilibria) -> Step:
     rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place, units)]
     grid = narrow_grid(("place", "coordinate", "exact", "value", "unit", "stability"), rows)
     curves = [_curve(k, place, place.curve) for k, place in enumerate(found.found, start=1) if place.curve is not None]
-    return Step("places", "Equilibria", (*statements, prose(_how_many(found)), grid, *curves))
+    passed = [_passed(k, name) for k, place in enumerate(found.found, start=1) for name in place.passed]
+    return Step("places", "Equilibria", (*statements, prose(_how_many(found)), grid, *passed, *curves))
+
+
+def _passed(number: int, name: str) -> Statement:
+    return prose(f"But place {number} lies behind '{name}', which lets nothing pass: it does not hold.")
 
 
 def _declared_units(model: Model) -> dict[str, Unit]:

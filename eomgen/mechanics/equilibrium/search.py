@@ -14,7 +14,7 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rows import Constraints
+from eomgen.mechanics.constraints.rows import Constraints, rows_of_constraint
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibrium.equations import StaticEquations, static_equations
@@ -85,18 +85,32 @@ class Equilibrium:
         values = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
         return pulling_contacts(system, state, values)
 
-    def refuse_pulling(self) -> None:
-        """Refuse a place that a one-sided contact would have to hold.
+    @cached_property
+    def passed(self) -> tuple[str, ...]:
+        """The one-sided constraints behind which it lies; () where that is not known."""
+        return passed_contacts(self.statics.system, self.numbers) if self.numbers else ()
+
+    @property
+    def contradicted(self) -> tuple[str, ...]:
+        """The one-sided constraints that do not let the system rest there."""
+        return (*self.pulling, *self.passed)
+
+    def refuse_contradicted(self) -> None:
+        """Refuse a place that a one-sided contact would have to hold, or does not let the system reach.
 
         Raises:
-            DerivationError: one pulls.
+            DerivationError: one pulls, or is passed through.
         """
-        if pulls := self.pulling:
-            raise DerivationError(
-                f"'{pulls[0]}' would have to pull where the other forces balance",
-                f"constraints.{pulls[0]}",
-                "without it the system rests elsewhere",
-            )
+        if not self.contradicted:
+            return
+        name = self.contradicted[0]
+        if name in self.pulling:
+            what = f"'{name}' would have to pull where the other forces balance"
+            fix = "without it the system rests elsewhere"
+        else:
+            what = f"the other forces balance behind '{name}', which lets nothing pass"
+            fix = "start where it touches, or hold the system on this side of it"
+        raise DerivationError(what, f"constraints.{name}", fix)
 
 
 @dataclass(frozen=True)
@@ -156,6 +170,8 @@ def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
     """Every equilibrium that is found, the nearest to the guess first, with the statement if there may be others.
+
+    Those that a one-sided contact does not hold, or does not let the system reach, come last.
 
     Args:
         guess: values of coordinates in place of `near` and `start`.
@@ -285,16 +301,20 @@ class _Search:
         return ClosedForms(self.statics, self.values, self._places.turning)
 
     def nearest(self) -> Equilibrium:
-        """The place nearest to the guess, alone.
+        """The place nearest to the guess, alone, of those at which the contacts hold, where there are any.
 
         Raises:
             DerivationError: there is none.
         """
-        each = (self._equilibrium(z, self._forms) for z in self._places.found)
-        found = next((place for place in each if place is not None), None)
-        if found is None:
+        first: Equilibrium | None = None
+        for z in self._places.found:
+            place = self._equilibrium(z, self._forms)
+            if place is not None and not place.contradicted:
+                return place
+            first = first or place
+        if first is None:
             raise nowhere(self._places.complete, self.system.constraints)
-        return found
+        return first
 
     def equilibria(self) -> Equilibria:
         places = self._places
@@ -303,6 +323,7 @@ class _Search:
         places = replace(places, found=tuple(z for z, _ in curves))
         pairs = [(self._equilibrium(z, self._forms), curve) for z, curve in curves]
         found = [replace(each, curve=curve) for each, curve in pairs if each is not None]
+        found.sort(key=lambda place: bool(place.contradicted))
         complete = places.complete and (self.valued or len(found) == len(places.found))
         certain = self.valued or places.where == ANYWHERE
         where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
@@ -403,7 +424,7 @@ def _numbers(scalars: Any, state: State) -> np.ndarray:
 
 
 # -------- one sided -------------------------------------------------------------------------------------------
-# An equilibrium -> the contacts that would have to pull there: it is no equilibrium.
+# An equilibrium -> the contacts that would have to pull there, or behind which it lies: it is no equilibrium.
 
 
 def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
@@ -435,6 +456,21 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
             if known and evaluate((value,), values, FLOAT)[0] < -COMPUTED:
                 found.append(component.owner)
     return tuple(dict.fromkeys(found))
+
+
+def passed_contacts(system: System, numbers: Mapping[Node, float]) -> tuple[str, ...]:
+    """The one-sided constraints that are open with a negative gap at a place.
+
+    Args:
+        numbers: of the coordinates.
+    """
+    open_ = [name for name, mode in system.modes.items() if not mode.closed]
+    gaps = {name: rows_of_constraint(system.motion, name)[0].gap for name in open_}
+    known = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+    known |= {system.symbols.t: 0.0, **numbers}
+    sought = {name: gap for name, gap in gaps.items() if gap is not None and known.keys() >= {*symbols_of((gap,))}}
+    values = evaluate(tuple(sought.values()), known, FLOAT)
+    return tuple(name for name, gap in zip(sought, values, strict=True) if gap < -CARRIED)
 
 
 # -------- families --------------------------------------------------------------------------------------------

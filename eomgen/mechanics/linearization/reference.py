@@ -97,7 +97,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
     """
     place = nearest_equilibrium(static_equations(system), guess)
     if contacts_of(system.scope.model):
-        place.refuse_pulling()
+        place.refuse_contradicted()
     return _place(place)
 
 

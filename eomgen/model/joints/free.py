@@ -55,7 +55,7 @@ class Free(Joint):
     In the plane s = (x, y, angle), as `planar` but with no wrench left in it.
 
     In space s = (position, angles or quaternion), X = (R, position), S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z),
-    (columns as of `spherical`), W = (). A particle needs no orientation: s = position, R = 1.
+    (columns as of `spherical`), W = (). A particle needs no orientation: s = position, in the plane (x, y), and R = 1.
 
     Args:
         x, y, angle: of `point` in the parent's axes [m], and of the child [rad] (plane).
@@ -78,7 +78,8 @@ class Free(Joint):
         """Diagnostics unless all fields of this space are given, and no others."""
         plane = catalog.model.space == "plane"
         yield from other_space(self, ("position",) if plane else IN_PLANE, path, catalog.model.space)
-        for key in IN_PLANE if plane else ("position",) if _is_point(path, catalog) else ("position", "orientation"):
+        place, turn = (("x", "y"), ("angle",)) if plane else (("position",), ("orientation",))
+        for key in place if _is_point(path, catalog) else (*place, *turn):
             if getattr(self, key) is None and (*path, key) not in catalog.broken:
                 yield Diagnostic(path, f"the joint of body '{path[1]}' has no '{key}'", f"give '{key}'")
         yield from turning_diagnostics(self, path, catalog)
@@ -95,26 +96,27 @@ class Free(Joint):
 
     def moves(self) -> tuple[Move, ...]:
         if self.position is None:
-            return (SlideAlong(X, self.x), SlideAlong(Y, self.y), TurnAbout(None, self.angle))
+            turning: tuple[Move, ...] = () if self.angle is None else (TurnAbout(None, self.angle),)
+            return (SlideAlong(X, self.x), SlideAlong(Y, self.y), *turning)
         turning = () if self.orientation is None else turning_moves(self)
         return (*map(SlideAlong, (X, Y, Z), self.position), *turning)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         if space == "space":
             return (*(self.position or ()), *self.turns())
-        return tuple(e or Expression.number(0) for e in (self.x, self.y, self.angle))
+        return (*(e or Expression.number(0) for e in (self.x, self.y)), *self.turns())
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:
-        return s[2]
+        return s[2] if s[2:] else 0
 
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         if self.position is None:
-            return in_plane(s)
+            return in_plane((*s[:2], self.turn(s, value)))
         return Pose(self._rotation(s), vector_of(s[:3]))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         if self.position is None:
-            return plane_subspace(s)
+            return plane_subspace((*s[:2], self.turn(s, value)))[: len(s)]
         along = (linear(apply(transposed(self._rotation(s)), e)) for e in (X, Y, Z))
         return (*along, *(() if self.orientation is None else columns_of(self.orientation, s[3:])))
 
