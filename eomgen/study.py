@@ -37,7 +37,7 @@ from eomgen.mechanics.instant.quantities import Quantities, requests_of
 from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.mechanics.start.exact import ExactStart, known_exactly
 from eomgen.mechanics.start.state import start_state
-from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start
+from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
@@ -426,23 +426,27 @@ class Study:
 def study_of(model: Model) -> Study:
     """The study of a model with its contacts as they are at the start; of one frozen model it is made once."""
 
-    return recalled(model, study_of, lambda: _with_contacts(model, contacts_at_start(model)))
+    def made() -> Study:
+        contacts = contacts_at_start(model)
+        return Study(system_of(model, contacts.modes), contacts.assumptions)
+
+    return recalled(model, study_of, made)
 
 
 def study_at_rest(model: Model) -> Study:
     """The study of a model with its contacts as they are where it rests; of one frozen model it is made once."""
     from eomgen.mechanics.equilibrium.contacts_at_rest import contacts_at_rest
 
-    return recalled(model, study_at_rest, lambda: _with_contacts(model, contacts_at_rest(model)))
+    def made() -> Study:
+        modes, assumptions = contacts_at_rest(model)
+        return Study(system_of(model, modes), assumptions)
+
+    return recalled(model, study_at_rest, made)
 
 
 def study_of_modes(model: Model, modes: ContactModes | None = None) -> Study:
     """The study of a model with its contacts as they are named, what is not named closed."""
-    return _with_contacts(model, ContactsAtStart(modes or {}))
-
-
-def _with_contacts(model: Model, contacts: ContactsAtStart) -> Study:
-    return Study(system_of(model, contacts.modes), contacts.assumptions)
+    return Study(system_of(model, modes or {}))
 
 
 def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:

@@ -25,6 +25,7 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.verbs.reactions import reactions
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
@@ -305,6 +306,48 @@ def test_what_nothing_holds_is_told_and_has_no_kinetostatics(model, word):
     assert word in derived.entries()["reactions_message"]
     with pytest.raises(DerivationError, match=word):
         derive(model, "kinetostatic")
+
+
+COUPLED = """
+eomgen = 1
+name = "Two cars, placed by one coordinate"
+space = "plane"
+[parameters]
+m = 2
+[coordinates]
+s = 0
+[bodies.one]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["s", 0] }
+[bodies.two]
+shape = { kind = "particle", mass = "2*m" }
+joint = { kind = "placed", at = ["s + 1", 0] }
+[constraints.rail]
+kind = "support"
+point = "one.center"
+normal = [0, 1]
+[constraints.second_rail]
+kind = "support"
+point = "two.center"
+normal = [0, 1]
+[forces.push]
+kind = "force"
+point = "one.center"
+force = [6, 0]
+"""
+LINK = '[constraints.bar]\nkind = "link"\npoints = ["one.center", "two.center"]\n'
+
+
+def test_placed_bodies_that_one_coordinate_moves_need_a_constraint_between_them():
+    """Each is held, but nothing named carries 2 m s'' to the second: the message says so; with a bar T = -4 N."""
+    with pytest.raises(DerivationError, match="'one' is unsupported along x") as refused:
+        reactions(loads(COUPLED))
+    assert refused.value.fix == "'s' moves 'one' and 'two', and nothing named joins them: name the constraint that does"
+    assert reactions(loads(COUPLED + LINK))["tension(bar)"].value == pytest.approx(-4)
+    alone = COUPLED.replace('[constraints.rail]\nkind = "support"\npoint = "one.center"\nnormal = [0, 1]\n', "")
+    with pytest.raises(DerivationError, match="'one' is unsupported along y") as refused:
+        reactions(loads(alone))
+    assert "a placed body carries no reaction" in refused.value.fix
 
 
 def test_long_reactions_are_counted_and_not_printed():

@@ -9,8 +9,8 @@ from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.equations import static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium, nearest_equilibrium
-from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.mechanics.statics.contacts import OPEN, ContactsAtStart, contacts_at_start, modes_at_rest
+from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes
+from eomgen.mechanics.statics.contacts import contacts_at_start, modes_at_rest
 from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.fields import Table
 from eomgen.model.part import altered
@@ -30,15 +30,14 @@ ROUNDS = 6  # of contacts that a place of rest contradicts
 MOST_TRIED = 16  # choices of contacts
 
 
-def contacts_at_rest(model: Model) -> ContactsAtStart:
-    """The contacts that are open at the equilibrium nearest to the start, or stick there.
+def contacts_at_rest(model: Model) -> tuple[ContactModes, tuple[str, ...]]:
+    """(the contacts that are open at the equilibrium nearest to the start, or stick there; what was assumed).
 
-    As at the start let go, where no choice contradicts nothing. Without coordinates nothing is open.
+    As at the start let go, where every choice contradicts something. Without coordinates nothing is open.
     """
-    sticking = modes_at_rest(model)
     ending = [contact.name for contact in contacts_of(model) if contact.unilateral]
     if not model.coordinates or not ending or rough_contacts(model):
-        return ContactsAtStart(sticking)
+        return modes_at_rest(model), ()
     begun = contacts_at_start(_let_go(model))
     tried: list[frozenset[str]] = []
     wanted: frozenset[str] | None = frozenset(name for name, mode in begun.modes.items() if not mode.closed)
@@ -46,13 +45,13 @@ def contacts_at_rest(model: Model) -> ContactsAtStart:
         tried.append(wanted)
         place = _place(model, _opened(wanted))
         if place is not None and not place.contradicted:
-            return ContactsAtStart(_opened(wanted), begun.assumptions)
+            return _opened(wanted), begun.assumptions
         wanted = None if place is None else wanted.symmetric_difference(place.contradicted)
     for open_ in islice(_choices(ending), MOST_TRIED):
         place = None if open_ in tried else _place(model, _opened(open_))
         if place is not None and not place.contradicted:
-            return ContactsAtStart(_opened(open_), begun.assumptions)
-    return begun
+            return _opened(open_), begun.assumptions
+    return begun.modes, begun.assumptions
 
 
 def _choices(names: list[str]) -> Iterator[frozenset[str]]:
@@ -62,7 +61,7 @@ def _choices(names: list[str]) -> Iterator[frozenset[str]]:
 
 
 def _opened(names: frozenset[str]) -> ContactModes:
-    return dict.fromkeys(sorted(names), OPEN)
+    return dict.fromkeys(sorted(names), ContactMode(closed=False))
 
 
 def _place(model: Model, modes: ContactModes) -> Equilibrium | None:

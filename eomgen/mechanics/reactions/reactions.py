@@ -40,7 +40,7 @@ from eomgen.mechanics.start.exact import values_where_at_rest
 from eomgen.mechanics.state import Numbers
 from eomgen.model.driven import driven_coordinates, driving_constraints
 from eomgen.model.trusses import called, declared_at
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, derivative, substituted
 from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
@@ -449,6 +449,7 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
     free, allowed = _virtual_motions(balance)
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
     unheld = free - Q @ (Q.T @ free)
+    joined = _joined_by_a_coordinate(balance.system) or _placed_together(balance, unheld)
     if touched:
         unheld[[not e.coefficients for e in balance.equations]] = 0
     worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
@@ -458,7 +459,6 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
     direction = DIRECTIONS[equation.direction]
     turning = direction.startswith("moment")
     what = "unsupported against rotation" if turning else f"unsupported along {direction}"
-    joined = _joined_by_a_coordinate(balance.system)
     fix = (
         f"{joined}, and nothing named joins them: name the constraint that does"
         if joined
@@ -477,6 +477,28 @@ def _joined_by_a_coordinate(system: System) -> str:
             names = [f"'{name}'" for name in dict.fromkeys(moved)]
             which = "the joints of " if len(names) > 1 else "in two ways the joint of "
             return f"'{q.name}' moves {which}{' and '.join(names)}"
+    return ""
+
+
+def _placed_together(balance: Balance, unheld: np.ndarray) -> str:
+    """Sentence that one free coordinate moves several placed bodies, where each alone is held; "" elsewhere.
+
+    Args:
+        unheld: motions along the rows without reaction and coordinate, one a column.
+    """
+    U, sizes, _ = np.linalg.svd(unheld, full_matrices=False)
+    basis = U[:, sizes > RANK_NEARBY]
+    bodies = list(dict.fromkeys(e.body for e in balance.equations))
+    parts = {body: basis[[e.body == body for e in balance.equations]] for body in bodies}
+    share = {body: float(np.linalg.norm(part, 2)) if part.size else 0.0 for body, part in parts.items()}
+    if any(x > 1 - RANK_NEARBY for x in share.values()):  # it moves by itself
+        return ""
+    system, given = balance.system, driven_coordinates(balance.system.scope.model)
+    links = [link for link in system.motion.links if share.get(link.name, 0.0) > RANK_NEARBY]
+    for q in system.symbols.q:
+        moved = [f"'{link.name}'" for link in links if depends_on_any(link.s, (q,))]
+        if len(moved) > 1 and q.name not in given:
+            return f"'{q.name}' moves {' and '.join(moved)}"
     return ""
 
 
