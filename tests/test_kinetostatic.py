@@ -334,6 +334,9 @@ normal = [0, 1]
 kind = "force"
 point = "one.center"
 force = [6, 0]
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
 """
 LINK = '[constraints.bar]\nkind = "link"\npoints = ["one.center", "two.center"]\n'
 
