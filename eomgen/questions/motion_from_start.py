@@ -33,6 +33,7 @@ from eomgen.simulation.contacts import by_the_law, has_phases
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.phase_run import PhaseRun, joined
 from eomgen.simulation.result import Trajectory
+from eomgen.simulation.solvers import AUTO
 from eomgen.study import Study, study_at_rest, study_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.node import Node, Scalar
@@ -287,7 +288,7 @@ def fine_stepping() -> Stepping:
     """Fine tolerances for a motion whose instants are then sought in closed form."""
     from eomgen.simulation.integrator import Stepping
 
-    return Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=MOST_STEPS)
+    return Stepping(AUTO, FINE_RUN, FINE_RUN, MOST_STEPS)
 
 
 def _end_of(phase: Study, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]) -> StateAtInstant:
@@ -361,6 +362,7 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         time=time,
         x0=x0,
         p=p,
+        method=AUTO,
         rtol=FINE_RUN,
         atol=FINE_RUN,
         samples=samples,

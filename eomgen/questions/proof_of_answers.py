@@ -293,7 +293,7 @@ class _Proof:
 
     def instants(self) -> Iterator[Check]:
         """Checks that a run from the start leads to the state at the instant, and not to the condition before it."""
-        tally = Tally("a run in time leads to the requested instants", "integrated from the start, order 8")
+        tally = Tally("a run in time leads to the requested instants", "integrated from the start")
         rest = Tally("at rest all forces balance", "equations of motion with u = 0, a = 0, 50 digits")
         requested = {
             (output.at.text, output.from_): output
@@ -358,7 +358,7 @@ class _Proof:
 
     def ways(self) -> Iterator[Check]:
         """Checks that a function of the configuration has, along the motion, the value of the formula there."""
-        tally = Tally("functions of the configuration hold along the motion", "integrated from the start, order 8")
+        tally = Tally("functions of the configuration hold along the motion", "integrated from the start")
         for name, (output, found) in self.requested.items():
             if output.from_ is not None and output.at is None and found.exact is not None:
                 tally.add(name, partial(self._along, output, found))

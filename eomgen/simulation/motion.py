@@ -27,6 +27,7 @@ from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels, one_phase
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import Flow, ended_where_singular, march_across
+from eomgen.simulation.solvers import AUTO
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -317,7 +318,7 @@ def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
 
 
 LONGEST = 1e9  # s, of a search
-FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=100_000)
+FINE = Stepping(AUTO, FINE_RUN, FINE_RUN, 100_000)
 SEARCH = replace(FINE, most_steps=4000)
 FAIR = replace(SEARCH, rtol=FAIR_RUN, atol=FAIR_RUN)  # where the finer one does not come across a singular position
 

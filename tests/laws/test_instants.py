@@ -464,3 +464,40 @@ s = { value = "s", at = "t = 1" }
     assert "force 'drag' is 0/0 at s = 0" in (eomgen.solve(model)["s"].message or "")
     found = march(lambda t, x: np.full(1, math.nan), (0.0, 1.0), np.zeros(1), how=Stepping())
     assert (found.status, found.steps) == ("not finite", 0)
+
+
+OVERDAMPED = """
+eomgen = 1
+name = "A rod in thick oil"
+space = "plane"
+[parameters]
+m = 1
+l = 1
+g = 9.81
+c = 5000
+[coordinates]
+phi = { start = 1.2 }
+[bodies.rod]
+shape = { kind = "rod", mass = "m", length = "l" }
+joint = { kind = "revolute", angle = "phi", damping = "c" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+w = { value = "phi'", at = "phi = 1.195" }
+p = { value = "phi", at = "t = 30" }
+"""
+
+
+def test_an_instant_of_a_stiff_motion_is_reached():
+    """c phi' = -m g l cos(phi)/2 after I/c = 67 us: ln tan(pi/4 + phi/2) falls by m g l t/(2 c); proven too."""
+    answers = eomgen.solve(eomgen.loads(OVERDAMPED))
+    moment = 9.81 / 2
+    assert answers["w"].value == pytest.approx(-moment * math.cos(1.195) / 5000, rel=1e-6)
+    p = 2 * math.atan(math.tan(math.pi / 4 + 0.6) * math.exp(-moment * 30 / 5000)) - math.pi / 2
+    assert answers["p"].value == pytest.approx(p, rel=1e-6)
+    certificate = answers.certify()
+    assert certificate.ok
+    assert [x.status for x in certificate.checks if x.name == "a run in time leads to the requested instants"] == [
+        "holds"
+    ]
