@@ -1,15 +1,15 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
 from eomgen.codegen.programs import InverseDynamics as InverseDynamics
+from eomgen.documents.at_rest.result import Statics as Statics
+from eomgen.documents.at_rest.result import statics as statics
 from eomgen.documents.equilibrium_picture import rest_picture as rest_picture
 from eomgen.documents.figures import run_picture as run_picture
-from eomgen.documents.inertia.result import Inertia as Inertia
-from eomgen.documents.inertia.result import inertia as inertia
 from eomgen.documents.kinematics.result import Kinematics as Kinematics
-from eomgen.documents.linearize.result import Linearization as Linearization
-from eomgen.documents.linearize.result import linearize as linearize
-from eomgen.documents.statics.result import Statics as Statics
-from eomgen.documents.statics.result import statics as statics
+from eomgen.documents.mass_properties.result import Inertia as Inertia
+from eomgen.documents.mass_properties.result import inertia as inertia
+from eomgen.documents.small_motions.result import Linearization as Linearization
+from eomgen.documents.small_motions.result import linearize as linearize
 from eomgen.equations import Equations as Equations
 from eomgen.errors import DerivationError as DerivationError
 from eomgen.errors import EomgenError as EomgenError
@@ -49,7 +49,7 @@ from eomgen.model.parts import Truss as Truss
 from eomgen.model.parts import Unknown as Unknown
 from eomgen.model.reader import load as load
 from eomgen.model.reader import loads as loads
-from eomgen.model.samples import samples as samples
+from eomgen.model.sampled_laws import samples as samples
 from eomgen.page.contents import Report as Report
 from eomgen.page.playing import Played as Played
 from eomgen.page.playing import play as play

@@ -10,17 +10,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.free_bodies.friction import has_friction
-from eomgen.proof import identities
-from eomgen.proof.check import Certificate
-from eomgen.proof.parameters import other_data
-from eomgen.proof.printed import Printed
-from eomgen.proof.trials import Trials
-from eomgen.symbolic.numeric.work import doing, growing
+from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.mechanics.free_bodies import has_friction
+from eomgen.proof import Certificate, Printed, Trials, identity_checks, other_data
+from eomgen.symbolic.numeric import doing, growing
 
 if TYPE_CHECKING:
-    from eomgen.codegen.rhs import RightHandSide
+    from eomgen.codegen import RightHandSide
 
 
 @growing()
@@ -43,13 +39,7 @@ def certify(
         begins: True if their motion begins as the model's does; what is requested at rest has no start speeds.
     """
     trials = Trials(equations)
-    claims = [identities.rates(equations), *identities.routes(equations)]
-    claims += [identities.mass_matrix(equations), identities.energy(equations)]
-    if derived is not None:
-        claims.append(identities.derivation(equations, derived))
-    if equations.J:
-        claims.append(identities.closing_rows(equations))
-    checks = [*identities.compared(claims, trials.states), trials.places(), trials.twists()]
+    checks = [*identity_checks(equations, derived, trials.states), trials.places(), trials.twists()]
     if trials.given:
         checks.append(trials.given_motions())
     if equations.system.elimination is not None:

@@ -29,6 +29,7 @@ from eomgen.cli_options import (
     OUTPUT,
     form_requested,
     refuse_idle,
+    refuse_other_endings,
     time_typed,
     with_form,
     with_picture,
@@ -40,9 +41,8 @@ from eomgen.version import __version__
 REST = "at rest"  # of --from-rest without a value
 
 if TYPE_CHECKING:
-    from eomgen.documents.document import Document
-    from eomgen.documents.result import Result
-    from eomgen.model.parts import Model
+    from eomgen.documents import Document, Result
+    from eomgen.model import Model
 
 
 @click.group(cls=Verbs, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -61,7 +61,7 @@ def main() -> None:
 @JSON
 def new_command(name: str, example: str | None, wants_json: bool) -> int:
     """Write a commented starter model NAME.toml."""
-    from eomgen.verbs.new import new_document as made
+    from eomgen.verbs import new_document as made
 
     return deliver(made(name, example), form_requested(wants_json, None))
 
@@ -71,7 +71,7 @@ def new_command(name: str, example: str | None, wants_json: bool) -> int:
 @OUTPUT
 def examples_command(wants_json: bool, output: str | None) -> int:
     """List the models that ship."""
-    from eomgen.verbs.examples import examples_document as shipped
+    from eomgen.verbs import examples_document as shipped
 
     return deliver(shipped(), form_requested(wants_json, None, output), output)
 
@@ -90,9 +90,12 @@ def import_command(file: str, wants_json: bool, output: str | None, floating: bo
     Bodies, joints, inertias, dampers, motors as inputs, joints that mimic others as constraints, limits as remarks.
     What has no counterpart is listed: on stderr, at the end of the file, and as left_out in JSON.
     """
-    from eomgen.verbs.importing import import_document, refuse_other_endings
+    from eomgen.verbs import import_document
 
-    refuse_other_endings(output)
+    if output is not None:
+        refuse_other_endings(
+            output, (".toml",), f"'{output}' is no name for a model file: the ending is .toml", "name it so"
+        )
     document = import_document(file, output=output, floating=floating, model=model)
     return deliver(document, form_requested(wants_json, None))
 
@@ -108,9 +111,9 @@ def export_command(model: str, wants_json: bool, output: str, strict: bool, **op
     Links on hinges, slides and free joints, inertias, dampers, motors, coordinates that follow others. What URDF cannot
     say is listed.
     """
-    from eomgen.verbs.exporting import export_document, refuse_strange_endings
+    from eomgen.verbs import export_document
 
-    refuse_strange_endings(output)
+    refuse_other_endings(output, (".urdf",), f"'{output}' is no name for a robot: the ending is .urdf")
     with reading(model) as source:
         document = requested_document(export_document, source, options, output=output)
     return deliver(document, form_requested(wants_json, None), strict=strict)
@@ -130,7 +133,7 @@ def check_command(
     By rank and by formula; which constraints close loops and which only give reactions, which are redundant, which
     velocity constraints are integrable; the assembly of the loops at the start, and the other possible ones.
     """
-    from eomgen.verbs.check import check_document
+    from eomgen.verbs import check_document
 
     if len(models) == 1:
         options |= {"wants_json": wants_json, "output": output, "format_": format_}
@@ -176,7 +179,7 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
 
 
 def _derived(model: Model, **requested: Any) -> Document:
-    from eomgen.verbs.derive import derive_document
+    from eomgen.verbs import derive_document
 
     return derive_document(model, **requested)
 
@@ -185,13 +188,13 @@ def _cached_derivation(
     *, model: str, wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
 ) -> int:
     """Writes the cached derivation, else makes it, and caches it where its proof holds; returns the exit code."""
-    from eomgen.verbs.cached_derivation import cached_derivation
+    from eomgen.verbs import cached_derivation
 
     form = form_requested(wants_json, format_, output)
     with reading(model) as source:
         declared = source.model
         if options["set_"] or options["start"]:
-            from eomgen.verbs.assignments import typed
+            from eomgen.verbs import typed
 
             declared = typed(source.model, options)[0].model
         before = cached_derivation(source.data, source.name, declared, {**options, "form": form, "strict": strict})
@@ -211,7 +214,7 @@ def _cached_derivation(
 @CERTIFY
 def solve_command(**options: Any) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
-    from eomgen.verbs.solve import solve_document
+    from eomgen.verbs import solve_document
 
     return write_requested(solve_document, **options)
 
@@ -241,7 +244,7 @@ def reactions_command(**options: Any) -> int:
     rates with its number at the start; with --at, exactly and as a number at that instant. --plot draws them along the
     motion from the start.
     """
-    from eomgen.verbs.reactions import reactions_document
+    from eomgen.verbs import reactions_document
 
     drawn = (options["plot"] is not None, OF_PLOT)
     refuse_idle(view=drawn, time=(drawn[0], "says how much --plot draws: give both"))
@@ -259,7 +262,7 @@ def statics_command(**options: Any) -> int:
     the mechanism that its release leaves, and by equilibrium; members of trusses; N, V and M along its beams. For a
     system that is free to move: its equilibria and their stability.
     """
-    from eomgen.documents.statics.result import statics
+    from eomgen.documents import statics
 
     return write_result(statics, **options)
 
@@ -281,7 +284,7 @@ def kinematics_command(**options: Any) -> int:
     rotation with the lines on which they are found, angular velocities, velocities and accelerations of points, kinds
     of motion.
     """
-    from eomgen.verbs.kinematics import kinematics_requested
+    from eomgen.verbs import kinematics_requested
 
     return write_result(kinematics_requested, at_start=True, **options)
 
@@ -297,7 +300,7 @@ def inertia_command(**options: Any) -> int:
     For each body and for all together; for a body of parts, the contribution of each. The products of inertia have both
     signs: that of the tensor (minus) and that of textbooks (plus).
     """
-    from eomgen.documents.inertia.result import inertia
+    from eomgen.documents import inertia
 
     return write_result(inertia, at_start=True, **options)
 
@@ -325,8 +328,8 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
-    from eomgen.documents.linearize.result import linearize
-    from eomgen.model.replaced import range_of
+    from eomgen.documents import linearize
+    from eomgen.model import range_of
 
     refuse_idle(view=(options["plot"] is not None, OF_PLOT))
     if (over is not None) != (view == "locus"):
@@ -379,7 +382,7 @@ def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
     EQUATIONS are text or LaTeX (- reads them from stdin): equations of motion, T, V, Q(theta), reactions, any function
     that an output may ask, first integrals, the motion as a function of time. Exit 0 right, 5 wrong, 3 undecided.
     """
-    from eomgen.verbs.verify import verify_document
+    from eomgen.verbs import verify_document
 
     placed = tuple(each for each in from_rest if each != REST)
 

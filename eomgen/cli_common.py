@@ -22,14 +22,13 @@ from eomgen.cli_errors import INTERRUPTED, Placed, failure, guarded, problems_of
 from eomgen.cli_options import form_requested
 from eomgen.errors import DerivationError, EomgenError, ModelError, OpenConstraints, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.text import other_words
-from eomgen.symbolic.numeric.work import doing, growing, patience, seldom
+from eomgen.symbolic.expression import other_words
+from eomgen.symbolic.numeric import doing, growing, patience, seldom
 from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:
-    from eomgen.documents.document import Document
-    from eomgen.documents.result import Result
-    from eomgen.model.parts import Model
+    from eomgen.documents import Document, Result
+    from eomgen.model import Model
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
 
@@ -128,7 +127,7 @@ class Source:
 
     def warned(self, document: Document, model: Model) -> Document:
         """The document of a model made of it; cautions about the model get their place in the text."""
-        from eomgen.model.reader import located, warned
+        from eomgen.model import located, warned
 
         own = tuple(located(problem, self.data, self.name) for problem in document.cautions)
         return replace(document, cautions=(*warned(model, self.data, self.name), *own))
@@ -168,8 +167,7 @@ def delivery_of(document: Document, form: str, *, strict: bool = False) -> Deliv
     Args:
         strict: warnings end in exit 1.
     """
-    from eomgen.documents import rendered
-    from eomgen.documents.proven import proven_as
+    from eomgen.documents import proven_as, rendered
 
     document = proven_as(document, form)
     taken = [f"taken: {each}" for each in document.taken]
@@ -201,8 +199,7 @@ def deliver_several(
 
     The problems of a wrong model are reported, and the next one follows.
     """
-    from eomgen.documents import rendered
-    from eomgen.documents.proven import proven_as
+    from eomgen.documents import proven_as, rendered
 
     code, results = 0, []
     for path in paths:
@@ -236,8 +233,8 @@ def put(text: str, output: str | None = None) -> None:
 @contextmanager
 def reading(path: str) -> Iterator[Source]:
     """The model of a file (- is stdin); what a verb finds wrong with one of its parts is reported at its place."""
-    from eomgen.model.reader import bytes_at, loads, located
-    from eomgen.proof.declared_numbers import numbers_otherwise
+    from eomgen.model import bytes_at, loads, located
+    from eomgen.proof import numbers_otherwise
 
     if path == "-" and sys.stdin is None:
         raise UsageError("there is no model on stdin: it is closed", fix="name a file")
@@ -256,7 +253,7 @@ def reading(path: str) -> Iterator[Source]:
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
     """The model, coordinates and inputs through the samples of files."""
-    from eomgen.verbs.csv_inputs import following
+    from eomgen.verbs import following
 
     return following(declared, follow) if follow else declared
 
@@ -287,13 +284,13 @@ def requested_document(
     **more: Any,
 ) -> Document:
     """The document of a verb for what was typed, in the units of the file; what was taken, and warnings, are in it."""
-    from eomgen.verbs.assignments import typed
+    from eomgen.verbs import typed
 
     valued, rest = typed(_followed(source.model, follow), options)
     try:
         document = made(valued.model, **rest, **more)
     except OpenConstraints as error:
-        from eomgen.verbs.outcome import named_open
+        from eomgen.verbs import named_open
 
         raise named_open(valued.model, error) from error
     document = replace(document, taken=(*valued.taken, *document.taken))
@@ -304,7 +301,7 @@ def write_result(
     found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
 ) -> int:
     """Writes the result of a verb, at the start or elsewhere, with its plot and its proof where these are requested."""
-    from eomgen.verbs.outcome import shown, with_start_reported
+    from eomgen.verbs import shown, with_start_reported
 
     def made(declared: Model, **requested: Any) -> Document:
         with growing():

@@ -25,7 +25,7 @@ from typing import Any
 import click
 
 from eomgen.errors import EomgenError, ModelError, Problem, ToolMissing, WriteFailed, visible
-from eomgen.symbolic.expression.text import spelled
+from eomgen.symbolic.expression import spelled
 from eomgen.version import SCHEMA_VERSION, __version__
 
 MEMORY, INTERNAL, INTERRUPTED, CLOSED_PIPE = 3, 70, 130, 141

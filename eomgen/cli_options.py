@@ -69,12 +69,24 @@ def time_typed(typed: object) -> float:
         BadParameter: it is none.
     """
     from eomgen.errors import UsageError
-    from eomgen.symbolic.expression.units import seconds
+    from eomgen.symbolic.expression import seconds
 
     try:
         return seconds(typed)
     except UsageError as error:
         raise click.BadParameter(f"{error.what}; {error.fix}") from None
+
+
+def refuse_other_endings(path: str, endings: tuple[str, ...], what: str, fix: str = "name it so") -> None:
+    """Refuses the name of a file that has none of these endings, before any work.
+
+    Raises:
+        UsageError: it has another; `what` says that, `fix` names those.
+    """
+    from eomgen.errors import UsageError
+
+    if Path(path).suffix.lower() not in endings:
+        raise UsageError(what, fix=fix)
 
 
 def refuse_idle(**heeded: tuple[bool, str]) -> None:

@@ -31,11 +31,12 @@ from eomgen.cli_options import (
     form_requested,
     refuse_beside,
     refuse_idle,
+    refuse_other_endings,
     with_form,
     with_values,
     words,
 )
-from eomgen.symbolic.numeric.tolerances import RUN
+from eomgen.symbolic.numeric import RUN
 
 VERB = partial(click.command, cls=Verb)
 
@@ -113,8 +114,8 @@ def simulate_command(
     The run continues through every change of contact: opening, closing, sliding, sticking. Reactions and outputs are
     columns. Constraints are stabilized; their errors and that of the energy are reported.
     """
-    from eomgen.simulation.integrator import RATES, Stepping
-    from eomgen.verbs.simulate import simulate_document as simulated
+    from eomgen.simulation import RATES, Stepping
+    from eomgen.verbs import simulate_document as simulated
 
     if baumgarte and stabilize != "baumgarte":
         raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
@@ -180,7 +181,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     repeats one run.
     """
     from eomgen.sweeps import Stepped
-    from eomgen.verbs.sweep import SweepRequested, replay_document, sweep_document
+    from eomgen.verbs import SweepRequested, replay_document, sweep_document
 
     form, drawn = form_requested(wants_json, None), bool(options["random"])
     refuse_idle(
@@ -224,7 +225,7 @@ def identify_command(**options: Any) -> int:
     The base parameters by least squares, with their formulas and deviations; how well the motion identifies them; and
     parameters of bodies of positive density that fit. Without --data, the groups that motions can identify.
     """
-    from eomgen.verbs.identify import identify_document
+    from eomgen.verbs import identify_document
 
     return write_requested(identify_document, **options)
 
@@ -247,7 +248,7 @@ def identify_command(**options: Any) -> int:
 @click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Number of frames of a strip.")
 def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
     """Show the motion, small motions, or a virtual displacement."""
-    from eomgen.verbs.animate import Showing, animate_document, refuse_ending
+    from eomgen.verbs import Showing, animate_document, refuse_ending
 
     refuse_ending(output)
     ending, swings = Path(output).suffix.lower(), options["modes"] is not None or options["virtual"] is not None
@@ -314,8 +315,8 @@ def codegen_command(
     **options: Any,
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
-    from eomgen.verbs.codegen import codegen_document as generated
-    from eomgen.verbs.codegen import languages
+    from eomgen.verbs import codegen_document as generated
+    from eomgen.verbs import languages
 
     if wants_list:
         refuse_beside("--list", ("wants_list", "wants_json", "strict"))
@@ -369,9 +370,9 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
     Sliders for parameters and starts, bodies to drag, plots, energy; it needs no network. Models whose contacts change
     play the recorded run.
     """
-    from eomgen.verbs.play import play_document, refuse_other_endings
+    from eomgen.verbs import play_document
 
-    refuse_other_endings(output)
+    refuse_other_endings(output, (".html", ".htm"), f"no page can be written as '{output}'", "the ending is .html")
     with reading(model) as source:
         document = requested_document(play_document, source, options, output=output)
     return deliver(document, form_requested(wants_json, None), strict=strict)
@@ -398,7 +399,7 @@ def report_command(model: str, wants_json: bool, output: str, strict: bool, **op
     Its figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the model. Sections:
     figure data derivation reactions statics kinematics inertia outputs linearize plots motion certificate downloads.
     """
-    from eomgen.verbs.report import form_of, report_document
+    from eomgen.verbs import form_of, report_document
 
     form_of(output)  # refused before any work
     with reading(model) as source:
@@ -413,7 +414,7 @@ def report_command(model: str, wants_json: bool, output: str, strict: bool, **op
 @OUTPUT
 def schema_command(wants_json: bool, output: str | None) -> int:
     """Write the JSON Schema of a model file, for editors."""
-    from eomgen.verbs.schema import schema_document as written
+    from eomgen.verbs import schema_document as written
 
     form_requested(wants_json, None, output)  # refuses other endings; of .json the text is one already
     return deliver(written(), form_requested(wants_json, None), output)
@@ -424,7 +425,7 @@ def schema_command(wants_json: bool, output: str | None) -> int:
 @OUTPUT
 def doctor_command(wants_json: bool, output: str | None) -> int:
     """Report what this machine can do."""
-    from eomgen.verbs.doctor import doctor_document as examined
+    from eomgen.verbs import doctor_document as examined
 
     return deliver(examined(), form_requested(wants_json, None, output), output)
 

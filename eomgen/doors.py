@@ -27,7 +27,8 @@ def door(package: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], l
         if name not in homes:
             raise AttributeError(f"module '{package}' has no attribute '{name}'")
         home = import_module(homes[name])
-        value = getattr(home, name) if hasattr(home, name) else import_module(f"{homes[name]}.{name}")
+        in_home = home is not own and hasattr(home, name)
+        value = getattr(home, name) if in_home else import_module(f"{homes[name]}.{name}")
         setattr(own, name, value)
         return value
 

@@ -10,43 +10,51 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.certificate import certify
-from eomgen.codegen.program import Program
-from eomgen.codegen.programs import (
+from eomgen.codegen import (
     InverseDynamics,
+    Program,
     RateSlopes,
     ReactionFunction,
     RequestedOutputs,
+    RightHandSide,
+    compiled,
+    parameter_vector,
 )
-from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
-from eomgen.documents.derivation import derivation_of, printed_formulas
-from eomgen.documents.document import Document
-from eomgen.documents.json_form import Texts, equations_payload, payload_texts
-from eomgen.documents.latex import equations_latex
-from eomgen.documents.motion_steps import assumption_steps
-from eomgen.documents.proven import proven
-from eomgen.documents.reaction_steps import letters_of
-from eomgen.documents.result import Result
+from eomgen.documents import (
+    Document,
+    Result,
+    Texts,
+    assumption_steps,
+    derivation_of,
+    equations_latex,
+    equations_payload,
+    letters_of,
+    payload_texts,
+    printed_formulas,
+    proven,
+)
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.formulations import derived_by, reported_of_nodes
-from eomgen.mechanics.dynamics.matrices import coriolis_of, gravity_of, jacobian_of_point
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
-from eomgen.mechanics.reactions.inverse import inverse_of
-from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.mechanics.start.state import start_state
-from eomgen.model.diagnostics import nearest
-from eomgen.model.parts import Model
-from eomgen.proof.check import Certificate
-from eomgen.proof.printed import Printed
+from eomgen.mechanics.dynamics import (
+    EquationsOfMotion,
+    System,
+    coriolis_of,
+    derived_by,
+    gravity_of,
+    jacobian_of_point,
+    reported_of_nodes,
+    system_of,
+)
+from eomgen.mechanics.free_bodies import equations_of_motion
+from eomgen.mechanics.reactions import Reactions, inverse_of
+from eomgen.mechanics.start import start_state
+from eomgen.model import Model, nearest
+from eomgen.proof import Certificate, Printed
 from eomgen.study import Study
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.text import as_expression
-from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.work import Work, doing
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.expression import Scalar, as_expression, operations
+from eomgen.symbolic.numeric import FLOAT, Work, doing, evaluate
+from eomgen.symbolic.print import text_size
 
 if TYPE_CHECKING:
     pass
@@ -117,7 +125,7 @@ class Equations(Result):
 
         equations.M.subs({equations.symbols["m"]: 2})
         """
-        from eomgen.symbolic.print.sympy_form import symbol
+        from eomgen.symbolic.print import symbol
 
         own = self.graph.symbols
         named = (own.t, *own.parameters.values(), *own.inputs.values(), *own.q, *own.u, *own.a, *own.lam)
@@ -176,7 +184,7 @@ class Equations(Result):
         Raises:
             MissingValues: parameters without values.
         """
-        from eomgen.mechanics.linearization.first_order import slopes_at
+        from eomgen.mechanics.linearization import slopes_at
 
         s = self.graph.symbols
         values = (t, *(parameter_vector(self.model) if p is None else p), *(self.start() if x is None else x))
@@ -194,7 +202,7 @@ class Equations(Result):
         Raises:
             DerivationError: friction that depends on the reactions.
         """
-        from eomgen.mechanics.dynamics.matrices import sympy_system
+        from eomgen.mechanics.dynamics import sympy_system
 
         return sympy_system(self.graph)
 
@@ -218,7 +226,7 @@ class Equations(Result):
         """The sympy expression that replaces a name."""
         import sympy
 
-        from eomgen.symbolic.print.sympy_form import to_sympy
+        from eomgen.symbolic.print import to_sympy
 
         if isinstance(given, str):
             return to_sympy([self.system.scope.value(as_expression(given))])[0]
@@ -448,7 +456,7 @@ def _matrix(rows: Sequence[Sequence[Any]], columns: int) -> Any:
     """Graph scalars as a sympy matrix: as a person writes them where they are few, else sub-expressions shared."""
     import sympy
 
-    from eomgen.symbolic.print.sympy_form import to_sympy
+    from eomgen.symbolic.print import to_sympy
 
     entries = [x for row in rows for x in row]
     written = _written(entries) if operations(entries).total <= FEW else entries

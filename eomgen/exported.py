@@ -12,21 +12,25 @@ from collections.abc import Sequence
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen import parameter_vector
 from eomgen.errors import DerivationError, visible
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.model.forces.load import UniformField
-from eomgen.model.reader import ModelOrPath
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import GROUND, BodyLink, mass_properties
+from eomgen.model import ModelOrPath, UniformField
 from eomgen.pipeline import derive
 from eomgen.robots import UNLIMITED, LeftOut, LegalNames, remarked
-from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.spatial import Pose, minus
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import ROUNDING
+from eomgen.symbolic.expression import (
+    Pose,
+    Scalar,
+    depends_on,
+    depends_on_any,
+    gradient,
+    minus,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import FLOAT, ROUNDING, evaluate
 
 STANDING = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]  # p, R of the ground
 G = 9.81  # of what reads URDF, downward along z [m/s^2]

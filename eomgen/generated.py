@@ -12,11 +12,10 @@ import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.certificate import certify
-from eomgen.codegen.program import Program, Solve, program_of, stem_of
-from eomgen.codegen.programs import Blocks, entries_of, matrices_of, program_of_blocks
-from eomgen.codegen.rhs import RightHandSide, target_named
-from eomgen.codegen.targets import ALL
-from eomgen.codegen.targets.base import (
+from eomgen.codegen import (
+    ALL as TARGETS,
+)
+from eomgen.codegen import (
     INVERSE,
     JACOBIAN,
     MATRICES,
@@ -24,40 +23,53 @@ from eomgen.codegen.targets.base import (
     REACTIONS,
     REGRESSOR,
     RHS,
+    RUN_USE,
+    Blocks,
     Description,
     Emitted,
     FileContent,
+    Program,
+    RightHandSide,
     Role,
+    Solve,
     TestVector,
+    entries_of,
+    integrator_files,
+    matrices_of,
+    program_of,
+    program_of_blocks,
+    single_error,
+    single_vectors,
+    stem_of,
+    target_named,
+    texts_of,
+    vectors,
 )
-from eomgen.codegen.targets.c_lanes import RUN_USE, integrator_files
-from eomgen.codegen.vectors import single_error, single_vectors, texts_of, vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
 from eomgen.identification import Regressor, groups_checked, regressor_of
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
-from eomgen.model.contacts import contacts_of
-from eomgen.model.parts import Model
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values
-from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.proof.emitted_code import (
+from eomgen.mechanics.dynamics import with_nodes_balanced
+from eomgen.mechanics.free_bodies import named_reactions
+from eomgen.model import Model, ModelOrPath, Values, contacts_of, model_at
+from eomgen.proof import (
+    Certificate,
+    Check,
     Judged,
     PhaseMotion,
     TriedState,
     Written,
+    checked,
+    consistent_states,
     fmu_reported,
     start_state_tried,
+    unchecked,
     unwritten,
 )
-from eomgen.proof.states import consistent_states
 from eomgen.questions import pulling
-from eomgen.simulation.contacts import paths_of
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.numeric.tolerances import BEST, RUN, SINGLE
-from eomgen.symbolic.numeric.work import doing
+from eomgen.simulation import paths_of
+from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.numeric import BEST, RUN, SINGLE, doing
 from eomgen.version import __version__
 
 
@@ -405,7 +417,7 @@ def generate(
         _refuse_integrator(model, targets)
     doubles = [target for target in targets if target_named(target).single is None]  # refuses what is none
     if float32 and doubles:
-        some = ", ".join(target.name for target in ALL if target.single is not None)
+        some = ", ".join(target.name for target in TARGETS if target.single is not None)
         raise UsageError(f"no single precision in {', '.join(doubles)}: its numbers are doubles", fix=f"take {some}")
     equations = pipeline.derive(model)
     equations = equations if baumgarte is None else pulling(equations, baumgarte)

@@ -7,27 +7,22 @@ from collections.abc import Mapping, Sequence
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from eomgen.codegen.programs import InverseDynamics
+from eomgen.codegen import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import recalled
-from eomgen.mechanics.constraints.rows import limits_passed
-from eomgen.mechanics.dynamics.formulations import METHODS, with_nodes_balanced
-from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values, with_inputs
-from eomgen.model.samples import left_tables
-from eomgen.model.unknowns import refuse_motion
+from eomgen.mechanics.constraints import limits_passed
+from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
+from eomgen.mechanics.kinematics import ContactModes
+from eomgen.model import ModelOrPath, Values, WrittenEquation, left_tables, model_at, refuse_motion, with_inputs
 from eomgen.study import Study, study_of, study_of_modes
-from eomgen.symbolic.expression.units import Typed
-from eomgen.symbolic.numeric.tolerances import RUN
-from eomgen.symbolic.numeric.work import doing, growing
+from eomgen.symbolic.expression import Typed
+from eomgen.symbolic.numeric import RUN, doing, growing
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
-    from eomgen.model.parts import Model
+    from eomgen.model import Model
     from eomgen.questions import Runs, Simulator
-    from eomgen.simulation.result import Trajectory
+    from eomgen.simulation import Trajectory
 
 
 @growing()
@@ -96,7 +91,7 @@ def simulator(
         rtol, atol, target, method, stabilization: as of `simulate`.
     """
     from eomgen.questions import Simulator
-    from eomgen.simulation.integrator import Stepping
+    from eomgen.simulation import Stepping
 
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
     return Simulator(with_nodes_balanced(model_at(model)), derive, how, target)
@@ -170,13 +165,13 @@ def simulate(
         MissingValues: parameters without a value, all named.
     """
     from eomgen.questions import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
-    from eomgen.simulation.integrate import SAMPLES
+    from eomgen.simulation import SAMPLES
 
     model = with_nodes_balanced(model_at(model, parameters, start))
     controllers = controllers_of(model, inputs or {})
     model = with_inputs(model, {name: value for name, value in (inputs or {}).items() if name not in controllers})
     if controllers:
-        from eomgen.simulation.integrator import Stepping
+        from eomgen.simulation import Stepping
 
         if until is not None:
             raise UsageError("a run with controllers ends with its time", fix="leave `until` out")
@@ -197,7 +192,7 @@ def simulate(
 
 def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning to the caller."""
-    from eomgen.simulation.result import OnDemand
+    from eomgen.simulation import OnDemand
 
     passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])
     for problem in (*left_tables(model, float(found.t[-1]) if len(found.t) else 0.0), *passed):

@@ -23,41 +23,45 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import MissingValues
 from eomgen.frozen import dataclass, recalled
-from eomgen.mechanics.constraints.rank import degrees_of_freedom
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
-from eomgen.mechanics.dynamics.pieces import refuse_jump, signs_of_rates
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
-from eomgen.mechanics.dynamics.wellposed import refuse_massless
-from eomgen.mechanics.free_bodies.balance import still
-from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_rest
-from eomgen.mechanics.free_bodies.solution import values_at_a_state
-from eomgen.mechanics.instant.quantities import Quantities, requests_of
-from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.mechanics.start.exact import ExactStart, known_exactly
-from eomgen.mechanics.start.state import start_state
-from eomgen.mechanics.statics.contacts import contacts_at_start
-from eomgen.model.outputs.base import BALANCE, MASSES
-from eomgen.model.parts import Model
-from eomgen.model.unknowns import in_loads, refuse_motion
-from eomgen.symbolic.exact.normal_form import legible, readable_all
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.numeric.work import Work, growing
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import LinearSystem, general_solution
+from eomgen.mechanics.constraints import degrees_of_freedom, holds_identically
+from eomgen.mechanics.dynamics import (
+    EquationsOfMotion,
+    System,
+    bordered_rows,
+    by_short_rows,
+    refuse_jump,
+    refuse_massless,
+    regular_rows,
+    signs_of_rates,
+    system_of,
+    with_accelerations,
+)
+from eomgen.mechanics.free_bodies import equations_of_motion, still, values_at_a_state, with_rest
+from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.kinematics import ContactModes
+from eomgen.mechanics.start import ExactStart, known_exactly, start_state
+from eomgen.mechanics.statics import contacts_at_start
+from eomgen.model import BALANCE, MASSES, Model, in_loads, refuse_motion
+from eomgen.symbolic.exact import legible, readable_all
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    State,
+    depends_on,
+    substituted,
+)
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, Work, evaluate, growing, number_of, numbers_of
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import LinearSystem, general_solution
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
-    from eomgen.codegen.program import Program
-    from eomgen.codegen.programs import RateSlopes, RequestedOutputs
-    from eomgen.mechanics.linearization.first_order import FirstOrder
-    from eomgen.mechanics.reactions.reactions import Reactions
+    from eomgen.codegen import Program, RateSlopes, RequestedOutputs
+    from eomgen.mechanics.linearization import FirstOrder
+    from eomgen.mechanics.reactions import Reactions
 
 LONG = 400  # characters from which a formula is no easier to read than it came
 NO_FORMULA = 10 * LONG  # characters of an unreadable formula: rows are shortened before they are eliminated
@@ -113,7 +117,7 @@ class Study:
         Raises:
             ModelError: a free coordinate moves no mass.
         """
-        from eomgen.codegen.program import right_hand_side
+        from eomgen.codegen import right_hand_side
 
         refuse_massless(self.derived)
         with growing():
@@ -126,7 +130,7 @@ class Study:
         Raises:
             DerivationError: the mass matrix is singular whatever the state.
         """
-        from eomgen.codegen.programs import slopes_of
+        from eomgen.codegen import slopes_of
 
         refuse_massless(self.derived)
         return slopes_of(self.explicit)
@@ -134,7 +138,7 @@ class Study:
     @cached_property
     def first_order(self) -> FirstOrder:
         """The linearized equations beside any motion, for numbers at a state."""
-        from eomgen.mechanics.linearization.first_order import FirstOrder
+        from eomgen.mechanics.linearization import FirstOrder
 
         return FirstOrder(self.system, ())
 
@@ -147,14 +151,14 @@ class Study:
         Raises:
             DerivationError: an unsupported body; a force that acts at no place.
         """
-        from eomgen.mechanics.reactions.reactions import reactions_of
+        from eomgen.mechanics.reactions import reactions_of
 
         return reactions_of(self.system)
 
     @cached_property
     def reaction_values(self) -> dict[str, Scalar]:
         """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
-        from eomgen.codegen.programs import determinate
+        from eomgen.codegen import determinate
 
         values = determinate(self.reactions)
         return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
@@ -162,7 +166,7 @@ class Study:
     @cached_property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
-        from eomgen.codegen.programs import reactions_program
+        from eomgen.codegen import reactions_program
 
         refuse_massless(self.derived)
         return reactions_program(self.reaction_values, self.explicit)
@@ -170,7 +174,7 @@ class Study:
     @cached_property
     def requested_outputs(self) -> RequestedOutputs:
         """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
-        from eomgen.codegen.programs import outputs_of_state
+        from eomgen.codegen import outputs_of_state
 
         found = outputs_of_state(self.system)
         values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
@@ -179,7 +183,7 @@ class Study:
     @cached_property
     def outputs_program(self) -> Program:
         """The outputs that are functions of the state; accelerations as in the right-hand side."""
-        from eomgen.codegen.programs import reactions_program
+        from eomgen.codegen import reactions_program
 
         refuse_massless(self.derived)
         return reactions_program(self.requested_outputs.values, self.explicit)[1]
@@ -213,7 +217,7 @@ class Study:
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
         """Accelerations and multipliers as functions of q, u, t and inputs."""
-        from eomgen.codegen.programs import accelerations_and_multipliers
+        from eomgen.codegen import accelerations_and_multipliers
 
         found = accelerations_and_multipliers(self.equations)
         size = max(map(text_size, found.values()), default=0)
@@ -435,7 +439,7 @@ def study_of(model: Model) -> Study:
 
 def study_at_rest(model: Model) -> Study:
     """The study of a model with its contacts as they are where it rests; of one frozen model it is made once."""
-    from eomgen.mechanics.equilibrium.contacts_at_rest import contacts_at_rest
+    from eomgen.mechanics.equilibrium import contacts_at_rest
 
     def made() -> Study:
         modes, assumptions = contacts_at_rest(model)

@@ -12,7 +12,7 @@ from eomgen.judge.balances import Balances
 from eomgen.judge.case import Case
 from eomgen.judge.cut_bodies import cut_beam, what_acts
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 
 MODELS = Path(__file__).parent.parent / "models"
 MISTAKES = Path(__file__).parent / "helpers" / "cut_mistakes"

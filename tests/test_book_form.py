@@ -9,8 +9,8 @@ from each import each
 from slow_run import usual
 
 from eomgen.documents.latex_math import Notation, Setter
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.normal_form import equal, readable
+from eomgen.symbolic.exact.book_forms import book_form
+from eomgen.symbolic.exact.normal_forms import equal, readable
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.text import parse

@@ -10,7 +10,7 @@ from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
 
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import (
+from eomgen.symbolic.expression.derivatives import (
     depends_on,
     derivative,
     gradient,

@@ -9,13 +9,13 @@ import pytest
 from matplotlib.figure import Figure
 
 import eomgen
+from eomgen.documents.at_rest.pictures import diagram_panels, influence_panel
 from eomgen.documents.letters import NamesArtist
-from eomgen.documents.statics.pictures import diagram_panels, influence_panel
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.rigidity.structure import structure_of
+from eomgen.mechanics.statics.forces_in_sections import section_forces
 from eomgen.mechanics.statics.influence import influence_line
-from eomgen.mechanics.statics.section_forces import section_forces
 
 BEAM = """
 eomgen = 1

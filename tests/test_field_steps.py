@@ -15,7 +15,7 @@ from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
 from eomgen.questions.at_instant import parameters_of
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.study import Study
-from eomgen.symbolic.exact.normal_form import equal
+from eomgen.symbolic.exact.normal_forms import equal
 from eomgen.symbolic.expression.text import parse
 
 TURNTABLE = """

@@ -26,7 +26,7 @@ from eomgen.identification.regressors import Regressor, regressor_of
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 from tests.helpers.rx90 import PUBLISHED, rx90
 
 MODELS = Path(__file__).parent.parent / "models"

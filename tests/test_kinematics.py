@@ -15,7 +15,7 @@ from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.motion import slide_of, velocity_of
 from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.spatial import ZERO, apply
 from eomgen.symbolic.expression.text import parse
 

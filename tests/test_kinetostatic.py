@@ -17,12 +17,12 @@ from eomgen.documents.statements import Formula
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.verbs.reactions import reactions

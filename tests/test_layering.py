@@ -241,6 +241,29 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "identification": 6,
     "page": 29,
     "judge": 9,
+    "verbs": 31,
+    "codegen": 69,
+    "simulation": 57,
+    "documents": 97,
+    "proof": 115,
+    "model": 159,
+    "mechanics.kinematics": 70,
+    "mechanics.constraints": 59,
+    "mechanics.dynamics": 58,
+    "mechanics.start": 21,
+    "mechanics.free_bodies": 43,
+    "mechanics.rigidity": 11,
+    "mechanics.reactions": 13,
+    "mechanics.statics": 25,
+    "mechanics.integrals": 14,
+    "mechanics.instant": 25,
+    "mechanics.equilibrium": 19,
+    "mechanics.linearization": 26,
+    "symbolic.expression": 123,
+    "symbolic.numeric": 139,
+    "symbolic.print": 33,
+    "symbolic.exact": 44,
+    "symbolic.solve": 22,
 }
 
 
@@ -250,25 +273,32 @@ def given(package: str) -> set[str]:
     return set(re.findall(r"^from \S+ import (\w+) as \1$", stub, re.M))
 
 
+def inside(name: str, package: str) -> bool:
+    """True if a module is the package, or stands in it."""
+    return f"{name}.".startswith(f"{package}.")
+
+
 @pytest.mark.parametrize("own", DOORS)
 def test_a_room_with_a_door_is_entered_by_its_door(own):
-    """Other rooms import from the package alone, only what its stub names; and all that it names is used."""
+    """Others import from the package alone, only what its stub names; and all that it names is used."""
+    package = f"eomgen.{own}"
     used = given("eomgen")
     for name, path in module_names(PACKAGE).items():
-        if room(name) == own or name == "eomgen":
+        if inside(name, package) or name == "eomgen":
             continue
         for node in import_statements(path):
-            if isinstance(node, ast.ImportFrom) and room(node.module or "") == own:
+            if isinstance(node, ast.ImportFrom) and inside(node.module or "", package):
                 names = {alias.name for alias in node.names}
-                assert node.module == f"eomgen.{own}" and names <= given(node.module), f"{name}:{node.lineno}"
+                assert node.module == package and names <= given(package), f"{name}:{node.lineno}"
                 used |= names
-    assert given(f"eomgen.{own}") <= used
-    assert len(given(f"eomgen.{own}")) <= DOORS[own]
+    assert given(package) <= used
+    assert len(given(package)) <= DOORS[own]
 
 
 def test_all_rooms_with_a_stub_have_a_door_here():
     """A stub beside `__init__` is a door, and a door is kept."""
-    assert {path.parent.name for path in PACKAGE.glob("*/__init__.pyi")} == DOORS.keys()
+    stubs = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("*/**/__init__.pyi")}
+    assert {".".join(folder.parts) for folder in stubs} == DOORS.keys()
 
 
 def test_the_page_of_the_house_names_every_room_and_no_module_that_is_gone():
@@ -333,7 +363,7 @@ def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     assert len(house.chapters) <= 335
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 55
-    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 1070
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 1047
 
 
 OF_POSIX = {"resource", "fcntl", "pwd", "grp", "termios", "tty", "pty", "syslog"}

@@ -7,7 +7,7 @@ from fractions import Fraction
 from each import each
 
 from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
-from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.derivatives import symbols_of
 from eomgen.symbolic.expression.formula import cos, function, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node

@@ -14,7 +14,7 @@ from slow_run import usual
 import eomgen
 from eomgen.cli import main
 from eomgen.documents import rendered
-from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.book_forms import book_form
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import MET_AT_50

@@ -13,10 +13,10 @@ from eomgen.errors import MissingValues, ModelError
 from eomgen.model.fields import Table
 from eomgen.model.forces import Distributed, Gravity
 from eomgen.model.joints import Placed, Revolute
+from eomgen.model.likely_mistakes import unbuilt, unbuilt_constraints
 from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter, Piece
 from eomgen.model.reader import loads
 from eomgen.model.shapes import Disc, Rod
-from eomgen.model.unbuilt import unbuilt, unbuilt_constraints
 from eomgen.model.values import exact_parameters, numeric_parameters, start_values
 
 TEXT = """

@@ -22,8 +22,8 @@ from eomgen.cli import main
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.documents import moving_picture
-from eomgen.documents.linearize.result import linearize
 from eomgen.documents.moving_picture import FINE, frame_times, mode_movies, movie_of
+from eomgen.documents.small_motions.result import linearize
 from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.scene.bodies import parameters_as_drawn

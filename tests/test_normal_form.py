@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from random_expressions import on_graph, polynomials, smooth, trigonometric
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.exact import normal_form as normal_form_module
+from eomgen.symbolic.exact import normal_forms as normal_form_module
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.normal_form import (
+from eomgen.symbolic.exact.normal_forms import (
     cancelled,
     collected_in,
     common_factor,
@@ -25,7 +25,7 @@ from eomgen.symbolic.exact.normal_form import (
 )
 from eomgen.symbolic.exact.polynomials import power_form
 from eomgen.symbolic.exact.terms import TooLarge, wave
-from eomgen.symbolic.expression.derivative import gradient, tangent
+from eomgen.symbolic.expression.derivatives import gradient, tangent
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.print.text import to_text

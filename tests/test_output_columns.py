@@ -12,7 +12,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.model.fields import Table
-from eomgen.proof.run_reported import output_columns_hold
+from eomgen.proof.reported_run import output_columns_hold
 from eomgen.simulation.columns import formulas_of
 
 pytestmark = pytest.mark.slow

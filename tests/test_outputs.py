@@ -13,7 +13,7 @@ from eomgen.codegen.programs import accelerations_and_multipliers
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.derivatives import derivative
 from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, transposed
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

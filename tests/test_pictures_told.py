@@ -23,7 +23,7 @@ from eomgen.page.player import (
     player_read_back,
     player_reported,
 )
-from eomgen.proof.pictures_reported import pictures_reported, states_shown
+from eomgen.proof.reported_pictures import pictures_reported, states_shown
 from eomgen.scene.frames_of_phases import picture_reported
 from eomgen.scene.making import scene_of
 from eomgen.simulation.result import Trajectory

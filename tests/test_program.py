@@ -28,10 +28,10 @@ from eomgen.codegen.program import (
     traffic,
 )
 from eomgen.codegen.rhs import compiled
+from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.base import RHS
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.graph import Graph

@@ -15,7 +15,7 @@ from slow_run import usual
 import eomgen
 from eomgen.certificate import certify
 from eomgen.cli import main
-from eomgen.documents import proven as proof_of_texts
+from eomgen.documents import proven_documents as proof_of_texts
 from eomgen.documents import rendered
 from eomgen.documents.derivation import printed_formulas
 from eomgen.documents.document import Document

@@ -8,7 +8,7 @@ from random import Random
 import pytest
 from each import each
 
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.normal_forms import simplest
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.text import parse

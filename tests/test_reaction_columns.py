@@ -24,7 +24,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.model.values import numeric_parameters

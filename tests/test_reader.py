@@ -11,8 +11,8 @@ from each import each
 
 import eomgen
 from eomgen.errors import ModelError
+from eomgen.model.likely_mistakes import warnings_of
 from eomgen.model.reader import load, loads
-from eomgen.model.unbuilt import warnings_of
 
 MODELS = sorted((Path(__file__).parents[1] / "models").rglob("*.toml"))
 

@@ -28,14 +28,14 @@ from derivations import (
 from slow_run import ALL as ALL_MODELS
 from slow_run import usual
 
-from eomgen.documents import ALL, rendered
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
 from eomgen.documents.json_form import as_dict
 from eomgen.documents.latex import symbols_in
 from eomgen.documents.motion_steps import moved_coordinates
-from eomgen.documents.proven import proven
+from eomgen.documents.proven_documents import proven
 from eomgen.documents.reading import Reader
+from eomgen.documents.rendering import ALL, rendered
 from eomgen.documents.statements import MEANINGS, Entry, Formula, Name, Partial, Prose, Rate, Step, quantities
 from eomgen.documents.text import WIDTH, broken, formula_text
 from eomgen.equations import Equations
@@ -44,7 +44,7 @@ from eomgen.mechanics.dynamics.system import System, generalized_forces, per_spe
 from eomgen.mechanics.kinematics.inertia import kinetic_energy
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.derivatives import gradient, substituted
 from eomgen.symbolic.expression.formula import sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar

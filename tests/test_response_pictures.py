@@ -12,7 +12,7 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.documents.figures import VIEWS, resultants
-from eomgen.documents.linearize.pictures import dashes, roots_over
+from eomgen.documents.small_motions.pictures import dashes, roots_over
 from eomgen.model.replaced import range_of
 from eomgen.verbs.reaction_picture import turn_of
 

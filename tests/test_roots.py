@@ -7,7 +7,7 @@ import pytest
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.roots import is_root_of_sum, readable_over, rooted
 from eomgen.symbolic.exact.terms import TooLarge
-from eomgen.symbolic.expression.derivative import gradient, tangent
+from eomgen.symbolic.expression.derivatives import gradient, tangent
 from eomgen.symbolic.expression.formula import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Scalar

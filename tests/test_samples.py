@@ -18,8 +18,8 @@ import eomgen
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.errors import ModelError, UsageError
-from eomgen.model.samples import samples
-from eomgen.model.unbuilt import warnings_of
+from eomgen.model.likely_mistakes import warnings_of
+from eomgen.model.sampled_laws import samples
 from eomgen.simulation.solvers import METHODS
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.splines import Sampled, number_of_sampled, spline_of

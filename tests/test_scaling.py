@@ -5,7 +5,7 @@ from __future__ import annotations
 from fractions import Fraction
 
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.derivatives import symbols_of
 from eomgen.symbolic.expression.formula import sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node

@@ -21,7 +21,7 @@ from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import stabilized
 from eomgen.questions.single_run import page_time, run_of_a_page
 from eomgen.questions.single_run import run as run_equations
-from eomgen.simulation.integrate import drift_of, integrate
+from eomgen.simulation.integration import drift_of, integrate
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_model import slope_of
 from eomgen.simulation.result import Trajectory

@@ -19,8 +19,8 @@ from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
 from eomgen.codegen.programs import program_of_blocks, slopes_of
 from eomgen.codegen.rhs import compiled
+from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.c import C, c_text
-from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.node import is_zero

@@ -7,9 +7,9 @@ from random import Random
 
 import pytest
 
-from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.book_forms import book_form
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.normal_form import equal, readable
+from eomgen.symbolic.exact.normal_forms import equal, readable
 from eomgen.symbolic.exact.sums import with_squares
 from eomgen.symbolic.exact.unit_quaternions import of_one_degree, with_square_replaced
 from eomgen.symbolic.expression.graph import Graph

@@ -8,7 +8,7 @@ from random import Random
 
 import pytest
 
-from eomgen.symbolic.expression.derivative import gradient, jacobian
+from eomgen.symbolic.expression.derivatives import gradient, jacobian
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric import sure_digits
 from eomgen.symbolic.numeric.arithmetic import balls

@@ -23,9 +23,9 @@ from eomgen import files
 from eomgen.codegen import build
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
+from eomgen.codegen.right_answers import outputs_at, single_vectors, texts_of, vectors
 from eomgen.codegen.targets import ALL, wasm
 from eomgen.codegen.targets.base import REACTIONS, Description
-from eomgen.codegen.vectors import outputs_at, single_vectors, texts_of, vectors
 from eomgen.errors import DerivationError, UsageError
 from eomgen.proof.emitted_code import unwritten
 from eomgen.symbolic.expression.graph import Graph

@@ -12,8 +12,8 @@ from each import each
 
 import eomgen
 from eomgen.model.values import exact_parameters
-from eomgen.proof.run_reported import ReportedRun, run_reported
-from eomgen.proof.small_motions_reported import small_motions_reported
+from eomgen.proof.reported_run import ReportedRun, run_reported
+from eomgen.proof.reported_small_motions import small_motions_reported
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.simulate import _reported, _run_payload, _run_statements
@@ -135,7 +135,7 @@ def small() -> Any:
 
 
 def wrong_modes(change: Callable[[dict[str, Any]], None]) -> str:
-    from eomgen.documents.linearize.steps import printed_modes
+    from eomgen.documents.small_motions.steps import printed_modes
 
     entries = small().entries()
     change(entries)
@@ -203,8 +203,8 @@ pull = { kind = "force", point = "beam.B", force = ["F", 0] }
 
 
 def wrong_sections(change: Callable[[Any, Any], None]) -> str:
-    from eomgen.documents.statics.section_steps import reported_sections, section_payload, section_steps
-    from eomgen.proof.sections_reported import sections_reported
+    from eomgen.documents.at_rest.section_steps import reported_sections, section_payload, section_steps
+    from eomgen.proof.reported_sections import sections_reported
 
     sections = eomgen.statics(eomgen.loads(BEAM)).sections
     reported = dict(enumerate(reported_sections(sections, section_steps(sections), section_payload(sections))))
@@ -274,7 +274,7 @@ def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monk
 
 def reported_works(change=lambda reported: reported) -> str:
     """What is wrong with the virtual works of the beam, each changed."""
-    from eomgen.proof.sections_reported import works_reported
+    from eomgen.proof.reported_sections import works_reported
     from eomgen.proof.structure import state_of
 
     beam = eomgen.statics(eomgen.loads(BEAM))

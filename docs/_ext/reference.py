@@ -55,7 +55,7 @@ from eomgen.model.parts import (  # noqa: E402
     Truss,
     Unknown,
 )
-from eomgen.model.samples import TimeLawRule  # noqa: E402
+from eomgen.model.sampled_laws import TimeLawRule  # noqa: E402
 from eomgen.symbolic.expression.formula import NAMES  # noqa: E402
 from eomgen.symbolic.expression.units import UNITS  # noqa: E402
 

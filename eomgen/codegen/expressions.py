@@ -10,10 +10,8 @@ from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.expression import Fraction, Node, Number, Scalar
+from eomgen.symbolic.numeric import number_of
 
 SUM, PRODUCT, ATOM = 1, 2, 3  # how strongly a text holds together
 LONGEST_INLINE = 60

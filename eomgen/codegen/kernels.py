@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.symbolic.numeric.tolerances import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED, SURE_PIVOT
+from eomgen.symbolic.numeric import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED, SURE_PIVOT
 
 Int = int
 Real = float

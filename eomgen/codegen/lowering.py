@@ -37,8 +37,7 @@ from eomgen.codegen.statements import (
     Table,
 )
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.splines import Sampled, sampled_of
+from eomgen.symbolic.expression import Node, Sampled, Scalar, sampled_of
 
 
 @dataclass(frozen=True)

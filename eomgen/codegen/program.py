@@ -19,12 +19,9 @@ import numpy as np
 from eomgen.codegen.statements import INT, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.traversal import FREE, Count, Symbols, order
-from eomgen.symbolic.solve import factorization
-from eomgen.symbolic.solve.factorization import PlaceLists, Zeros, zeros_of, zeros_with_constraints
+from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.symbolic.expression import FREE, Count, Node, Scalar, ScalarRow, Symbols, is_zero, order, substituted
+from eomgen.symbolic.solve import PlaceLists, Zeros, factorization, zeros_of, zeros_with_constraints
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 

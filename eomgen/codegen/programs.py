@@ -14,19 +14,13 @@ from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic
 from eomgen.codegen.rhs import GivenMotion, RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.explicit_accelerations import by_determinants, by_factors, regular_rows
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.instant.quantities import Quantities, requests_of
-from eomgen.mechanics.reactions.inverse import FEW, Inverse, by_independent
-from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS
-from eomgen.model.parts import Output
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, ScalarRows, is_zero
-from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.factorization import factor_solution
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, by_determinants, by_factors, regular_rows
+from eomgen.mechanics.free_bodies import Indeterminate, named_reactions
+from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.reactions import FEW, Inverse, Reactions, by_independent
+from eomgen.model import OF_A_RUN, SMALL_MOTIONS, Output
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, ScalarRows, depends_on, is_zero, jacobian, substituted
+from eomgen.symbolic.solve import cramer, factor_solution
 
 # -------- requested outputs -----------------------------------------------------------------------------------
 # System -> the [outputs] of its model as functions of the state, for emitted code.
@@ -128,7 +122,7 @@ class InverseDynamics:
         Raises:
             DerivationError: too many coupled constraints for formulas, or indeterminate constraint forces.
         """
-        from eomgen.symbolic.print.sympy_form import to_sympy
+        from eomgen.symbolic.print import to_sympy
 
         return dict(zip(self.names, to_sympy(self.graph.explicit()), strict=True))
 

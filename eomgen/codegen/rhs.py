@@ -18,15 +18,20 @@ from eomgen.codegen.targets.c import c_together
 from eomgen.codegen.taylor import Series, series_of, without_series
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import rank_of_constraints
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.model.diagnostics import nearest
-from eomgen.model.parts import Model
-from eomgen.model.replaced import TypedNumbers, are_several, time_law, typed_values, with_values
-from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.expression.derivative import depends_on, tangent
-from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.tolerances import OPEN_GAP, RANK, SHARE
+from eomgen.mechanics.constraints import rank_of_constraints
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.model import (
+    Model,
+    TypedNumbers,
+    are_several,
+    nearest,
+    numeric_parameters,
+    time_law,
+    typed_values,
+    with_values,
+)
+from eomgen.symbolic.expression import depends_on, tangent
+from eomgen.symbolic.numeric import OPEN_GAP, RANK, SHARE, of_one_length
 
 _Made = TypeVar("_Made")
 

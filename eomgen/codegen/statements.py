@@ -12,8 +12,7 @@ from dataclasses import field, replace
 
 from eomgen.codegen.expressions import RankedText, ranked_number
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Fraction, Number
 
 REAL, INT = "Real", "Int"
 READ, CHANGED, INDICES, PLACES = "Reals", "Work", "Ints", "Places"  # arrays: the last two of indices, read and changed

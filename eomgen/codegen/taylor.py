@@ -25,7 +25,7 @@ from eomgen.codegen.statements import Language
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.c_lanes import WIDTH, text_of, vector_compiler
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression import Node, Scalar
 
 MOST_UNROLLED = 8000  # sums x order^2 that are written out for each order: they take a compiler a second
 UNROLL, INLINE = '_Pragma("GCC unroll 32")', "static inline __attribute__((always_inline))"

@@ -8,8 +8,8 @@ from eomgen.documents.latex_math import latex_escaped
 from eomgen.documents.reading import Reader, omitted
 from eomgen.documents.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement, prose
 from eomgen.documents.text import side_text
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.print import text_size
 
 WIDE = 96  # characters of a table, all columns side by side
 PAGE = 5000  # characters of formulas in one step

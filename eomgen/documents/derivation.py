@@ -20,14 +20,13 @@ from eomgen.documents.reaction_values import Lettered, lettered
 from eomgen.documents.reading import Reader, Written, with_coefficients_throughout, with_parts_named, with_roots_named
 from eomgen.documents.statements import Formula, Law, Prose, Step, notation_step
 from eomgen.documents.text import prose_text, side_text
-from eomgen.mechanics.dynamics.formulations import derived_by, inertia_by_energies
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, generalized_forces
-from eomgen.mechanics.kinematics.inertia import BodyEnergy, armature_energy, body_energies, given_energy, kinetic_energy
-from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.proof.printed import Printed
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.print.text import text_size
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by, generalized_forces, inertia_by_energies
+from eomgen.mechanics.kinematics import BodyEnergy, armature_energy, body_energies, given_energy, kinetic_energy
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.proof import Printed
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expression import Node, Scalar
+from eomgen.symbolic.print import text_size
 
 LAGRANGE = Law(
     "d/dt(dT/dq_k') - dT/dq_k = Q_k",

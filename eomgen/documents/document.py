@@ -10,13 +10,10 @@ from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
 from eomgen.errors import Problem
 from eomgen.frozen import Pickled, dataclass
-from eomgen.model.parts import Model
-from eomgen.model.replaced import Taken
-from eomgen.model.values import constant_parameters
-from eomgen.proof.check import Certificate
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.print.names import Symbol
+from eomgen.model import Model, Taken, constant_parameters
+from eomgen.proof import Certificate
+from eomgen.symbolic.expression import Graph, Node, Scalar
+from eomgen.symbolic.print import Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
 NOTHING_CHECKED = Problem("", "nothing of this result could be checked")

@@ -18,12 +18,11 @@ from eomgen.documents.figures import mathtext
 from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.letters import PlacedName
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import BodyLink
 from eomgen.scene import Drawing, Letter, SceneNumbers, Stroke, plane_drawing, scene_of_system
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.numeric.sure_numbers import numbers_of
+from eomgen.symbolic.expression import Node, Scalar, Vector
+from eomgen.symbolic.numeric import numbers_of
 
 __all__ = [
     "ARROW",

@@ -44,35 +44,39 @@ from eomgen.documents.statements import (
     prose,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.pieces import Extent
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, effort_row, force_row, per_speed
-from eomgen.mechanics.integrals.first_integrals import (
+from eomgen.mechanics.dynamics import (
+    EquationsOfMotion,
+    Extent,
+    System,
+    effort_row,
+    force_row,
+    free_rates,
+    per_speed,
+    short_accelerations,
+)
+from eomgen.mechanics.integrals import (
     Constant,
     Integral,
     energy_integral,
+    laws_of_motion,
     momenta_of_the_whole,
     momentum_integrals,
     work_of_constant_forces,
 )
-from eomgen.mechanics.integrals.laws import laws_of_motion
-from eomgen.mechanics.kinematics.inertia import (
+from eomgen.mechanics.kinematics import (
+    Applied,
     BodyEnergy,
+    JointEffort,
     armature_energy,
     body_energies,
     given_energy,
     mass_properties,
+    velocity_of,
 )
-from eomgen.mechanics.kinematics.loads import Applied, JointEffort
-from eomgen.mechanics.kinematics.motion import velocity_of
-from eomgen.mechanics.start.exact import known_start
-from eomgen.model.forces.load import Couple, Load, PointForce
-from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.mechanics.start import known_start
+from eomgen.model import Couple, Load, PointForce
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, gradient, inner, is_zero, jacobian, order
+from eomgen.symbolic.print import text_size, to_text
 
 T, V = Name("T"), Name("V")
 

@@ -28,20 +28,28 @@ from eomgen.documents.reading import (
 )
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Piece, Prose, Statement, Step, prose
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.friction import FrictionContact
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.normal_form import common_factor, readable, simple_constants
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.formula import function, sqrt
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import ROOT_OF_SUM, Node, Scalar, ScalarRow, holds_op, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import operations, order
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import Factor, factors, number_text, products_of
-from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.text import text_size
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies import FrictionContact
+from eomgen.symbolic.exact import book_form, common_factor, readable, simple_constants
+from eomgen.symbolic.expression import (
+    ROOT_OF_SUM,
+    Fraction,
+    Graph,
+    Node,
+    Scalar,
+    ScalarRow,
+    depends_on,
+    derivative,
+    function,
+    holds_op,
+    is_zero,
+    operations,
+    order,
+    sqrt,
+    substituted,
+)
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import Factor, factors, length_of, number_text, products_of, text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most

@@ -8,7 +8,7 @@ from eomgen.documents.drawing import draw, limits
 from eomgen.documents.figures import Picture
 from eomgen.documents.latex_math import notation_of
 from eomgen.documents.space_drawing import draw_space, page_limits
-from eomgen.model.parts import Model
+from eomgen.model import Model
 from eomgen.scene import Drawing, Scene, SceneNumbers, drawn_start, frame_at, plane_drawing, scene_of, space_drawing
 
 WIDTHS, HEIGHT, TITLE = (3.4, 8.0), 4.2, 0.4  # [inches]

@@ -18,11 +18,11 @@ from eomgen import files
 from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.errors import RunFailed, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.model.units import OUTPUT
-from eomgen.proof.reports_read import DrawnPanel, panels_of
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.units import Unit
-from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
+from eomgen.model import OUTPUT
+from eomgen.proof import DrawnPanel, panels_of
+from eomgen.simulation import Trajectory
+from eomgen.symbolic.expression import Unit
+from eomgen.symbolic.numeric import SMALLEST_PLAIN
 
 FORMATS = (".png", ".svg", ".pdf")
 STYLE: dict[Any, Any] = {

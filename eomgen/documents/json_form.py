@@ -17,11 +17,10 @@ from eomgen.documents.reading import TRIED, Reader, without_cases
 from eomgen.documents.statements import Formula, Grid, Prose, Quantity, Statement, Table
 from eomgen.documents.text import cell_text, formula_text, prose_text, side_text, statement_lines
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.model.replaced import Taken
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.print.text import text_size, to_text, with_definitions
+from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.model import Taken, exact_parameters
+from eomgen.symbolic.expression import Node, Scalar
+from eomgen.symbolic.print import text_size, to_text, with_definitions
 from eomgen.version import SCHEMA_VERSION
 
 name = "json"

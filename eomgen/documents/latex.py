@@ -32,10 +32,7 @@ from eomgen.documents.statements import (
     parts_of,
     prose,
 )
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import Graph, Node, Scalar, order, parse
 
 name = "latex"
 

@@ -15,24 +15,25 @@ from itertools import groupby, pairwise
 
 from eomgen.documents.statements import Law
 from eomgen.frozen import dataclass
-from eomgen.model.parts import Model
-from eomgen.symbolic.expression.node import SUMS, Node, Scalar
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.print.layout import (
+from eomgen.model import Model
+from eomgen.symbolic.expression import SUMS, Fraction, Node, Number, Scalar, sampled_of
+from eomgen.symbolic.print import (
+    LETTERS,
     TRIGONOMETRIC,
     Factor,
     Product,
+    Symbol,
     decimal_of,
+    index_latex,
     is_bare_argument,
     is_base,
     is_part_of_letter,
     is_part_of_turn,
     is_time,
     summands,
+    symbol_of,
+    upright,
 )
-from eomgen.symbolic.print.names import LETTERS, Symbol, index_latex, symbol_of, upright
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 FUNCTIONS = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")} | {

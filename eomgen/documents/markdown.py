@@ -18,8 +18,8 @@ from eomgen.documents.latex import (
 )
 from eomgen.documents.latex_math import LINE, Notation, Setter, notation_of
 from eomgen.documents.statements import Cell, Code, Found, Grid, Lines, Piece, Prose, Quantity, Statement, unit_text
-from eomgen.model.parts import Model
-from eomgen.symbolic.expression.graph import Graph
+from eomgen.model import Model
+from eomgen.symbolic.expression import Graph
 
 name = "markdown"
 

@@ -13,21 +13,13 @@ from eomgen.documents.bounded import page
 from eomgen.documents.reading import Reader
 from eomgen.documents.statements import Formula, Law, Meaning, Name, Piece, Rate, Side, Statement, Step, Table, prose
 from eomgen.errors import DerivationError, MissingValues
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rank import integrability_of
-from eomgen.mechanics.constraints.rows import Row
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.inertia import BodyEnergy, mass_properties
-from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.mechanics.start.exact import ExactStart
-from eomgen.model.forces.load import PointForce
-from eomgen.model.parts import Coordinate, Input, Parameter
-from eomgen.model.values import exact_parameters, quaternions_of
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import Vector, dot
-from eomgen.symbolic.print.text import to_text
+from eomgen.mechanics.constraints import Row, dependent_coordinates, integrability_of
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope, mass_properties
+from eomgen.mechanics.start import ExactStart
+from eomgen.model import Coordinate, Input, Parameter, PointForce, exact_parameters, quaternions_of
+from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, dot, is_zero
+from eomgen.symbolic.print import to_text
 
 AXES = "xyz"
 ALONG = Law(

@@ -26,9 +26,9 @@ from eomgen.documents.figures import STYLE
 from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.linearization.modes import Mode, Modes
-from eomgen.model.diagnostics import nearest
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.linearization import Mode, Modes
+from eomgen.model import nearest
 from eomgen.scene import (
     Drawing,
     DrawnState,
@@ -45,8 +45,8 @@ from eomgen.scene import (
     space_drawing,
     swing_of,
 )
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.numeric.tolerances import COMPUTED, WIDE_STEP
+from eomgen.simulation import Trajectory
+from eomgen.symbolic.numeric import COMPUTED, WIDE_STEP
 
 WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inch]
 SPARSE = 5  # frames of which one is looked at for the shape of the page

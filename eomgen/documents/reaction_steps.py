@@ -17,20 +17,16 @@ from eomgen.documents.reaction_values import Lettered, Readings, lettered, readi
 from eomgen.documents.reading import LONGEST, TRIED, Reader, free_names, length_in_print
 from eomgen.documents.statements import Code, Formula, Law, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
 from eomgen.errors import DerivationError
-from eomgen.mechanics.dynamics.formulations import derived_by
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.balance import BodyEquation
-from eomgen.mechanics.integrals.speeds import rates_and_extent
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.mechanics.start.exact import known_start
-from eomgen.model.trusses import called
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import terms
-from eomgen.symbolic.print.text import text_size
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
+from eomgen.mechanics.free_bodies import BodyEquation
+from eomgen.mechanics.integrals import rates_and_extent
+from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.start import known_start
+from eomgen.model import called
+from eomgen.symbolic.exact import book_form
+from eomgen.symbolic.expression import Node, Scalar, depends_on, is_zero, order, substituted
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import terms, text_size
 
 PAGE = 6000  # characters of all reactions in print
 CLEARER = 1.5  # times as long as without accelerations: then the form with them is left out

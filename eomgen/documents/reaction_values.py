@@ -25,30 +25,36 @@ from eomgen.documents.reading import (
 from eomgen.documents.statements import Meaning, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import is_placed
-from eomgen.mechanics.constraints.rows import Row
-from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.friction import FrictionContact, friction_contacts
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions, unit_of
-from eomgen.mechanics.free_bodies.solution import Combination, Indeterminate
-from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS, Component
-from eomgen.mechanics.reactions.equilibrium import reactions_by_sides
-from eomgen.mechanics.reactions.reactions import Reactions, determinate_sums, reactions_of
-from eomgen.model.constraints.link import trusses_of
-from eomgen.model.forces.load import PointForce
-from eomgen.model.kinds import ReactionSymbols
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.signs import never_vanishes
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero
-from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.expression.traversal import operations, order
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.names import Symbol, index_latex
-from eomgen.symbolic.print.text import text_size, to_text, with_definitions
+from eomgen.mechanics.constraints import Row, is_placed
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, short_accelerations
+from eomgen.mechanics.free_bodies import (
+    EACH_AXIS,
+    Balance,
+    Combination,
+    Component,
+    FrictionContact,
+    Indeterminate,
+    NamedReaction,
+    friction_contacts,
+    named_reactions,
+    unit_of,
+)
+from eomgen.mechanics.reactions import Reactions, determinate_sums, reactions_by_sides, reactions_of
+from eomgen.model import PointForce, ReactionSymbols, trusses_of
+from eomgen.symbolic.exact import book_form, never_vanishes
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    Vector,
+    depends_on,
+    holds_op,
+    is_zero,
+    operations,
+    order,
+    substituted,
+)
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import Symbol, index_latex, length_of, text_size, to_text, with_definitions
 
 LONGEST_REACTION = 3000  # characters of accelerations that are put into reactions
 TOO_MANY = 2000  # components times equations, from which on one way must do

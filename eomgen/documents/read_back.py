@@ -41,33 +41,30 @@ from eomgen.documents.statements import (
 )
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.proof.check import Check, checked, differing, unchecked
-from eomgen.proof.pages_read import (
+from eomgen.proof import (
     GREEK_LETTERS,
     PAGES,
+    Check,
     PageBlock,
     PageLine,
     SetLetters,
     Tokens,
     Tree,
     between_equals,
+    checked,
     closing_brace,
+    differing,
     names_of_tree,
     said_by,
     spoken,
     tokens_of,
     tree_value,
     typeset,
+    unchecked,
     unlike_words,
 )
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.expression.text import LONGEST, parse
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
-from eomgen.symbolic.numeric.work import READ_BACK
+from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, order, parse, sampled_of
+from eomgen.symbolic.numeric import COMPUTED, READ_BACK, ZERO_AT_50, NoValue, evaluate, fifty_digits
 
 NAME = "the page, read back, says what was found"
 HOW = "a reader of its own, 50 digits"

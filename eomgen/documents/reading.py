@@ -12,27 +12,39 @@ from typing import TypeGuard
 
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Side, Statement, Step
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model.catalog import Catalog
-from eomgen.model.dimensions import inferred
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.normal_form import common_factor, normal_form, readable
-from eomgen.symbolic.exact.roots import Rooted, is_root_of_sum, readable_over, rooted
-from eomgen.symbolic.exact.sums import BRACKETS, with_squares
-from eomgen.symbolic.exact.terms import TooLarge
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.formula import function
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import SUMS, Node, Owner, Scalar, holds_op, is_zero, op_bits
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import Product, factors, products_of
-from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.names import symbol_of
-from eomgen.symbolic.print.text import named_parts, text_size, to_text
+from eomgen.mechanics.kinematics import Scope
+from eomgen.model import Catalog, inferred
+from eomgen.symbolic.exact import (
+    BRACKETS,
+    Rooted,
+    TooLarge,
+    book_form,
+    common_factor,
+    equal_at_random_states,
+    is_root_of_sum,
+    normal_form,
+    readable,
+    readable_over,
+    rooted,
+    with_squares,
+)
+from eomgen.symbolic.expression import (
+    SUMS,
+    Fraction,
+    Graph,
+    Node,
+    Owner,
+    Scalar,
+    function,
+    holds_op,
+    is_zero,
+    op_bits,
+    order,
+    parse,
+    substituted,
+)
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import Product, factors, length_of, named_parts, products_of, symbol_of, text_size, to_text
 
 LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print

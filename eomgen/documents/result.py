@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from eomgen.documents import json_form, rendered
+from eomgen.documents import json_form
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
 from eomgen.documents.markdown import markdown_below
-from eomgen.proof.check import Certificate, Check
-from eomgen.proof.reports_read import DrawnPanel
+from eomgen.documents.rendering import rendered
+from eomgen.proof import Certificate, Check, DrawnPanel
 
 
 class Result:

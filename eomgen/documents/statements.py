@@ -12,8 +12,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.expression import Node, Scalar, operations
 
 
 @dataclass(frozen=True)

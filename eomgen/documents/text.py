@@ -29,8 +29,8 @@ from eomgen.documents.statements import (
     Statement,
     unit_text,
 )
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.expression import Node, Scalar
+from eomgen.symbolic.print import to_text
 
 name = "text"
 

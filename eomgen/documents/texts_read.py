@@ -35,8 +35,8 @@ from eomgen.documents.statements import (
     Table,
 )
 from eomgen.documents.text import cases_text, formula_as_text, is_piecewise
-from eomgen.proof.check import Check, checked
-from eomgen.symbolic.expression.node import Node
+from eomgen.proof import Check, checked
+from eomgen.symbolic.expression import Node
 
 # -------- json read back --------------------------------------------------------------------------------------
 # A document and the JSON that was made of it -> whether it says, read again, what the document holds.

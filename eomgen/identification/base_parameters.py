@@ -35,32 +35,44 @@ from eomgen.identification.constrained_rows import (
     in_50_digits,
     sampled_rows,
 )
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.motion import velocity_of
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.equality import exact_state
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import velocity_of
+from eomgen.model import exact_parameters
+from eomgen.symbolic.exact import exact_state, simplest
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
+    Fraction,
     Matrix,
+    Node,
+    Scalar,
+    ScalarRow,
     SpatialInertia,
+    State,
     Vector,
     added,
     apply,
     dot,
+    is_zero,
     matrix_of,
     product,
+    substituted,
+    symbols_of,
     transposed,
 )
-from eomgen.symbolic.numeric.evaluation import PRIME, PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50, ROUNDED_AWAY
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, sparse_solution
+from eomgen.symbolic.numeric import (
+    FOLLOWS_AT_50,
+    PRIME,
+    PRIME_FIELD,
+    ROUNDED_AWAY,
+    NoMeaning,
+    NoValue,
+    Work,
+    evaluate,
+    fifty_digits,
+)
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import LinearSystem, Pivots, sparse_solution
 
 MOST_LENGTHS = 8  # of a formula: more have too many monomials
 

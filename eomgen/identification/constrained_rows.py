@@ -9,14 +9,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.node import ScalarRow, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50, ROUNDED_AWAY
+from eomgen.mechanics.constraints import gaps_of, generic_state, movable, norms_of
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.symbolic.expression import Fraction, ScalarRow, State, jacobian
+from eomgen.symbolic.numeric import FOLLOWS_AT_50, ROUNDED_AWAY, evaluate, fifty_digits
 
 MORE = 6  # beyond its columns
 QUIET = 2  # states in succession that must add no independent row: then no state does

@@ -22,20 +22,25 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.optimize import least_squares
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled, parameter_vector
+from eomgen.codegen import compiled, parameter_vector, program_of
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.identification.proof_of_groups import StackedSamples, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressors import Regressor, regressor_of
-from eomgen.mechanics.dynamics.system import generalized_forces
-from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.mechanics.dynamics import generalized_forces
+from eomgen.model import ModelOrPath, model_at
 from eomgen.pipeline import derive
-from eomgen.proof.check import Certificate, Check, checked
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.traversal import Symbols
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED, LEAST_DENSITY, NEARLY_A_POINT, RANK_NEARBY, TOWARD_THE_MODEL
+from eomgen.proof import Certificate, Check, checked
+from eomgen.symbolic.expression import Symbols, substituted
+from eomgen.symbolic.numeric import (
+    CARRIED,
+    FLOAT,
+    LEAST_DENSITY,
+    NEARLY_A_POINT,
+    RANK_NEARBY,
+    TOWARD_THE_MODEL,
+    evaluate,
+)
 
 Data = Mapping[str, Any]
 

@@ -23,18 +23,13 @@ from eomgen.certificate import certify
 from eomgen.frozen import dataclass
 from eomgen.identification.base_parameters import BaseParameters, Group
 from eomgen.identification.constrained_rows import columns_along, constrained_states, in_50_digits
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, FOLLOWS_AT_50, RANK, RANK_NEARBY
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies import equations_of_motion
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.proof import Certificate, Check, PhaseMotion, Tally, TriedState, attempted, checked, first_wrong
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expression import Fraction, ScalarRow, parse, substituted
+from eomgen.symbolic.numeric import COMPUTED, FOLLOWS_AT_50, RANK, RANK_NEARBY, evaluate, fifty_digits
 
 POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ

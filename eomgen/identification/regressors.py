@@ -20,24 +20,27 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameters, base_of, named_entries
 from eomgen.identification.proof_of_groups import certify_regressor
-from eomgen.mechanics.dynamics.system import System, force_row
-from eomgen.mechanics.free_bodies.friction import frictions, has_friction
-from eomgen.mechanics.kinematics.inertia import given_inertia, joint_row, mass_properties
-from eomgen.model.forces.load import UniformField
-from eomgen.model.parts import Model
-from eomgen.model.reader import ModelOrPath
+from eomgen.mechanics.dynamics import System, force_row
+from eomgen.mechanics.free_bodies import frictions, has_friction
+from eomgen.mechanics.kinematics import given_inertia, joint_row, mass_properties
+from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
-from eomgen.proof.check import Certificate
-from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.proof import Certificate
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRow,
     SpatialInertia,
     Twist,
     Wrench,
     apply,
     cross,
+    depends_on,
+    gradient,
+    is_zero,
     minus,
     plus,
+    substituted,
     transposed,
     vector_of,
 )
@@ -77,7 +80,7 @@ class Regressor:
         """Y in sympy."""
         import sympy
 
-        from eomgen.symbolic.print.sympy_form import to_sympy
+        from eomgen.symbolic.print import to_sympy
 
         entries = to_sympy([x for row in self.rows for x in row])
         return sympy.ImmutableDenseMatrix(len(self.rows), len(self.parameters), entries)

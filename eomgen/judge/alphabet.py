@@ -8,7 +8,7 @@ from collections.abc import Container, Iterable, Mapping
 from functools import cached_property
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.text import spelled
+from eomgen.symbolic.expression import spelled
 
 ALIKE = {"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "∙": "*", "÷": "/", "[": "(", "]": ")", "′": "'", "’": "'"}
 ALIKE |= {

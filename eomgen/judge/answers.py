@@ -24,14 +24,11 @@ from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.truth import other_models
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
-from eomgen.model.replaced import with_values
-from eomgen.model.values import exact_parameters
+from eomgen.model import exact_parameters, with_values
 from eomgen.questions import Answer
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.expression import Expression, Node, Scalar, is_zero, parse
+from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.print import to_text
 
 SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing else is looked at
 

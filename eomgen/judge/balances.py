@@ -54,15 +54,29 @@ from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
 from eomgen.judge.wrong_terms import WrongTerms
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.mechanics.statics.section_forces import KINDS
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.formula import Call, over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.numeric.tolerances import CARRIED
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.statics import KINDS
+from eomgen.symbolic.expression import (
+    Call,
+    Fraction,
+    Node,
+    Scalar,
+    Vector,
+    cross,
+    depends_on,
+    derivative,
+    dot,
+    is_zero,
+    minus,
+    over,
+    plus,
+    sqrt,
+    substituted,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.numeric import CARRIED
 
 KNOWN = 1.2  # how much less a balance is believed for each reaction in it that has to be known
 OBLIQUE = 0.6  # the same, along or across a member of a truss

@@ -7,7 +7,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
-from eomgen.documents.equation_steps import multiplier_forces
+from eomgen.documents import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.judge.contributions import Contributions
@@ -16,28 +16,33 @@ from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.pieces import Extent
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, per_speed
-from eomgen.mechanics.equilibrium.search import Equilibrium, all_equilibria
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.integrals.first_integrals import where_momenta_hold
-from eomgen.mechanics.integrals.speeds import rates_and_extent, relations_of
-from eomgen.mechanics.kinematics.scene import let_go
-from eomgen.mechanics.start.exact import ExactStart, known_parameters
-from eomgen.model.catalog import Catalog
-from eomgen.model.dimensions import inferred
-from eomgen.model.fields import AtRest, Table, WrittenEquation
-from eomgen.model.part import leaves_of
-from eomgen.model.parts import Model, Output
+from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System, free_rates, per_speed
+from eomgen.mechanics.equilibrium import Equilibrium, all_equilibria
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.integrals import rates_and_extent, relations_of, where_momenta_hold
+from eomgen.mechanics.kinematics import let_go
+from eomgen.mechanics.start import ExactStart, known_parameters
+from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, inferred, leaves_of
 from eomgen.questions import Answer, MotionFromStart, solve
-from eomgen.simulation.contacts import has_phases
+from eomgen.simulation import has_phases
 from eomgen.study import Study, study_of
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.formula import Call, Expression, Reference, inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.text import SLOPE, parse
-from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.expression import (
+    SLOPE,
+    Call,
+    Expression,
+    Node,
+    Reference,
+    Scalar,
+    ScalarRow,
+    depends_on,
+    derivative,
+    gradient,
+    inner,
+    is_zero,
+    parse,
+    substituted,
+)
+from eomgen.symbolic.print import to_text
 
 
 @dataclass(frozen=True)

@@ -32,11 +32,21 @@ from eomgen.judge.diagnosis import (
 from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.verdict import other_calls
 from eomgen.judge.wrong_terms import Term, WrongTerms
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.formula import Call, over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.tolerances import CARRIED
+from eomgen.symbolic.expression import (
+    Call,
+    Node,
+    Scalar,
+    ScalarRow,
+    depends_on,
+    derivative,
+    gradient,
+    is_zero,
+    operations,
+    over,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import CARRIED
 
 LONGEST = 3000  # operations of equations that are looked at term by term
 EXTRA = 5.6  # rank of a term of the author that does not belong there

@@ -14,23 +14,33 @@ from functools import cached_property
 
 from eomgen.frozen import dataclass
 from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, drive_row, from_potential, load_row, per_speed
-from eomgen.mechanics.kinematics.inertia import (
-    armature_energy,
-    body_energies,
-    given_energy,
-    mass_properties,
+from eomgen.mechanics.dynamics import (
+    EquationsOfMotion,
+    System,
+    drive_row,
+    free_rates,
+    from_potential,
+    load_row,
+    per_speed,
 )
-from eomgen.mechanics.kinematics.loads import Applied
-from eomgen.model.catalog import Catalog
-from eomgen.model.dimensions import inferred
-from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
-from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, symbols_of, tangent
-from eomgen.symbolic.expression.dimensions import Dimension
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.spatial import dot, times
+from eomgen.mechanics.kinematics import Applied, armature_energy, body_energies, given_energy, mass_properties
+from eomgen.model import Catalog, Couple, Load, PointForce, UniformField, inferred
+from eomgen.symbolic.expression import (
+    Dimension,
+    Node,
+    Scalar,
+    ScalarRow,
+    depends_on_any,
+    dot,
+    gradient,
+    inner,
+    is_zero,
+    jacobian,
+    substituted,
+    symbols_of,
+    tangent,
+    times,
+)
 
 FEW = 2  # contributions that are named together
 ANGLES = ("1", "rad", "")  # dimensions of angles

@@ -13,36 +13,33 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import Samples
 from eomgen.judge.terms import angles_in
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.balance import Balance, balance_of
-from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, efforts_of
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.mechanics.statics.member_axis import MemberAxis
-from eomgen.mechanics.statics.section_forces import KINDS
-from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
-from eomgen.model.outputs.base import name_at
-from eomgen.model.outputs.forces import distance_of
-from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import readable
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.formula import Call, over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, balance_of, effects_of_load, efforts_of
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.kinematics import BodyLink
+from eomgen.mechanics.statics import KINDS, MemberAxis
+from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, distance_of, is_node, name_at
+from eomgen.symbolic.exact import readable
+from eomgen.symbolic.expression import (
     ZERO,
+    Call,
+    Fraction,
+    Node,
+    Scalar,
     Vector,
     apply,
     cross,
     dot,
+    is_zero,
     minus,
+    over,
     plus,
+    symbols_of,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.tolerances import CARRIED
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.numeric import CARRIED, Work
 
 # -------- acting ----------------------------------------------------------------------------------------------
 # System -> ActingForces: what acts on its bodies in the plane, each by its name: reactions, loads, inertia forces.

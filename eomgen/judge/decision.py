@@ -17,33 +17,40 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.pieces import NOWHERE, Extent, division_of
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.equality import exact_state
-from eomgen.symbolic.expression.derivative import gradient, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, holds_op, linear_terms
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import united
-from eomgen.symbolic.numeric.arithmetic import Ball, balls
-from eomgen.symbolic.numeric.evaluation import (
-    FLOAT,
-    PRIME,
-    PRIME_FIELD,
-    NoMeaning,
-    NoValue,
-    evaluate,
-    fifty_digits,
+from eomgen.mechanics.dynamics import NOWHERE, Extent, System, division_of
+from eomgen.mechanics.free_bodies import equations_of_motion
+from eomgen.model import exact_parameters
+from eomgen.symbolic.exact import exact_state
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    gradient,
+    holds_op,
+    linear_terms,
+    symbols_of,
+    united,
 )
-from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, as_chosen
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.symbolic.numeric import (
     CARRIED,
     CERTAIN_AT_50,
     CLOSED_AT_50,
     COMPUTED,
     ELIMINATED_AT_50,
+    FLOAT,
+    PIECEWISE,
+    PRIME,
+    PRIME_FIELD,
     ZERO_AT_50,
+    Ball,
+    Choices,
+    NoMeaning,
+    NoValue,
+    as_chosen,
+    balls,
+    evaluate,
+    fifty_digits,
 )
 
 STATES = 3
@@ -267,7 +274,7 @@ def vanish_nearly(system: System, scalars: Sequence[Scalar]) -> bool:
 
 def linear_row(x: Scalar, symbols: Sequence[Node]) -> tuple[ScalarRow, bool]:
     """(slopes by the symbols and what is left where they are 0, whether it is linear in them)."""
-    from eomgen.symbolic.expression.derivative import depends_on, substituted
+    from eomgen.symbolic.expression import depends_on, substituted
 
     slopes = gradient(x, symbols)
     linear = not any(depends_on(slope, symbols) for slope in slopes)
@@ -446,7 +453,7 @@ def _rational(x: float) -> Any:
 
 def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
     """The starts of coordinates that are given by numbers."""
-    from eomgen.mechanics.kinematics.scene import start_values
+    from eomgen.mechanics.kinematics import start_values
 
     values = {**dict.fromkeys(system.symbols.parameters.values(), 1.0), **own, system.symbols.t: 0.0}
     found = {}

@@ -19,13 +19,9 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.judge.decision import states_of
-from eomgen.mechanics.dynamics.system import System
-from eomgen.symbolic.expression.dimensions import SECOND, Dimension
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import ARRAYS, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
+from eomgen.mechanics.dynamics import System
+from eomgen.symbolic.expression import SECOND, Dimension, Fraction, Node, Scalar, ScalarRow, over
+from eomgen.symbolic.numeric import ARRAYS, CARRIED, COMPUTED, SAME_EIGENVALUE, evaluate
 
 BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
 FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed

@@ -33,13 +33,20 @@ from eomgen.judge.terms import (
     wrong_power,
 )
 from eomgen.judge.truth import truth_of
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.formula import Call, Expression, over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import ARRAYS, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    depends_on,
+    is_zero,
+    order,
+    over,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import ARRAYS, COMPUTED, evaluate
 
 MOST_TRIED = 6  # changes that are proven before it is given up
 SHORT = 60  # characters of a place that is stated

@@ -14,9 +14,7 @@ from contextlib import suppress
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
-from eomgen.symbolic.expression.formula import NAMES
-from eomgen.symbolic.expression.text import RATES, SLOPE, called_rate, meant_name, spelled
-from eomgen.symbolic.expression.units import parse_unit
+from eomgen.symbolic.expression import NAMES, RATES, SLOPE, called_rate, meant_name, parse_unit, spelled
 
 RATE = "rate_of"  # d/dt of what stands in parentheses
 DEEPEST = 64  # groups inside one another, as of the grammar

@@ -46,15 +46,23 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.wrong_terms import WrongTerms
-from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.model import AtRest, WrittenEquation
 from eomgen.questions import Answer
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.tolerances import CARRIED
-from eomgen.symbolic.solve.cramer import determinant
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    depends_on,
+    derivative,
+    gradient,
+    is_zero,
+    order,
+    over,
+    substituted,
+)
+from eomgen.symbolic.numeric import CARRIED
+from eomgen.symbolic.solve import determinant
 
 
 @dataclass(frozen=True)

@@ -62,18 +62,23 @@ from eomgen.judge.verdict import (
     causes_of,
     kind_of_equation,
 )
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.model.fields import AtRest
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import equation_typed
-from eomgen.proof.verdicts import Judged
-from eomgen.simulation.contacts import paths_of
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.formula import Reference, over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.text import SLOPE
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.work import doing
+from eomgen.mechanics.dynamics import with_nodes_balanced
+from eomgen.model import AtRest, ModelOrPath, equation_typed, model_at
+from eomgen.proof import JudgedEquation
+from eomgen.simulation import paths_of
+from eomgen.symbolic.expression import (
+    SLOPE,
+    Node,
+    Reference,
+    Scalar,
+    depends_on,
+    derivative,
+    is_zero,
+    order,
+    over,
+    substituted,
+)
+from eomgen.symbolic.numeric import doing
 
 
 def verify(
@@ -135,7 +140,7 @@ class Judge:
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, kind, UNDECIDED, reason=error.what)
 
-    def said(self, verdict: Verdict) -> Judged | None:
+    def said(self, verdict: Verdict) -> JudgedEquation | None:
         """A verdict as it is decided again by numbers; None of what is undecided, or wrong because it says nothing."""
         empty = any(cause.quantity in SAYS_NOTHING for cause in verdict.causes)
         if verdict.verdict == UNDECIDED or empty:
@@ -148,7 +153,7 @@ class Judge:
         if equations.system.free is not None and (verdict.verdict == WRONG or FREE in verdict.up_to):
             written = of_free_coordinates(written)
         names = [name for name in self.case.unknown_names(written) if name not in verdict.substitution]
-        return Judged(
+        return JudgedEquation(
             verdict.given,
             written.left,
             written.right,

@@ -19,14 +19,8 @@ from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Mistake
 from eomgen.judge.terms import terms_of
 from eomgen.judge.wrong_terms import Term, WrongTerms
-from eomgen.mechanics.kinematics.inertia import HALF
-from eomgen.symbolic.expression.derivative import (
-    depends_on,
-    gradient,
-    substituted,
-    symbols_of,
-)
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.mechanics.kinematics import HALF
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, gradient, is_zero, substituted, symbols_of
 
 MOST = 3000  # mistakes of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one

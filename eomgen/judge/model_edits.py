@@ -20,19 +20,23 @@ from eomgen.frozen import dataclass
 from eomgen.judge.contributions import FEW, Contributions
 from eomgen.judge.diagnosis import EXCHANGED, PLACED, PLAINEST, SHARED, SHORTER, Explanation, Mistake, Share
 from eomgen.judge.terms import term_text, wrong_parameters
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.model.diagnostics import whereabouts
-from eomgen.model.fields import Leaf, Table
-from eomgen.model.part import leaves_of, slots_of
-from eomgen.model.parts import Body, Coordinate, Model
-from eomgen.model.shapes.base import MassProperties
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.formula import Expression, over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector, dot, minus
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.print.text import to_text
+from eomgen.mechanics.kinematics import mass_properties
+from eomgen.model import Body, Coordinate, Leaf, MassProperties, Model, Table, leaves_of, slots_of, whereabouts
+from eomgen.symbolic.expression import (
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    Vector,
+    dot,
+    is_zero,
+    minus,
+    over,
+    parse,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.print import to_text
 
 MOST = 80  # models that are derived
 EDITED = ("bodies", "forces", "constraints")  # tables of the file whose values are changed

@@ -13,20 +13,16 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents.latex_math import notation_of
-from eomgen.documents.reaction_values import own_symbol, reaction_name
+from eomgen.documents import notation_of, own_symbol, reaction_name
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.balance import balance_of
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.text import SLOPE, parse, parse_equation
-from eomgen.symbolic.print.names import Symbol
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
+from eomgen.model import FUNCTIONS
+from eomgen.symbolic.expression import SLOPE, Call, Expression, Instruction, Reference, Scalar, parse, parse_equation
+from eomgen.symbolic.print import Symbol
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""

@@ -12,10 +12,8 @@ from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.contributions import ANGLES
 from eomgen.judge.reading import HandEquation
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.expression import Node, Scalar, is_zero, order, over
+from eomgen.symbolic.print import to_text
 
 MOST = 600  # ways to read names that are not the model's
 FEW = 60  # of them are tried whatever it takes

@@ -16,18 +16,21 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import EXCHANGED, MINUS, ODD, PLAINEST, TERMS, UNUSUAL, USUAL, WELL_KNOWN, simple_factor
-from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import legible, readable
-from eomgen.symbolic.exact.terms import TooLarge
-from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero, linear_terms
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import readable_text
+from eomgen.symbolic.exact import Expansion, TooLarge, Writer, legible, readable
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    is_zero,
+    linear_terms,
+    order,
+    over,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, Work
+from eomgen.symbolic.print import readable_text
 
 MOST_TERMS = 60  # of an equation that is looked at term by term
 

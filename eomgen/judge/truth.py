@@ -19,27 +19,28 @@ from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistak
 from eomgen.judge.model_edits import ModelEdits
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG, short_text
-from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent
-from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import (
+from eomgen.mechanics.dynamics import EVERYWHERE, NOWHERE, Extent
+from eomgen.model import AtRest, WrittenEquation, exact_parameters
+from eomgen.symbolic.exact import legible
+from eomgen.symbolic.expression import (
+    Call,
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
     depends_on,
     depends_on_any,
     derivative,
+    exact,
     gradient,
+    is_zero,
+    order,
+    over,
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.expression.formula import Call, over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.numbers import exact
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import ARRAYS, FLOAT, NoValue, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED, SAME_EIGENVALUE
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import readable_text
+from eomgen.symbolic.numeric import ARRAYS, CARRIED, FLOAT, SAME_EIGENVALUE, NoValue, Work, evaluate
+from eomgen.symbolic.print import readable_text
 
 # -------- right -----------------------------------------------------------------------------------------------
 # An equation over the symbols of a case -> whether it is right, and up to what.
@@ -47,7 +48,6 @@ from eomgen.symbolic.print.text import readable_text
 
 SIDED = ("abs", "sqrt", "sign", "min", "max", "asin", "acos", "atan", "atan2")  # of one side of their domain alone
 MOST_SIZES = 2  # sizes |x| of which either sign is tried
-
 EVERY_PIECE = ("motion", "acceleration")  # kinds of equations that must hold in every piece
 IDENTITY, CONSTANT, SIGNLESS = "identity", "constant", "signless"
 MOST_SOLVED = 24  # changed models that the solver of outputs answers: each takes it a tenth of a second

@@ -10,31 +10,27 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from typing import TYPE_CHECKING, Any
 
-from eomgen.documents.document import Document
-from eomgen.documents.statements import Lines, Step
+from eomgen.documents import Document, Lines, Step
 from eomgen.frozen import dataclass
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import LONG, short_text
-from eomgen.model.outputs import ALL
-from eomgen.model.outputs.base import BALANCE, MASSES, SMALL_MOTIONS
-from eomgen.model.outputs.energies import GENERALIZED_FORCE, KINETIC_ENERGY, POTENTIAL_ENERGY, POWER
-from eomgen.model.outputs.points import (
-    ACCELERATION,
-    CURVATURE_RADIUS,
-    MAGNITUDE_OF_ACCELERATION,
-    NORMAL_ACCELERATION,
-    TANGENTIAL_ACCELERATION,
+from eomgen.model import BALANCE, FUNCTIONS, MASSES, SMALL_MOTIONS, Model
+from eomgen.symbolic.exact import legible
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Fraction,
+    Reference,
+    Scalar,
+    depends_on,
+    depends_on_any,
+    is_zero,
+    over,
+    substituted,
 )
-from eomgen.model.outputs.turning import ANGULAR_ACCELERATION, EPSILON
-from eomgen.model.parts import Model
-from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted
-from eomgen.symbolic.expression.formula import Call, Expression, Reference, over
-from eomgen.symbolic.expression.node import Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.numeric import Work
 
 if TYPE_CHECKING:
     from eomgen.judge.case import Case
@@ -236,18 +232,15 @@ KINDS = (
     "law",
 )
 _OF = {
-    KINETIC_ENERGY: "energy",
-    POTENTIAL_ENERGY: "energy",
-    POWER: "energy",
-    GENERALIZED_FORCE: "force",
-    **dict.fromkeys((ACCELERATION, MAGNITUDE_OF_ACCELERATION, TANGENTIAL_ACCELERATION), "acceleration"),
-    **dict.fromkeys((NORMAL_ACCELERATION, CURVATURE_RADIUS, EPSILON, ANGULAR_ACCELERATION), "acceleration"),
+    **dict.fromkeys(("kinetic_energy", "potential_energy", "power"), "energy"),
+    "generalized_force": "force",
+    **dict.fromkeys(("ax", "ay", "az", "acceleration", "tangential_acceleration"), "acceleration"),
+    **dict.fromkeys(("normal_acceleration", "curvature_radius"), "acceleration"),
+    **dict.fromkeys(("epsilon", "epsilon_x", "epsilon_y", "epsilon_z"), "acceleration"),
 }
 _BY_SOURCE = {BALANCE: "reaction", MASSES: "inertia", SMALL_MOTIONS: "frequency"}
 FUNCTION_KINDS = {
-    name: _OF.get(function) or _BY_SOURCE.get(function.source) or "velocity"
-    for function in ALL
-    for name in function.names
+    name: _OF.get(name) or _BY_SOURCE.get(function.source) or "velocity" for name, function in FUNCTIONS.items()
 }
 
 

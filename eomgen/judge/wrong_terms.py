@@ -9,8 +9,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import EXCHANGED, ODD, TERMS, Mistake
 from eomgen.judge.terms import Edits, angles_in, is_product, term_text, terms_of, turned_angles, wrong_parameters
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression import Node, Scalar, depends_on, substituted, symbols_of
 
 Term = tuple[int, Scalar]  # of which row
 

@@ -6,40 +6,41 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property, cmp_to_key
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import Motion, velocity_of
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.mechanics.start.exact import known_exactly
-from eomgen.model.composite import about
-from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.exact.normal_form import common_factor, simplest
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.formula import cos, function, over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.kinematics import Motion, Scope, mass_properties, velocity_of
+from eomgen.mechanics.start import known_exactly
+from eomgen.model import MassProperties, about
+from eomgen.symbolic.exact import common_factor, sign_of_terms, simplest
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
+    Fraction,
     Matrix,
+    Node,
+    Scalar,
     Vector,
     added,
     apply,
+    cos,
     cross,
     dot,
+    function,
+    is_zero,
     matrix_of,
     minus,
+    order,
+    over,
     plus,
     product,
+    sqrt,
+    substituted,
+    symbols_of,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.solving import roots, vanishes
+from eomgen.symbolic.numeric import Work, number_of, numbers_of
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import roots, vanishes
 
 # -------- inertia about ---------------------------------------------------------------------------------------
 # System -> the inertia tensor and the angular momentum of bodies about a point, in ground axes.

@@ -21,15 +21,10 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.formula import inner, over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import RANK, ROUNDING
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import Node, Scalar, inner, is_zero, over, substituted
+from eomgen.symbolic.numeric import FLOAT, RANK, ROUNDING, Work, dense, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.solve import vanishes
 
 # -------- fields ----------------------------------------------------------------------------------------------
 # Graph scalars at one state, and the little algebra of matrices that holds in every field.

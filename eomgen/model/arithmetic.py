@@ -3,8 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Expression, Fraction
 
 AnyNumber = int | Fraction | float
 

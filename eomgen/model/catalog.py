@@ -9,7 +9,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Leaf, WrittenEquation
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression import Expression
 
 SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
 OBJECT_TABLES = ("bodies", "trusses", "constraints")

@@ -14,19 +14,21 @@ from eomgen.frozen import dataclass
 from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression.formula import cos, over, sin
-from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
     Pose,
     SpatialInertia,
     Vector,
     added,
+    cos,
+    is_zero,
     minus,
+    over,
     plus,
     product,
     rotation,
+    sin,
     times,
     transposed,
     vector_of,

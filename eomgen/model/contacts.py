@@ -8,7 +8,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.model.kinds import Resistance
 from eomgen.model.parts import Body, Model
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression import Expression
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.text import other_words
+from eomgen.symbolic.expression import other_words
 
 
 class Decimal(str):

@@ -12,18 +12,21 @@ from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.fields import Leaf, WrittenEquation, named
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import formula_at
-from eomgen.symbolic.expression.dimensions import (
+from eomgen.symbolic.expression import (
     NUMBER,
     SECOND,
     TIME,
+    Call,
     Clash,
     Dimension,
+    Expression,
     Inference,
+    Reference,
+    Unit,
     Walk,
     dimension_of_unit,
+    parse_unit,
 )
-from eomgen.symbolic.expression.formula import Call, Expression, Reference
-from eomgen.symbolic.expression.units import Unit, parse_unit
 
 PER_NAME = ("coordinate", "coordinate or speed")
 RATES = {"start": 0, "near": 0, "motion": 0, "speed": 1, "rate": 1, "acceleration": 2}

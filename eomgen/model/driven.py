@@ -16,8 +16,7 @@ from eomgen.model.diagnostics import nearest
 from eomgen.model.fields import MOTION, Table, WrittenEquation
 from eomgen.model.part import Part, altered, part_of_values, slots_of
 from eomgen.model.parts import Model
-from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference
-from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression import Call, Expression, Instruction, Reference, as_expression
 
 
 def driving_constraints(model: Model) -> dict[str, tuple[str, ...]]:

@@ -14,10 +14,7 @@ from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Decimal, Diagnostic, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.rational import EXACT
-from eomgen.symbolic.expression.text import as_expression
-from eomgen.symbolic.expression.units import Unit, parse_typed_equation, parse_unit
+from eomgen.symbolic.expression import EXACT, Expression, Unit, as_expression, parse_typed_equation, parse_unit
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"

@@ -27,10 +27,9 @@ from eomgen.model.fields import (
 )
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.model.samples import TimeLawRule
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.splines import SMOOTH
-from eomgen.symbolic.print.names import LONGEST, Symbol, parse_symbol
+from eomgen.model.sampled_laws import TimeLawRule
+from eomgen.symbolic.expression import SMOOTH, Expression
+from eomgen.symbolic.print import LONGEST, Symbol, parse_symbol
 
 ValueOf = Callable[[Expression], Any]
 """Value of an expression, in the arithmetic of the caller."""

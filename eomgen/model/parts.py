@@ -46,8 +46,7 @@ from eomgen.model.kinds import (
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.units import Unit
+from eomgen.symbolic.expression import Expression, Unit
 
 UnitText = Annotated[Unit, UNIT]
 ShapeField = Annotated[Shape, SeamRule("shape", shapes.ALL)]

@@ -12,12 +12,12 @@ from typing import Any
 from eomgen.errors import ModelError, Problem, UsageError
 from eomgen.files import read, read_stdin
 from eomgen.model.diagnostics import TABLES, Decimal, Diagnostic, shown
+from eomgen.model.likely_mistakes import warnings_of
 from eomgen.model.making import MOST_DIAGNOSTICS, diagnostics_of, draft_of, resolved
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
 from eomgen.model.replaced import Values, with_values
-from eomgen.model.unbuilt import warnings_of
-from eomgen.symbolic.expression.text import invisible
+from eomgen.symbolic.expression import invisible
 
 LARGEST = 1_000_000  # bytes
 WIDEST = 100  # characters of a source line that an error shows

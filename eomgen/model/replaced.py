@@ -23,11 +23,10 @@ from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.fields import Table, WrittenEquation, is_mixed
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
-from eomgen.model.samples import TimeLawRule
+from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.model.typed import Settled, Typing, shown
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.units import Typed, Unit, parse_typed_equation, parse_unit
+from eomgen.symbolic.expression import Expression, Typed, Unit, parse_typed_equation, parse_unit
 
 Values = Mapping[str, Typed]
 

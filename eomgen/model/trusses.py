@@ -11,7 +11,7 @@ from eomgen.model.joints.placed import Placed
 from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Body, Model, Truss
 from eomgen.model.shapes.lines import Particle
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression import Expression
 
 
 def in_parts(model: Model) -> Model:

@@ -18,10 +18,20 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import nearest
 from eomgen.model.dimensions import Inferred, inferred
 from eomgen.model.fields import WrittenEquation
-from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, in_words, quoted
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.units import Typed, Unit, is_plain, read_typed, unit_for_name
+from eomgen.symbolic.expression import (
+    Dimension,
+    Expression,
+    Typed,
+    Unit,
+    Walk,
+    dimension_of_unit,
+    in_words,
+    is_plain,
+    parse,
+    quoted,
+    read_typed,
+    unit_for_name,
+)
 
 
 @dataclass(frozen=True)

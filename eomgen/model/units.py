@@ -9,10 +9,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Names, inferred
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model, Output
-from eomgen.symbolic.expression.dimensions import Dimension, dimension_of_unit
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import single_call
-from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.expression import Dimension, Fraction, Unit, dimension_of_unit, parse_unit, single_call
 
 ALWAYS = {"t": "s", "energy": "J"}
 OUTPUT = " (output)"  # after the name of an output's column, where another column has that name

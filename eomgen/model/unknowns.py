@@ -6,7 +6,7 @@ from eomgen.errors import DerivationError
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression import Expression
 
 REQUESTED = ("given", "outputs", "unknowns")
 """Tables in which an unknown is no load: its declaration, requested results, the kinematics of an instant."""

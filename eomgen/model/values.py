@@ -9,9 +9,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.diagnostics import nearest
 from eomgen.model.parts import Model
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression import Expression, Graph, as_expression
 
 
 def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
@@ -161,8 +159,8 @@ def _float(expression: Expression | None, values: Mapping[str, Any], where: str)
 
 def _slope(motion: Expression, values: Mapping[str, Any], where: str) -> float:
     """f'(0) of a given motion, by the exact derivative."""
-    from eomgen.symbolic.expression.derivative import derivative
-    from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+    from eomgen.symbolic.expression import derivative
+    from eomgen.symbolic.numeric import FLOAT, evaluate
 
     _float(motion, values, where)
     graph = Graph()

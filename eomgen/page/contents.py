@@ -12,12 +12,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import Document
-from eomgen.documents.statements import Prose, Step
+from eomgen.documents import Document, Prose, Step
 from eomgen.frozen import Pickled, dataclass
-from eomgen.model.fields import Table
+from eomgen.model import Table
 from eomgen.page.markup import Html
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof import Certificate, Check
 
 SECTIONS = {
     "figure": "Figure",

@@ -17,29 +17,29 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.equilibrium_picture import rest_picture
-from eomgen.documents.figures import (
+from eomgen.documents import (
     KINDS,
+    Code,
+    Notation,
     Picture,
+    Piece,
     by_unit,
     kinds_of_lines,
     largest_reactions,
     mathtext,
+    missing_values,
     notation_of_run,
     owner_of,
+    prose,
     reactions_by_unit,
+    rest_picture,
 )
-from eomgen.documents.latex_math import Notation
-from eomgen.documents.statements import Code, Piece, prose
-from eomgen.documents.statics.pictures import missing_values
 from eomgen.frozen import dataclass
-from eomgen.model.parts import Model
+from eomgen.model import Model
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, curve_path, element, in_a_row, stepped
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.units import Unit
+from eomgen.simulation import Trajectory
+from eomgen.symbolic.expression import Graph, Node, Unit
 
 OFTEN = 4  # times that a look is said before it has a name
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)

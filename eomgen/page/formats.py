@@ -9,9 +9,7 @@ import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from eomgen.documents.latex import setter_of
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.markdown import markdown_blocks, markdown_escaped
+from eomgen.documents import Setter, markdown_blocks, markdown_escaped, setter_of
 from eomgen.errors import RunFailed, ToolMissing, UsageError, visible
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.figure import Pictures

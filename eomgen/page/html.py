@@ -9,22 +9,29 @@ from html import unescape
 from importlib import resources
 from itertools import chain, zip_longest
 
-from eomgen.documents.latex import (
+from eomgen.documents import (
+    Cell,
+    Code,
+    Formula,
+    Grid,
     Group,
+    Lines,
+    Piece,
+    Prose,
+    Setter,
+    Step,
     display_blocks,
+    formula_text,
     grouped,
     piece_latex,
     setter_of,
     side_latex,
 )
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
-from eomgen.documents.text import formula_text
 from eomgen.errors import ToolMissing
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
 from eomgen.page.markup import Html, element, font_face, html, in_a_row, in_a_script, mathml, packed, script, style
 from eomgen.page.packing import table_bytes, with_far_copies
-from eomgen.proof.check import SIGNS, Certificate
+from eomgen.proof import SIGNS, Certificate
 from eomgen.version import __version__
 
 LARGEST = 1.5  # pixels of a point of a picture

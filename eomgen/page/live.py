@@ -14,35 +14,27 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen.program import (
+from eomgen.codegen import (
     Program,
+    determinate,
     kinematic_rates,
     program_in_motion,
     program_of,
     right_hand_side,
     unit_quaternions_of,
 )
-from eomgen.codegen.programs import determinate
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import fixed_by_position
-from eomgen.mechanics.constraints.closure import gaps_of, is_guess, is_typed
-from eomgen.mechanics.constraints.rows import left_of
-from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.dynamics.formulations import mass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.friction import with_rest
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.mechanics.kinematics.tree import branches_of
-from eomgen.mechanics.start.state import start_speeds
-from eomgen.model.arithmetic import in_order
-from eomgen.model.parts import Coordinate, Model
+from eomgen.mechanics.constraints import fixed_by_position, gaps_of, is_guess, is_typed, left_of
+from eomgen.mechanics.dynamics import System, mass, with_accelerations
+from eomgen.mechanics.free_bodies import with_rest
+from eomgen.mechanics.kinematics import Scope, branches_of
+from eomgen.mechanics.start import start_speeds
+from eomgen.model import Coordinate, Model, in_order
 from eomgen.scene import Scene
-from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.solvers import breakpoints_of
-from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.work import growing
+from eomgen.simulation import PhaseModel, breakpoints_of
+from eomgen.symbolic.expression import Node, Scalar, is_zero, jacobian, substituted, symbols_of
+from eomgen.symbolic.numeric import growing
 
 Slopes = list[tuple[int, int]]
 

@@ -6,13 +6,25 @@ import re
 from collections.abc import Callable
 from itertools import zip_longest
 
-from eomgen.documents.latex import Group, display_blocks, grouped, piece_latex, setter_of, side_latex
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.statements import Cell, Code, Grid, Lines, Piece, Prose
+from eomgen.documents import (
+    Cell,
+    Code,
+    Grid,
+    Group,
+    Lines,
+    Piece,
+    Prose,
+    Setter,
+    display_blocks,
+    grouped,
+    piece_latex,
+    setter_of,
+    side_latex,
+)
 from eomgen.page.contents import INKS, Report, ReportFigure, ReportSection
 from eomgen.page.html import svg
 from eomgen.page.markup import element, in_a_row, style
-from eomgen.proof.check import SIGNS, Certificate
+from eomgen.proof import SIGNS, Certificate
 from eomgen.version import __version__
 
 WHOLE = 576.0  # points of a picture that is as wide as the text

@@ -15,30 +15,29 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen.rhs import compiled
-from eomgen.codegen.targets.base import TestVector
-from eomgen.codegen.targets.javascript import javascript_expression
-from eomgen.codegen.vectors import vectors
-from eomgen.documents.latex_math import notation_of
+from eomgen.codegen import TestVector, compiled, javascript_expression, vectors
+from eomgen.documents import notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.model.contacts import contacts_of, pieces_of
-from eomgen.model.parts import Model
-from eomgen.model.units import units_of
+from eomgen.model import Model, contacts_of, pieces_of, units_of
 from eomgen.page.live import Live, single_reactions
 from eomgen.page.markup import in_a_script, mathml, packed
 from eomgen.page.packing import packed_columns
-from eomgen.proof.at_a_state import NumericState
-from eomgen.proof.check import Check, Tally, differing
-from eomgen.proof.pictures_reported import picture_of_page, pictures_reported, states_shown
-from eomgen.proof.reports_read import columns_unpacked, unpacked
+from eomgen.proof import (
+    Check,
+    NumericState,
+    Tally,
+    columns_unpacked,
+    differing,
+    picture_of_page,
+    pictures_reported,
+    states_shown,
+    unpacked,
+)
 from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
-from eomgen.simulation.contacts import Configuration
-from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.units import parse_unit
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SEVEN_DIGITS
+from eomgen.simulation import Configuration, PhaseModel, Trajectory
+from eomgen.symbolic.expression import parse_unit
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, SEVEN_DIGITS, NoValue, evaluate, fifty_digits
 from eomgen.version import __version__
 
 # -------- player data -----------------------------------------------------------------------------------------

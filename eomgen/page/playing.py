@@ -11,20 +11,17 @@ from pathlib import Path
 import numpy as np
 
 from eomgen import files, pipeline
-from eomgen.codegen.rhs import compiled
-from eomgen.codegen.targets.base import TestVector
+from eomgen.codegen import TestVector, compiled
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.model.parts import Model
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Taken, TypedNumbers, Values
+from eomgen.mechanics.dynamics import with_nodes_balanced
+from eomgen.model import Model, ModelOrPath, Taken, TypedNumbers, Values, model_at
 from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
-from eomgen.proof.check import Certificate, Check, checked, unchecked
+from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import run_of_a_page
-from eomgen.symbolic.expression.units import Typed, seconds
-from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.expression import Typed, seconds
+from eomgen.symbolic.numeric import doing
 
 SAMPLES = 401  # of a run in a page
 LIKE = "write --slider m=0.1:5"

@@ -12,27 +12,30 @@ from functools import partial
 
 import numpy as np
 
-from eomgen.documents.read_back import HOW, PageComparison, Wanted, wanted_of
-from eomgen.documents.statements import Formula
-from eomgen.documents.texts_read import flat, formula_said
+from eomgen.documents import HOW, Formula, PageComparison, Wanted, flat, formula_said, wanted_of
 from eomgen.errors import ExpressionError
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.formats import FilesByName
-from eomgen.proof.check import Check, Tally, checked
-from eomgen.proof.pages_read import PageLine, SetLetters, spoken, tokens_of, typeset
-from eomgen.proof.reports_read import (
+from eomgen.proof import (
+    Check,
+    PageLine,
     ReadCurves,
     ReadReport,
+    SetLetters,
+    Tally,
+    checked,
     columns_reported,
     html_report,
     latex_report,
     markdown_report,
     notebook_report,
+    spoken,
+    tokens_of,
+    typeset,
 )
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.units import parse_unit
-from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import NINE_DIGITS
+from eomgen.simulation import Trajectory
+from eomgen.symbolic.expression import parse_unit
+from eomgen.symbolic.numeric import NINE_DIGITS, NoValue
 
 CURVES = "curves and tables of the report, read back, are those of the run"
 BY_AXES = "by the numbers at their axes and the names of columns"

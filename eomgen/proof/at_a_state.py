@@ -13,34 +13,44 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import right_hand_side
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, compiled, right_hand_side
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import of_50_digits as precise
-from eomgen.mechanics.dynamics.accelerations import exact_accelerations, with_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.kinematics.loads import weights
-from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import BALANCE
+from eomgen.mechanics.constraints import of_50_digits as precise
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
+from eomgen.mechanics.free_bodies import Balance, Indeterminate
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.kinematics import weights
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.check import differing
 from eomgen.proof.in_numbers import pushes_of, with_inputs
 from eomgen.proof.printed import least_multipliers
 from eomgen.proof.states import TrialState
 from eomgen.proof.trials import Trials, refuse_noise
-from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import BESIDE_A_PLACE, COMPUTED, RANK_NEARBY, ROUNDING, SAME_PLACE
+from eomgen.simulation import ReactionColumns
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    State,
+    depends_on,
+    order,
+    parse,
+    substituted,
+)
+from eomgen.symbolic.numeric import (
+    BESIDE_A_PLACE,
+    COMPUTED,
+    RANK_NEARBY,
+    ROUNDING,
+    SAME_PLACE,
+    NoValue,
+    evaluate,
+    fifty_digits,
+)
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times the change between nearby states, by which a number may be wrong

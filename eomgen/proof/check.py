@@ -8,8 +8,7 @@ from typing import Any, Literal
 
 from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
+from eomgen.symbolic.numeric import COMPUTED, SOLVED, NoValue
 
 Status = Literal["holds", "fails", "unchecked"]
 MARKS: dict[Status, str] = {"holds": "ok  ", "fails": "FAIL", "unchecked": "?   "}

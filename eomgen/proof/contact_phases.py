@@ -21,34 +21,23 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_norms
-from eomgen.mechanics.constraints.rows import Row, rows_of_constraint
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies.friction import frictions
-from eomgen.mechanics.kinematics.inertia import armatures, given_momenta, mass_properties
-from eomgen.mechanics.kinematics.motion import velocity_of
-from eomgen.mechanics.kinematics.scene import CLOSED, ContactMode
-from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.start.state import start_of_motion
-from eomgen.model.contacts import Contact, contacts_of
-from eomgen.model.kinds import Resistance
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.constraints import Row, of_50_digits, on_unit_norms, rows_of_constraint
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
+from eomgen.mechanics.free_bodies import frictions
+from eomgen.mechanics.kinematics import CLOSED, ContactMode, armatures, given_momenta, mass_properties, velocity_of
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.start import start_of_motion
+from eomgen.model import Contact, Resistance, contacts_of, exact_parameters
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
-from eomgen.simulation.contacts import sliding_velocity
-from eomgen.simulation.phase_model import PhaseModel, Values, slack_name
-from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.simulation.result import Phase
-from eomgen.symbolic.expression.node import Scalar, State
-from eomgen.symbolic.expression.spatial import apply
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, OPEN_GAP, SUMMED, UNBALANCED, ZERO_AT_50
+from eomgen.simulation import Phase, PhaseModel, ReactionColumns, Values, slack_name, sliding_velocity
+from eomgen.symbolic.expression import Scalar, State, apply
+from eomgen.symbolic.numeric import CARRIED, OPEN_GAP, SUMMED, UNBALANCED, ZERO_AT_50, NoValue, evaluate, fifty_digits
 
 STATES = 100  # of a phase that are looked at
 

@@ -9,24 +9,30 @@ from random import Random
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.kinematics.inertia import HALF, mass_properties
-from eomgen.mechanics.kinematics.loads import Applied, JointEffort, weights
-from eomgen.mechanics.kinematics.motion import BodyLink, velocity_of
-from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.model.constraints.base import Thread
-from eomgen.model.forces.base import (
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.kinematics import (
+    HALF,
+    Applied,
+    BodyLink,
+    JointEffort,
+    SystemScene,
+    mass_properties,
+    velocity_of,
+    weights,
+)
+from eomgen.model import (
     Act,
     CoupleOn,
     Element,
     GivenEnergy,
+    PushAlong,
     PushAlongLine,
     PushAt,
     PushOfMass,
     PushOnCoordinate,
+    Thread,
+    UniformField,
 )
-from eomgen.model.forces.load import UniformField
-from eomgen.model.joints.base import PushAlong
 from eomgen.proof.in_numbers import (
     STEP,
     InNumbers,
@@ -39,16 +45,18 @@ from eomgen.proof.in_numbers import (
     way_through,
 )
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression.node import Scalar, State, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     ZERO,
     Numbers,
     Pose,
+    Scalar,
+    State,
     Twist,
     Vector,
     apply,
     cross,
     dot,
+    is_zero,
     minus,
     plus,
     product,
@@ -56,8 +64,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50
+from eomgen.symbolic.numeric import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50, NoValue, evaluate, fifty_digits
 
 # -------- declared work ---------------------------------------------------------------------------------------
 # System, state -> whether all that is applied acts as its fields declare it, in numbers: no load is looked at twice.

@@ -16,14 +16,10 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.model.part import leaves_of
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
+from eomgen.model import Model, exact_parameters, leaves_of
 from eomgen.proof.check import Check, checked, first_wrong
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import DeclaredSamples, Sampled
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import DeclaredSamples, Expression, Fraction, Sampled
+from eomgen.symbolic.numeric import COMPUTED
 
 SIZES = {  # of one of it, in SI
     **{"1": 1, "m": 1, "km": 1e3, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "kg": 1, "g": 1e-3, "t": 1e3, "s": 1, "ms": 1e-3},

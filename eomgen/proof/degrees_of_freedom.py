@@ -24,27 +24,28 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rank import Freedom, RowName
-from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.kinematics.loads import Applied
-from eomgen.mechanics.kinematics.motion import motion_of
-from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.mechanics.kinematics.symbols import Scope, scope_of
-from eomgen.mechanics.rigidity.structure import Structure
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.mechanics.start.state import start_of_motion
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.constraints import Constraints, Freedom, Row, RowName, constraints_of, generic_state
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
+from eomgen.mechanics.rigidity import Structure
+from eomgen.mechanics.start import start_of_motion, values_of_parameters
+from eomgen.model import Model, exact_parameters
 from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
-from eomgen.symbolic.expression.derivative import jacobian, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.numeric.dense import follows_in_digits, rank
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, solved_quickly
-from eomgen.symbolic.numeric.tolerances import DIFFERENCE_AT_50, MET_AT_50, SOLVED, ZERO_AT_50
+from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
+from eomgen.symbolic.numeric import (
+    DIFFERENCE_AT_50,
+    FLOAT,
+    MET_AT_50,
+    SOLVED,
+    ZERO_AT_50,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    follows_in_digits,
+    rank,
+    solved_quickly,
+)
 
 MOST = 60  # speeds, of which the differences are taken
 SUMMAND = re.compile(r"([+-]?)\s*(?:(\d+)\*)?(\d+) \([^)]*\)")  # of a count: "3*2 (bodies) - 4 (joints)"

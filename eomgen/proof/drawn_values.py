@@ -14,7 +14,7 @@ from itertools import product
 from typing import Any
 
 from eomgen.proof.check import Check, checked, first_wrong
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+from eomgen.symbolic.numeric import CARRIED, COMPUTED
 
 HOW = "floating point, every run"
 MASK = 2**64 - 1

@@ -18,25 +18,29 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import Program
-from eomgen.codegen.rhs import target_named
-from eomgen.codegen.targets.base import RHS, FileContent, Role, TestVector
+from eomgen.codegen import RHS, FileContent, Program, Role, TestVector, target_named
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import closed, movable, speeds_closed
-from eomgen.mechanics.constraints.closure import of_50_digits as precise
-from eomgen.mechanics.dynamics.accelerations import accelerations_at
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.kinematics.inertia import joint_row
+from eomgen.mechanics.constraints import closed, movable, speeds_closed
+from eomgen.mechanics.constraints import of_50_digits as precise
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, accelerations_at, free_rates
+from eomgen.mechanics.kinematics import joint_row
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import instant_of, with_inputs
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, LARGEST_SQUARED, SEVEN_DIGITS, SOLVED
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, State, order
+from eomgen.symbolic.numeric import (
+    CARRIED,
+    COMPUTED,
+    LARGEST_SQUARED,
+    SEVEN_DIGITS,
+    SOLVED,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    floats_of,
+    of_one_length,
+)
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
 FAR = 1e-2  # of the least of the singular values of scaled rows, from which doubles solve them to COMPUTED

@@ -23,39 +23,52 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import System, joint_forces, placeless_forces
-from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.friction import frictions
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.free_bodies.wrenches import Effect, efforts_of
-from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, mass_properties
-from eomgen.mechanics.kinematics.loads import body_wrench, weights
-from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.mechanics.reactions.inverse import with_drive_let_go
-from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.mechanics.constraints import generic_state, rows_where_closed
+from eomgen.mechanics.dynamics import System, free_rates, joint_forces, placeless_forces
+from eomgen.mechanics.free_bodies import (
+    Balance,
+    Effect,
+    Indeterminate,
+    NamedReaction,
+    efforts_of,
+    frictions,
+    named_reactions,
+)
+from eomgen.mechanics.kinematics import BodyLink, armature_bias, armature_mass, body_wrench, mass_properties, weights
+from eomgen.mechanics.reactions import Reactions, with_drive_let_go
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
-from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
+    Node,
+    Scalar,
+    State,
     Vector,
     Wrench,
     apply,
     cross,
+    gradient,
     matrix_of,
     minus,
     plus,
+    pullback,
+    symbols_of,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.dense import balanced, rank
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, NEARLY_SINGULAR, RANK, SUMMED, ZERO_AT_50
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    NEARLY_SINGULAR,
+    RANK,
+    SUMMED,
+    ZERO_AT_50,
+    NoValue,
+    balanced,
+    evaluate,
+    fifty_digits,
+    rank,
+)
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
 

@@ -10,18 +10,15 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import formulations
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, powered_forces, summed
-from eomgen.mechanics.free_bodies.friction import with_friction
-from eomgen.mechanics.kinematics.inertia import kinetic_energy
-from eomgen.mechanics.reactions.inverse import inverse_residual
+from eomgen.mechanics.dynamics import ALL as FORMULATIONS
+from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates, powered_forces, summed
+from eomgen.mechanics.free_bodies import with_friction
+from eomgen.mechanics.kinematics import kinetic_energy
+from eomgen.mechanics.reactions import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
-from eomgen.symbolic.exact.equality import Equality, equal_at_real_states, equal_in_field
-from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow
+from eomgen.symbolic.exact import Equality, equal_at_real_states, equal_in_field
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, gradient, inner, substituted, tangent
 
 Pairs = list[tuple[Scalar, Scalar]]
 
@@ -33,6 +30,23 @@ class Claim:
     name: str
     pairs: Pairs
     labels: Sequence[str]
+
+
+def identity_checks(
+    equations: EquationsOfMotion, derived: EquationsOfMotion | None = None, states: States | None = None
+) -> list[Check]:
+    """Checks of all identities of equations of motion.
+
+    Args:
+        derived: the same equations by the way in which a derivation is written.
+        states: real states that come before random ones.
+    """
+    claims = [rates(equations), *routes(equations), mass_matrix(equations), energy(equations)]
+    if derived is not None:
+        claims.append(derivation(equations, derived))
+    if equations.J:
+        claims.append(closing_rows(equations))
+    return compared(claims, states)
 
 
 def compared(claims: Sequence[Claim], states: States | None = None) -> list[Check]:
@@ -82,7 +96,7 @@ def routes(equations: EquationsOfMotion) -> Iterable[Claim]:
     Ma = tuple(inner(row, symbols.a) for row in equations.M)
     Q = tuple(x - f for x, f in zip(equations.Q, friction, strict=True))
     labels = [f"{word} [{name}]" for word in ("M a", "c", "Q") for name in speeds]
-    for way in formulations.ALL:
+    for way in FORMULATIONS:
         if way.along is not None:
             pairs = _paired((Ma, equations.c, Q), way.along(system))
             yield Claim(f"M a, c and Q agree with those by {way.title}", pairs, labels)
@@ -92,7 +106,7 @@ def routes(equations: EquationsOfMotion) -> Iterable[Claim]:
     labels = [f"{word} [{name}]" for word in ("M a + c - Q", "forcing") for name in speeds]
     yield Claim("M a + c - Q agrees with inverse dynamics, body by body", pairs, labels)
     if friction != (0,) * len(equations.Q):
-        other = with_friction(formulations.LAGRANGE.assemble(system)).friction
+        other = with_friction(LAGRANGE.assemble(system)).friction
         yield Claim("friction agrees with that by Lagrange's equations", [*zip(friction, other, strict=True)], speeds)
 
 

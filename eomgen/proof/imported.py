@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.model.forces.base import PushOfMass
-from eomgen.model.joints.base import Joint
-from eomgen.model.parts import Model
+from eomgen.model import Joint, Model, PushOfMass
 from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import (
     FloatPose,
@@ -25,7 +23,7 @@ from eomgen.proof.posed_model import (
     turn_about,
     turn_by_three,
 )
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric import COMPUTED
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element

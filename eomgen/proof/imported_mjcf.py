@@ -14,13 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.model.joints.base import Joint
-from eomgen.model.parts import Model
+from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.model import Joint, Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import PosedModel, poses_differ, quaternion_names
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED
+from eomgen.symbolic.numeric import CARRIED, FLOAT, evaluate
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
 JOINT_WRAP, SITE_WRAP = 1, 3  # of the path of a tendon

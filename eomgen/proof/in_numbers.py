@@ -10,16 +10,15 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.loads import in_ground_axes
-from eomgen.mechanics.kinematics.motion import Motion
-from eomgen.model.forces.load import Couple, PointForce
-from eomgen.model.samples import given_samples
-from eomgen.symbolic.expression.node import Scalar, State
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import Motion, in_ground_axes
+from eomgen.model import Couple, PointForce, given_samples
+from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
     Numbers,
+    Scalar,
+    State,
     apply,
     cross,
     dot,
@@ -30,8 +29,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric import ZERO_AT_50, NoValue, evaluate, fifty_digits
 
 SAMPLES = "times of samples"
 STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square

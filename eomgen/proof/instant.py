@@ -21,16 +21,11 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.instant.kinematic_state import BodyMotion, KinematicState, composition_of
-from eomgen.mechanics.instant.mechanism import FIXED
-from eomgen.mechanics.instant.motion_kind import Kind
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.kinematics.inertia import armature_energy
-from eomgen.mechanics.kinematics.loads import JointEffort, weights
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.model.forces.load import GeneralizedForce, PointForce
-from eomgen.model.outputs import FUNCTIONS
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import FIXED, BodyMotion, Kind, KinematicState, Quantities, composition_of
+from eomgen.mechanics.kinematics import JointEffort, armature_energy, weights
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.model import FUNCTIONS, GeneralizedForce, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
 from eomgen.proof.declared_loads import acting
@@ -38,30 +33,30 @@ from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through, with_inputs
 from eomgen.proof.states import closed_state
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.formula import Call
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
+    Call,
     Matrix,
+    Node,
     Numbers,
+    Scalar,
     Vector,
     apply,
     cross,
     dot,
+    is_zero,
     matrix_of,
     minus,
+    parse_equation,
     plus,
     product,
+    symbols_of,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.expression.text import parse_equation
-from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LARGEST_AT_50
+from eomgen.symbolic.numeric import COMPUTED, DIFFERENCE_AT_50, LARGEST_AT_50, NoValue, evaluate, fifty_digits, rank
 
 DIFFERENCES = "differences at 50 digits"
 MOST_TRIPLES = 60  # of bodies whose three centres are looked at

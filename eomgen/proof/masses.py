@@ -20,20 +20,23 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_norms
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import Motion, made_of
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.model.composite import PlacedPiece, pose_of
-from eomgen.model.shapes import MassProperties, Shape
-from eomgen.model.shapes.base import Cell
+from eomgen.mechanics.constraints import of_50_digits, on_unit_norms
+from eomgen.mechanics.kinematics import Motion, Scope, made_of, mass_properties
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import Pose, Vector
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP, LARGEST_SQUARED, ROUNDING
+from eomgen.symbolic.expression import Expression, Node, Pose, Scalar, Vector
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    FLOAT,
+    IMAGINARY_STEP,
+    LARGEST_SQUARED,
+    ROUNDING,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    floats_of,
+)
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"

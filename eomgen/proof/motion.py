@@ -9,22 +9,18 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import bordered, program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, bordered, compiled, program_of
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.friction import with_rest
-from eomgen.mechanics.kinematics.inertia import HALF, mass_properties
-from eomgen.model.forces.base import GivenEnergy, PushOfMass
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies import with_rest
+from eomgen.mechanics.kinematics import HALF, mass_properties
+from eomgen.model import GivenEnergy, PushOfMass
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.identities import energy_function, given_power
-from eomgen.symbolic.expression.derivative import depends_on, gradient
-from eomgen.symbolic.expression.node import Scalar, State, is_zero
-from eomgen.symbolic.expression.spatial import apply, dot
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ITERATED, LARGEST_SQUARED, SUMMED, ZERO_AT_50
+from eomgen.symbolic.expression import Scalar, State, apply, depends_on, dot, gradient, is_zero
+from eomgen.symbolic.numeric import ITERATED, LARGEST_SQUARED, SUMMED, ZERO_AT_50, evaluate, fifty_digits
 
 PER_STEP = 10  # tolerances of the run that one step may cost
 SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it

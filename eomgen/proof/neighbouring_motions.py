@@ -13,15 +13,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.linearization import SmallMotions
-from eomgen.mechanics.linearization.reduction import NAME
-from eomgen.model.joints.ball import rotation_of
-from eomgen.model.values import quaternions_of
+from eomgen.mechanics.linearization import NAME, SmallMotions
+from eomgen.model import quaternions_of, rotation_of
 from eomgen.proof.degrees_of_freedom import Going, Nearby, Numbers50
 from eomgen.proof.in_numbers import STEP
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.spatial import Matrix, apply, cross, plus, transposed, vector_of
-from eomgen.symbolic.numeric.evaluation import fifty_digits
+from eomgen.symbolic.expression import Matrix, Node, apply, cross, plus, transposed, vector_of
+from eomgen.symbolic.numeric import fifty_digits
 
 DigitColumn = Sequence[Any]
 

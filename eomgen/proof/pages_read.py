@@ -13,8 +13,8 @@ from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import Arithmetic, NoValue
+from eomgen.symbolic.expression import Fraction
+from eomgen.symbolic.numeric import Arithmetic, NoValue
 
 GREEK = "alpha beta gamma delta zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi omega"
 _CHARACTERS = {

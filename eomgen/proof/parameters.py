@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from eomgen.mechanics.kinematics.motion import Motion
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.kinematics import Motion, Scope
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.model import exact_parameters
 from eomgen.proof.check import Check, checked
 from eomgen.proof.declared_numbers import other_functions
 from eomgen.proof.masses import other_masses
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric import COMPUTED
 
 
 def other_data(motion: Motion) -> Iterator[Check]:

@@ -17,24 +17,51 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.loads import body_wrench
-from eomgen.mechanics.kinematics.motion import BodyLink, ground_place, motion_of
-from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.mechanics.kinematics.symbols import scope_of
-from eomgen.model.constraints.base import BodyLine, FlatSurface, Groove, Meeting, RoundSurface, TouchingPoint
-from eomgen.model.forces.load import Push
-from eomgen.model.joints.base import Joint, Move, QuaternionTurn, SlideAlong, TurnAbout, WayAlongPieces
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import (
+    BodyLink,
+    SystemScene,
+    body_wrench,
+    ground_place,
+    mass_properties,
+    motion_of,
+    scope_of,
+)
+from eomgen.model import (
+    BodyLine,
+    FlatSurface,
+    Groove,
+    Joint,
+    Meeting,
+    Model,
+    Move,
+    Push,
+    QuaternionTurn,
+    RoundSurface,
+    SlideAlong,
+    TouchingPoint,
+    TurnAbout,
+    WayAlongPieces,
+    exact_parameters,
+)
 from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, Numbers, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.expression.traversal import Symbols
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
+from eomgen.symbolic.expression import (
+    IDENTITY,
+    ZERO,
+    Node,
+    Numbers,
+    Scalar,
+    State,
+    Symbols,
+    cross,
+    dot,
+    minus,
+    plus,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, ZERO_AT_50, evaluate, fifty_digits
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
 REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": name in the other file

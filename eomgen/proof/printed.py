@@ -16,25 +16,15 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import of_50_digits as precise
-from eomgen.mechanics.dynamics.accelerations import exact_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.kinematics.inertia import spin_of
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import BALANCE
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.constraints import of_50_digits as precise
+from eomgen.mechanics.dynamics import EquationsOfMotion, exact_accelerations
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.kinematics import spin_of
+from eomgen.model import BALANCE, FUNCTIONS, exact_parameters
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.formula import Call, inner
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.expression.text import LONGEST, parse
-from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
+from eomgen.symbolic.numeric import COMPUTED, NoValue, evaluate, fifty_digits, of_one_length
 
 SPINS = ("omega_1", "omega_2", "omega_3")  # about the axes of the body
 SOON = (precise(1) / 1000, precise(1) / 70)  # s after the start, in whose piece a law holds

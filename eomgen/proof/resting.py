@@ -16,18 +16,24 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system
-from eomgen.mechanics.equilibrium.search import Equilibrium
-from eomgen.mechanics.linearization.first_order import FirstOrder
-from eomgen.mechanics.start.exact import values_of_parameters
+from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, standing_system
+from eomgen.mechanics.linearization import FirstOrder
+from eomgen.mechanics.start import values_of_parameters
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.in_numbers import STEP, with_inputs
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, SHARE, ZERO_AT_50
+from eomgen.symbolic.expression import Node, jacobian
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    DIFFERENCE_STEP,
+    SAME_PLACE,
+    SHARE,
+    ZERO_AT_50,
+    NoValue,
+    evaluate,
+    fifty_digits,
+)
 
 MOST = 12  # places that are looked at
 ASIDE = (

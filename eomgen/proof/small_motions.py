@@ -22,23 +22,24 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.linearization import SmallMotions
-from eomgen.mechanics.linearization.modes import Modes
-from eomgen.mechanics.linearization.polynomial import Polynomial
-from eomgen.mechanics.linearization.reduction import LinearEquations
+from eomgen.mechanics.linearization import LinearEquations, Modes, Polynomial, SmallMotions
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
 from eomgen.proof.neighbouring_motions import Differences, DigitColumn, MotionDifference
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, sums_of_products
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.symbolic.expression import Node
+from eomgen.symbolic.numeric import (
     CARRIED,
     COMPUTED,
     DIFFERENCE_AT_50,
+    FLOAT,
     ROUNDING,
     SAME_PLACE,
     SLOW,
     ZERO_AT_50,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    sums_of_products,
 )
 
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them

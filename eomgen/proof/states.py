@@ -13,15 +13,22 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_norms
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.start.state import start_state
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.constraints import closed, generic_state, movable, of_50_digits, on_unit_norms
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.start import start_state
+from eomgen.model import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
-from eomgen.symbolic.expression.node import Scalar, State, is_zero
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.pieces import Switch, switches_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
+from eomgen.symbolic.expression import Scalar, State, is_zero
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    LARGEST_AT_50,
+    LARGEST_SQUARED,
+    NoValue,
+    Switch,
+    evaluate,
+    fifty_digits,
+    switches_of,
+)
 
 CONSISTENT = (11,)  # seeds of states at which all constraints hold
 OWN_START = "own start"

@@ -20,26 +20,29 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
-from eomgen.mechanics.free_bodies.wrenches import Axes
-from eomgen.mechanics.reactions.equilibrium import imbalance
-from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of, members_of
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.mechanics.statics.influence import InfluenceLine, InfluenceSpan
-from eomgen.mechanics.statics.member_axis import MemberAxis
-from eomgen.mechanics.statics.section_forces import KINDS, MemberLoads, SectionForces, SectionPiece, place_of
-from eomgen.mechanics.statics.virtual_work import StaticReactions, StaticSum
+from eomgen.mechanics.free_bodies import Axes, named_reactions
+from eomgen.mechanics.reactions import imbalance
+from eomgen.mechanics.rigidity import RigidBlock, VelocityPlan, blocks_of, members_of
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.mechanics.statics import (
+    KINDS,
+    InfluenceLine,
+    InfluenceSpan,
+    MemberAxis,
+    MemberLoads,
+    SectionForces,
+    SectionPiece,
+    StaticReactions,
+    StaticSum,
+    place_of,
+)
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import acting_otherwise
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import ZERO, Vector
-from eomgen.symbolic.expression.text import single_call
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FOUR_DIGITS, RANK, SAME_PLACE
+from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, single_call, symbols_of
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, FLOAT, FOUR_DIGITS, RANK, SAME_PLACE, evaluate, fifty_digits
 
 IN_NUMBERS = "floating point"
 MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread

@@ -14,14 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.accelerations import exact_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies.friction import friction_contacts, frictions, push_sizes
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import spin_between
-from eomgen.mechanics.kinematics.scene import CLOSED
-from eomgen.mechanics.reactions.equilibrium import imbalance
-from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
+from eomgen.mechanics.free_bodies import friction_contacts, frictions, push_sizes
+from eomgen.mechanics.kinematics import CLOSED, mass_properties, spin_between
+from eomgen.mechanics.reactions import imbalance, reactions_of
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
@@ -46,15 +42,12 @@ from eomgen.proof.motion import other_energies
 from eomgen.proof.posed_model import apart, meetings_of, misplaced
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
-from eomgen.symbolic.exact.equality import rounding_decides
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Scalar, State, is_zero
-from eomgen.symbolic.expression.spatial import apply, dot, matrix_of, transposed, vector_of
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50
+from eomgen.symbolic.exact import rounding_decides
+from eomgen.symbolic.expression import Scalar, State, apply, dot, inner, is_zero, matrix_of, transposed, vector_of
+from eomgen.symbolic.numeric import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50, NoValue, evaluate, fifty_digits, floats_of
 
 if TYPE_CHECKING:
-    from eomgen.codegen.rhs import RightHandSide
+    from eomgen.codegen import RightHandSide
 
 DIRECTIONS = ((2, 3, 5), (7, -4, 3))  # about which moments of inertia are compared
 NOWHERE = "no state with values was found, at the start, near it or at random"

@@ -19,29 +19,20 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import compiled, right_hand_side
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.start.state import start_state
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import BALANCE
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.dynamics import EquationsOfMotion, free_rates, with_accelerations
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.start import start_state
+from eomgen.model import BALANCE, FUNCTIONS, exact_parameters
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
 from eomgen.proof.trials import Trials
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import SLOPE, parse
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO_AT_50
+from eomgen.symbolic.expression import SLOPE, Call, Expression, Fraction, Node, parse
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, ITERATED, ZERO_AT_50, NoValue, evaluate, fifty_digits
 
 NEAR, FAR = 5, 2  # states near the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
@@ -57,7 +48,7 @@ HOW = "both sides in doubles, at consistent states and along runs from the start
 
 
 @dataclass(frozen=True)
-class Judged:
+class JudgedEquation:
     """An equation with its verdict.
 
     Args:
@@ -105,7 +96,7 @@ class Judged:
         return bool(self.constants) or "a first integral" in self.up_to or "a constant of the potential" in self.up_to
 
 
-def verdicts_again(judged: Iterable[Judged]) -> tuple[Check, ...]:
+def verdicts_again(judged: Iterable[JudgedEquation]) -> tuple[Check, ...]:
     """Checks of all verdicts; those that numbers cannot decide are unchecked."""
     tally = Tally(NAME, HOW)
     for each in judged:
@@ -115,7 +106,7 @@ def verdicts_again(judged: Iterable[Judged]) -> tuple[Check, ...]:
 
 @dataclass(frozen=True)
 class _Again:
-    judged: Judged
+    judged: JudgedEquation
 
     def wrong(self) -> str:
         """Message if the verdict does not hold; "".
@@ -260,7 +251,7 @@ class Rounded:
         return abs(self.value) <= SURE * self.error
 
 
-def _at(state: NumericState, judged: Judged) -> Rounded | None:
+def _at(state: NumericState, judged: JudgedEquation) -> Rounded | None:
     """Left side minus right side at a state; None where it has no value there, or is stated for another piece."""
     error = CARRIED if judged.is_of_start else ITERATED
     sides = Sides(state, judged.stands_for, error)
@@ -272,7 +263,7 @@ def _at(state: NumericState, judged: Judged) -> Rounded | None:
         return None
 
 
-def _constant(sides: Sides, judged: Judged) -> Rounded:
+def _constant(sides: Sides, judged: JudgedEquation) -> Rounded:
     """The author's constant C at a state, by D(C) = D(0) + C (D(1) - D(0)) = 0."""
     none, one, two = (replace(sides, constants=dict.fromkeys(judged.constants, float(c))) for c in range(3))
     D = [each.difference(judged) for each in (none, one, two)]
@@ -324,7 +315,7 @@ class Sides:
     error: float
     constants: Mapping[str, float] = field(default_factory=dict)
 
-    def difference(self, judged: Judged) -> Rounded:
+    def difference(self, judged: JudgedEquation) -> Rounded:
         """Left minus right."""
         left, right = self.worked(judged.left), self.worked(judged.right)
         return Rounded(left.value - right.value, left.error + right.error)

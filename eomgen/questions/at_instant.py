@@ -8,15 +8,14 @@ from random import Random
 
 from eomgen.errors import DerivationError, EomgenError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.integrals.laws import ClosedInstant
-from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.model.values import exact_parameters, numeric_parameters
-from eomgen.simulation.motion import FirstTime, values_of
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.integrals import ClosedInstant
+from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.model import exact_parameters, numeric_parameters
+from eomgen.simulation import FirstTime, values_of
 from eomgen.study import Study
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, transplanted
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, substituted
+from eomgen.symbolic.numeric import FLOAT, evaluate, transplanted
 
 
 @dataclass(frozen=True)
@@ -86,8 +85,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
     Raises:
         DerivationError: there is no equilibrium, or a contact would have to pull there.
     """
-    from eomgen.mechanics.equilibrium.equations import standing_system, static_equations
-    from eomgen.mechanics.equilibrium.search import all_equilibria
+    from eomgen.mechanics.equilibrium import all_equilibria, standing_system, static_equations
 
     statics = static_equations(system)
     if statics.loaded:
@@ -104,7 +102,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
 
 def _held(system: System) -> StateAtInstant:
     """The start, held by the unknowns of the loads."""
-    from eomgen.mechanics.equilibrium.reactions import holding_of
+    from eomgen.mechanics.equilibrium import holding_of
 
     holding = holding_of(system)
     system = holding.statics.system

@@ -16,31 +16,43 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.batching import STATUS, Batch, FoundRuns, Requested
-from eomgen.codegen.rhs import in_c, parameter_vector
-from eomgen.codegen.taylor import order_for, without_series
+from eomgen.codegen import STATUS, Batch, FoundRuns, Requested, in_c, order_for, parameter_vector, without_series
 from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass, with_fields
-from eomgen.mechanics.start.state import start_of_motion
-from eomgen.model.diagnostics import nearest
-from eomgen.model.fields import Table
-from eomgen.model.part import altered
-from eomgen.model.parts import Model, Parameter
-from eomgen.model.replaced import TypedNumbers, are_several, typed_values, with_inputs, with_values
-from eomgen.proof.motion import Promise
+from eomgen.mechanics.start import start_of_motion
+from eomgen.model import (
+    Model,
+    Parameter,
+    Table,
+    TypedNumbers,
+    altered,
+    are_several,
+    nearest,
+    typed_values,
+    with_inputs,
+    with_values,
+)
+from eomgen.proof import Promise
 from eomgen.questions.simulator import SAMPLES, KnownEquations, Runs, Simulator
-from eomgen.simulation.compiled_runs import marched
-from eomgen.simulation.contacts import Configuration, has_phases
-from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
-from eomgen.simulation.integrator import ended_words, reached_words
-from eomgen.simulation.many_runs import BATCHED, ManyStarts
-from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.phase_models import one_phase
-from eomgen.simulation.solvers import AUTO, TAYLOR, breakpoints_of
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.units import Typed, seconds
-from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.numeric.work import check_patience, doing
+from eomgen.simulation import (
+    AUTO,
+    BATCHED,
+    TAYLOR,
+    Configuration,
+    ManyStarts,
+    PhaseModel,
+    breakpoints_of,
+    drift_of,
+    ended_words,
+    has_phases,
+    instants_of,
+    marched,
+    one_phase,
+    reached_words,
+    refuse_bad_run,
+)
+from eomgen.symbolic.expression import Expression, Typed, seconds
+from eomgen.symbolic.numeric import COMPUTED, check_patience, doing
 
 OfRuns = Mapping[str, Any]
 """Values by name: arrays, one number a run, or what all runs share."""

@@ -14,38 +14,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eomgen.codegen.program import program_of, right_hand_side
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import compiled, program_of, right_hand_side
 from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.dynamics.pieces import Extent
-from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.kinematics.places import Located
-from eomgen.mechanics.start.exact import ExactStart
-from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.model.parts import Model, Output
+from eomgen.mechanics.constraints import holds_identically
+from eomgen.mechanics.dynamics import Extent, system_of, with_accelerations
+from eomgen.mechanics.kinematics import Located
+from eomgen.mechanics.start import ExactStart
+from eomgen.model import AtRest, Model, Output, WrittenEquation
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
 from eomgen.questions.single_run import RunProof
-from eomgen.simulation.constraint_drift import nearness_of, projection_of
-from eomgen.simulation.contacts import by_the_law, has_phases
-from eomgen.simulation.integrate import integrate
-from eomgen.simulation.phase_run import PhaseRun, joined
-from eomgen.simulation.result import Trajectory
-from eomgen.simulation.solvers import AUTO
+from eomgen.simulation import (
+    AUTO,
+    PhaseRun,
+    Trajectory,
+    by_the_law,
+    has_phases,
+    integrate,
+    joined,
+    nearness_of,
+    projection_of,
+)
 from eomgen.study import Study, study_at_rest, study_of
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.sure_numbers import number_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE
+from eomgen.symbolic.expression import Node, Scalar, depends_on, substituted
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, FINE_RUN, FLOAT, RUNS_AGREE, evaluate, number_of
 
 if TYPE_CHECKING:
-    from eomgen.simulation.integrator import Stepping
-    from eomgen.simulation.phase_change import PhaseStart
-    from eomgen.simulation.phase_model import PhaseModel
-    from eomgen.simulation.phase_models import PhaseModels
+    from eomgen.simulation import PhaseModel, PhaseModels, PhaseStart, Stepping
 
 
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
@@ -71,8 +66,8 @@ class MotionFromStart:
         """The phases of a model that has any, and values for its parameters; else None."""
         if not has_phases(self.model):
             return None
-        from eomgen.codegen.rhs import parameter_vector
-        from eomgen.simulation.phase_models import PhaseModels
+        from eomgen.codegen import parameter_vector
+        from eomgen.simulation import PhaseModels
 
         try:
             return PhaseModels(self.model, parameter_vector(self.model), "numpy")
@@ -82,7 +77,7 @@ class MotionFromStart:
     @cached_property
     def _first(self) -> PhaseStart:
         """Start of the first phase."""
-        from eomgen.simulation.phase_change import at_start
+        from eomgen.simulation import at_start
 
         assert self.models is not None
         return at_start(self.models, 0.0, None, self._start_rates)
@@ -247,7 +242,7 @@ class MotionFromStart:
         return {}
 
     def _run_to(self, condition: WrittenEquation) -> list[PhaseRun]:
-        from eomgen.simulation.motion import Plan, through
+        from eomgen.simulation import Plan, through
 
         assert self.models is not None
 
@@ -286,7 +281,7 @@ class MotionFromStart:
 
 def fine_stepping() -> Stepping:
     """Fine tolerances for a motion whose instants are then sought in closed form."""
-    from eomgen.simulation.integrator import Stepping
+    from eomgen.simulation import Stepping
 
     return Stepping(AUTO, FINE_RUN, FINE_RUN, MOST_STEPS)
 

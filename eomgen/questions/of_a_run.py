@@ -17,21 +17,25 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant.quantities import requests_of
-from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation
-from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, formula_at
-from eomgen.model.parts import Model, Output
-from eomgen.model.replaced import Taken, equation_typed
-from eomgen.model.values import numeric_parameters
-from eomgen.proof.check import Check, Tally, differing
-from eomgen.simulation.columns import OutputColumns
-from eomgen.simulation.motion import DenseMotion, Plan, dense_motion
-from eomgen.simulation.phase_run import PhaseRun
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.units import parse_typed_equation
-from eomgen.symbolic.numeric.isolation import ChebyshevPieces, resolved_curve
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SAME_PLACE, SOLVED
+from eomgen.mechanics.instant import requests_of
+from eomgen.model import (
+    EVERY,
+    OF_A_RUN,
+    SMALL_MOTIONS,
+    AtRest,
+    Model,
+    Output,
+    Table,
+    Taken,
+    WrittenEquation,
+    equation_typed,
+    formula_at,
+    numeric_parameters,
+)
+from eomgen.proof import Check, Tally, differing
+from eomgen.simulation import DenseMotion, OutputColumns, PhaseRun, Plan, dense_motion
+from eomgen.symbolic.expression import Call, Expression, parse, parse_typed_equation
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, SAME_PERIOD, SAME_PLACE, SOLVED, ChebyshevPieces, resolved_curve
 
 
 @dataclass(frozen=True)

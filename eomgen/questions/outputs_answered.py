@@ -13,13 +13,19 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.linearize.result import Linearization, linearize
-from eomgen.documents.markdown import listing_markdown
-from eomgen.documents.reading import without_cases
-from eomgen.documents.result import Result
-from eomgen.documents.statements import Found, Listing, Quantity
-from eomgen.documents.statics.result import why_not_at_rest
+from eomgen.documents import (
+    Document,
+    Found,
+    Linearization,
+    Listing,
+    Quantity,
+    Result,
+    linearize,
+    listing_markdown,
+    plain_document,
+    why_not_at_rest,
+    without_cases,
+)
 from eomgen.errors import (
     DerivationError,
     EomgenError,
@@ -29,37 +35,40 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.dynamics.pieces import Extent, refuse_jump, signs_of_rates
-from eomgen.mechanics.instant.quantities import requests_motion, requests_of
-from eomgen.mechanics.instant.velocity_analysis import InstantKinematics, instant_kinematics_of
-from eomgen.mechanics.integrals.first_integrals import stay_constant
-from eomgen.mechanics.integrals.speeds import rates_and_extent
-from eomgen.mechanics.start.exact import known_parameters
-from eomgen.model.fields import AtRest
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import SMALL_MOTIONS
-from eomgen.model.parts import Model, Output
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values
-from eomgen.model.units import units_of_outputs
-from eomgen.proof.check import Certificate
+from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
+from eomgen.mechanics.instant import InstantKinematics, instant_kinematics_of, requests_motion, requests_of
+from eomgen.mechanics.integrals import rates_and_extent, stay_constant
+from eomgen.mechanics.start import known_parameters
+from eomgen.model import (
+    FUNCTIONS,
+    SMALL_MOTIONS,
+    AtRest,
+    Model,
+    ModelOrPath,
+    Output,
+    Values,
+    model_at,
+    units_of_outputs,
+)
+from eomgen.proof import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.motion_from_start import MotionFromStart, leaves_at
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.study import Study, exact_numbers, study_at_rest
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.formula import Call
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.expression.units import Unit
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, transplanted
-from eomgen.symbolic.numeric.sure_numbers import number_of
-from eomgen.symbolic.numeric.work import PatienceEnded, Work, doing, keep_what_there_is
-from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
+from eomgen.symbolic.exact import book_form
+from eomgen.symbolic.expression import Call, Graph, Node, Scalar, Unit, depends_on, order, substituted, symbols_of
+from eomgen.symbolic.numeric import (
+    FLOAT,
+    PatienceEnded,
+    Work,
+    doing,
+    evaluate,
+    keep_what_there_is,
+    number_of,
+    transplanted,
+)
+from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
 
 Answer = Quantity  # of an output
 

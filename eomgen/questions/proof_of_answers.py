@@ -16,43 +16,52 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.certificate import certify, certify_standing
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
-from eomgen.documents.linearize.result import Linearization
-from eomgen.documents.statements import Quantity
+from eomgen.codegen import compiled, program_of
+from eomgen.documents import Linearization, Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.dynamics.system import System, system_of
-from eomgen.mechanics.instant.kinematic_state import KinematicState
-from eomgen.mechanics.instant.quantities import Quantities, requests_of
-from eomgen.mechanics.linearization.modes import MATRICES
-from eomgen.mechanics.start.exact import known_exactly
-from eomgen.mechanics.start.state import start_state
-from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import SMALL_MOTIONS, names_of
-from eomgen.model.parts import Model, Output
-from eomgen.model.values import exact_parameters
-from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
-from eomgen.proof.check import Certificate, Check, Tally, differing
-from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.proof.instant import instant_checks, second_definition, values_of
-from eomgen.proof.parameters import other_data
-from eomgen.proof.small_motions import small_motion_checks
+from eomgen.mechanics.constraints import dependent_coordinates
+from eomgen.mechanics.dynamics import System, system_of
+from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
+from eomgen.mechanics.linearization import MATRICES
+from eomgen.mechanics.start import known_exactly, start_state
+from eomgen.model import FUNCTIONS, SMALL_MOTIONS, AtRest, Model, Output, WrittenEquation, exact_parameters, names_of
+from eomgen.proof import (
+    Certificate,
+    Check,
+    NumericState,
+    PhaseMotion,
+    Tally,
+    TriedState,
+    differing,
+    instant_checks,
+    moving_states,
+    off_by,
+    other_data,
+    place_of,
+    read_back,
+    second_definition,
+    small_motion_checks,
+    values_of,
+)
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.motion_from_start import MotionFromStart, parameters_in_numbers, run_from_start, wrong_way
 from eomgen.questions.velocities import state_of
-from eomgen.simulation.result import Trajectory
+from eomgen.simulation import Trajectory
 from eomgen.study import Study
-from eomgen.symbolic.expression.derivative import depends_on, symbols_of
-from eomgen.symbolic.expression.formula import Call
-from eomgen.symbolic.expression.node import Node, Scalar, holds_op
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.pieces import PIECEWISE
-from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RUNS_AGREE, SAME_PLACE
+from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
+from eomgen.symbolic.numeric import (
+    CARRIED,
+    COMPUTED,
+    PIECEWISE,
+    RUNS_AGREE,
+    SAME_PLACE,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    number_of,
+    numbers_of,
+)
 
 WAY = 1.0  # s, of the motion along which functions of the configuration are checked
 ROWS = 21  # samples of it

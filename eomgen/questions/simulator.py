@@ -15,36 +15,48 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, NotYet, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.model.diagnostics import nearest
-from eomgen.model.driven import law_of
-from eomgen.model.fields import Table, WrittenEquation
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import BALANCE
-from eomgen.model.part import altered, part_of_values
-from eomgen.model.parts import Model, Parameter
-from eomgen.model.replaced import Valued, Values, with_values
-from eomgen.proof.check import Certificate, checked
-from eomgen.proof.degrees_of_freedom import rows_that_stay
+from eomgen.model import (
+    BALANCE,
+    FUNCTIONS,
+    Model,
+    Parameter,
+    Table,
+    Valued,
+    Values,
+    WrittenEquation,
+    altered,
+    law_of,
+    nearest,
+    part_of_values,
+    with_values,
+)
+from eomgen.proof import Certificate, checked, rows_that_stay
 from eomgen.questions.of_a_run import WholeRun, requested_of
 from eomgen.questions.single_run import finished_run, phase_models, run
-from eomgen.simulation.columns import formulas_of
-from eomgen.simulation.contacts import has_phases
-from eomgen.simulation.integrate import instants_of, refuse_bad_run
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.phase_change import PhaseStart, after_jump, at_start
-from eomgen.simulation.phase_models import DerivedAt, PhaseModels
-from eomgen.simulation.phase_run import PhaseRun
-from eomgen.simulation.result import NO_EQUATIONS, Trajectory
-from eomgen.simulation.solvers import breakpoints_of
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.text import as_expression, single_call
-from eomgen.symbolic.expression.units import Typed, seconds
-from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.simulation import (
+    NO_EQUATIONS,
+    DerivedAt,
+    PhaseModels,
+    PhaseRun,
+    PhaseStart,
+    Plan,
+    Stepping,
+    Trajectory,
+    after_jump,
+    at_start,
+    breakpoints_of,
+    formulas_of,
+    has_phases,
+    instants_of,
+    refuse_bad_run,
+    through,
+)
+from eomgen.symbolic.expression import Expression, Typed, as_expression, seconds, single_call
+from eomgen.symbolic.numeric import SOLVED
 
 SAMPLES = 101
 MOST_BASES = 4  # derivations that are tried first at other values, before the model is derived again

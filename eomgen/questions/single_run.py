@@ -13,34 +13,55 @@ from typing import Any
 import numpy as np
 
 from eomgen.certificate import certify
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass, with_fields
-from eomgen.mechanics.dynamics.accelerations import stabilized
-from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
-from eomgen.mechanics.free_bodies.friction import with_friction
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.parts import Output
-from eomgen.proof import motion
-from eomgen.proof.check import Certificate, Check, unchecked
-from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_assumed
-from eomgen.proof.run_reported import output_columns_hold, reaction_columns_hold, rows_left_out
+from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
+from eomgen.mechanics.free_bodies import with_friction
+from eomgen.model import Output, WrittenEquation
+from eomgen.proof import (
+    Certificate,
+    Check,
+    Leg,
+    Promise,
+    bodies_stand_as_reported,
+    changes_follow_impulses,
+    contacts_do_as_assumed,
+    output_columns_hold,
+    reaction_columns_hold,
+    rows_left_out,
+    run_checks,
+    unchecked,
+    watched_checks,
+)
 from eomgen.questions.of_a_run import WholeRun
-from eomgen.simulation.columns import formulas_of
-from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
-from eomgen.simulation.integrator import Run, Stepping
-from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.phase_change import PhaseStart, at_start
-from eomgen.simulation.phase_models import PhaseModels
-from eomgen.simulation.phase_run import PhaseRun, condition_of, joined, thinned, with_outputs, with_reactions
-from eomgen.simulation.result import Phase, Trajectory
-from eomgen.simulation.solvers import Accuracy, accuracy_of, finer
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.units import Typed
-from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
+from eomgen.simulation import (
+    SAMPLES,
+    Accuracy,
+    Phase,
+    PhaseModels,
+    PhaseRun,
+    PhaseStart,
+    Plan,
+    Run,
+    Stepping,
+    Trajectory,
+    accuracy_of,
+    at_start,
+    condition_of,
+    finer,
+    formulas_of,
+    instants_of,
+    joined,
+    refuse_bad_run,
+    thinned,
+    through,
+    with_outputs,
+    with_reactions,
+)
+from eomgen.symbolic.expression import Expression, Typed
+from eomgen.symbolic.numeric import COMPUTED, NoValue, PatienceEnded, doing, keep_what_there_is
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
@@ -71,7 +92,7 @@ class RunProof:
             unseen = unchecked("the run follows its equations", what, "the run's right-hand side")
             return Certificate((*certificate.checks, unseen))
         legs, promise = self._moving(found)
-        certificate += motion.run_checks(legs, promise)
+        certificate += run_checks(legs, promise)
         certificate += self.watch(found) if found.watch is None else found.watched
         columns = (
             *reaction_columns_hold(found),
@@ -85,14 +106,14 @@ class RunProof:
         """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
         if any(phase.model.fed is not None for phase in found.phases):
             return ()
-        return motion.watched_checks(*self._moving(found))
+        return watched_checks(*self._moving(found))
 
-    def _moving(self, found: Trajectory) -> tuple[list[motion.Leg], motion.Promise]:
+    def _moving(self, found: Trajectory) -> tuple[list[Leg], Promise]:
         """Legs of a run, and the accuracy that its tolerances promise."""
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
         projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
         levelled = projected and self.how.stabilization == "energy"
-        return legs, motion.Promise(self.how.rtol, self.how.atol, found.steps, projected, levelled)
+        return legs, Promise(self.how.rtol, self.how.atol, found.steps, projected, levelled)
 
     def _contacts(self, found: Trajectory) -> Iterator[Check]:
         """Checks of contacts in the phases of a run, and between them."""
@@ -102,7 +123,7 @@ class RunProof:
             yield from bodies_stand_as_reported(seen, self.models.without_contacts.system)
             yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)
 
-    def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
+    def _legs(self, phase: Phase, found: Trajectory) -> Iterator[Leg]:
         """Leg of the states of a phase, without those after the instant at which the run was cut."""
         track, phased = _until(phase, found.t).track, phase.model
         if track is None or phased.fed is not None:
@@ -110,7 +131,7 @@ class RunProof:
         t, x = track
         pulled = self.how.stabilization == "baumgarte"
         rhs, inner = phased.functions.rhs, phased.functions.inner(x)
-        yield motion.Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
+        yield Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
 
 
 def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:

@@ -11,29 +11,29 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 
-from eomgen.documents.kinematics.result import Kinematics
+from eomgen.documents import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.constraints.elimination import refuse_undetermined
-from eomgen.mechanics.constraints.rank import counted, degrees_of_freedom
-from eomgen.mechanics.instant.kinematic_state import KinematicState
-from eomgen.mechanics.instant.motion_kind import Kinds
-from eomgen.mechanics.instant.velocity_analysis import InstantKinematics, instant_kinematics_of
-from eomgen.mechanics.start.state import refuse_lost
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.part import altered, part_of_values
-from eomgen.model.parts import Given, Model
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values, equation_typed
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.constraints import counted, degrees_of_freedom, refuse_undetermined
+from eomgen.mechanics.instant import InstantKinematics, Kinds, KinematicState, instant_kinematics_of
+from eomgen.mechanics.start import refuse_lost
+from eomgen.model import (
+    Given,
+    Model,
+    ModelOrPath,
+    Values,
+    WrittenEquation,
+    altered,
+    equation_typed,
+    exact_parameters,
+    model_at,
+    part_of_values,
+)
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.study import Study, exact_numbers
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Node, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.work import doing
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.expression import Expression, Fraction, Node, State, depends_on, is_zero, substituted
+from eomgen.symbolic.numeric import doing
+from eomgen.symbolic.print import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
 

@@ -9,8 +9,7 @@ from pathlib import Path
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
 from eomgen.frozen import dataclass
-from eomgen.model.parts import Model
-from eomgen.model.reader import loads
+from eomgen.model import Model, loads
 from eomgen.robots.mjcf import mjcf
 from eomgen.robots.sdf import sdf
 from eomgen.robots.sdf_models import LARGEST

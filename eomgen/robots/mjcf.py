@@ -51,8 +51,8 @@ from eomgen.robots.tables import (
     without_empty,
 )
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
-from eomgen.symbolic.expression.spatial import IDENTITY
-from eomgen.symbolic.numeric.tolerances import SLOPE_AT_REST
+from eomgen.symbolic.expression import IDENTITY
+from eomgen.symbolic.numeric import SLOPE_AT_REST
 
 TABLES = ("points", "coordinates", "speeds", "inputs", "bodies", "constraints", "forces")
 

@@ -27,8 +27,8 @@ from eomgen.robots.tables import (
     turn_of,
     turned_by,
 )
-from eomgen.symbolic.expression.spatial import IDENTITY, apply
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, ROUNDING
+from eomgen.symbolic.expression import IDENTITY, apply
+from eomgen.symbolic.numeric import RANK_NEARBY, ROUNDING
 
 CONNECT, WELD, JOINT, TENDON = range(4)  # the numbers of MuJoCo: of equalities,
 SITE = 6  # of the objects that they connect

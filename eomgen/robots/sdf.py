@@ -14,7 +14,7 @@ from typing import Any
 
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
-from eomgen.model.diagnostics import nearest
+from eomgen.model import nearest
 from eomgen.robots.sdf_models import YES, FlatModel, SdfChoice, choice_named, choices, link_masses, own_pose
 from eomgen.robots.tables import (
     ORIGIN,
@@ -36,7 +36,7 @@ from eomgen.robots.tables import (
 )
 from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely
 from eomgen.robots.xml_tree import XmlElement, xml_tree
-from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply
+from eomgen.symbolic.expression import IDENTITY, Pose, apply
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m", "screw": "rad"}
 TWO_AXES = ("universal", "revolute2")

@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.errors import ModelError
 from eomgen.files import read
 from eomgen.frozen import dataclass
-from eomgen.model.diagnostics import nearest
+from eomgen.model import nearest
 from eomgen.robots.tables import (
     DIGITS,
     ORIGIN,
@@ -39,7 +39,7 @@ from eomgen.robots.tables import (
 )
 from eomgen.robots.urdf import with_mass
 from eomgen.robots.xml_tree import XmlElement, xml_tree
-from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply, minus, plus
+from eomgen.symbolic.expression import IDENTITY, Pose, apply, minus, plus
 
 LARGEST = 20_000_000  # bytes of a file
 DEEPEST = 30  # models one within the other

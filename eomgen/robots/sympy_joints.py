@@ -38,17 +38,20 @@ from sympy.physics.vector import dynamicsymbols
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.robots.tables import Entries, LegalNames, without_empty
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction, fraction_of
-from eomgen.symbolic.expression.text import LONGEST, LONGEST_WITH_PARTS, parse
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.sympy_form import scalar_from_sympy
-from eomgen.symbolic.print.text import text_size, to_text, with_definitions
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
+    LONGEST,
+    LONGEST_WITH_PARTS,
+    Fraction,
+    Graph,
+    Node,
+    Scalar,
+    fraction_of,
+    parse,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, NoValue, Work, evaluate
+from eomgen.symbolic.print import scalar_from_sympy, text_size, to_text, with_definitions
 
 
 class _NoBodies(Exception):

@@ -30,27 +30,32 @@ from sympy.physics.vector import dynamicsymbols
 from eomgen import files
 from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.model.parts import Model
-from eomgen.model.reader import loads
+from eomgen.model import Model, loads
 from eomgen.robots.sympy_joints import Words, file_texts, lagrangian_method, speeds_as_rates, tables_of_joints
 from eomgen.robots.tables import Entries, Nine, Triple, toml_text, without_empty
-from eomgen.symbolic.expression.derivative import (
+from eomgen.symbolic.expression import (
+    IDENTITY,
+    LONGEST,
+    Fraction,
+    Node,
+    Scalar,
+    apply,
     depends_on_any,
+    dot,
     gradient,
+    is_zero,
+    plus,
+    product,
     pullback,
     substituted,
     symbols_of,
     tangent,
+    times,
+    transposed,
 )
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import IDENTITY, apply, dot, plus, product, times, transposed
-from eomgen.symbolic.expression.text import LONGEST
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import LinearSystem, unique_solution
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.numeric import FLOAT, RANK_NEARBY, evaluate
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import LinearSystem, unique_solution, vanishes
 
 HALF = Fraction(1, 2)
 

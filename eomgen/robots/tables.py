@@ -15,11 +15,9 @@ import mpmath
 
 from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
-from eomgen.model.joints.ball import rotation_of
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import IDENTITY, apply, plus, product, rotation, transposed
-from eomgen.symbolic.numeric.tolerances import ROUNDED_AWAY, SAME_TURN
-from eomgen.symbolic.numeric.work import check_patience
+from eomgen.model import rotation_of
+from eomgen.symbolic.expression import IDENTITY, Fraction, apply, plus, product, rotation, transposed
+from eomgen.symbolic.numeric import ROUNDED_AWAY, SAME_TURN, check_patience
 
 # -------- numbers ---------------------------------------------------------------------------------------------
 # Decimals of robot files: places, turns and inertias by 40 digits, written with 17; angles that are parts of pi.

@@ -13,8 +13,7 @@ from typing import Any
 
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
-from eomgen.model.checks.bodies import possible
-from eomgen.model.diagnostics import nearest
+from eomgen.model import nearest, possible
 from eomgen.robots.tables import (
     NO_COUNTERPART,
     ORIGIN,
@@ -41,8 +40,8 @@ from eomgen.robots.tables import (
     without_empty,
 )
 from eomgen.robots.xml_tree import XmlElement, xml_tree
-from eomgen.symbolic.expression.spatial import IDENTITY, cross
-from eomgen.symbolic.numeric.tolerances import NOT_NEGATIVE
+from eomgen.symbolic.expression import IDENTITY, cross
+from eomgen.symbolic.numeric import NOT_NEGATIVE
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")

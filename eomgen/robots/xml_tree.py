@@ -11,7 +11,7 @@ from xml.parsers import expat
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
 from eomgen.robots.tables import Triple
-from eomgen.symbolic.expression.text import LARGEST_EXPONENT, MOST_DIGITS
+from eomgen.symbolic.expression import LARGEST_EXPONENT, MOST_DIGITS
 
 DEEPEST = 200  # elements one within the other
 

@@ -6,22 +6,38 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.model.composite import pose_of
-from eomgen.model.shapes import MassProperties
-from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, Form, LineForm, PolygonForm
-from eomgen.model.trusses import is_node
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import GROUND, BodyLink, mass_properties
+from eomgen.model import (
+    ArcForm,
+    EllipsoidForm,
+    Form,
+    LineForm,
+    MassProperties,
+    PolygonForm,
+    exact_parameters,
+    is_node,
+    pose_of,
+)
 from eomgen.scene.forms import PointForm, RodForm, SymbolForm
 from eomgen.scene.scene import Mark, SceneFrame
-from eomgen.symbolic.expression.formula import function, over, sqrt
-from eomgen.symbolic.expression.node import Node, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Node,
+    Vector,
+    apply,
+    cross,
+    dot,
+    function,
+    is_zero,
+    minus,
+    over,
+    plus,
+    sqrt,
+    times,
+)
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, evaluate
 
 
 def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:

@@ -11,26 +11,29 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS, Axes, Component, components_of
-from eomgen.mechanics.kinematics.loads import in_ground_axes
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, ground_place
-from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.mechanics.rigidity.velocity_plan import members_of
-from eomgen.model.constraints.base import (
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of
+from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene, ground_place, in_ground_axes
+from eomgen.mechanics.rigidity import members_of
+from eomgen.model import (
+    ArcForm,
     BodyLine,
+    Couple,
+    EllipsoidForm,
     FlatSurface,
     Groove,
+    LineForm,
     Meeting,
+    PointForce,
     RoundSurface,
+    Stop,
+    Strand,
     TouchingPoint,
     TouchingRound,
+    driven_coordinates,
+    driving_constraints,
+    unit,
 )
-from eomgen.model.constraints.strand import Stop, Strand
-from eomgen.model.driven import driven_coordinates, driving_constraints
-from eomgen.model.forces.load import Couple, PointForce
-from eomgen.model.joints.base import unit
-from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
 from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, shaft_of, wedge_of
 from eomgen.scene.forms import (
     ArrowForm,
@@ -46,12 +49,25 @@ from eomgen.scene.forms import (
     WheelForm,
 )
 from eomgen.scene.scene import Mark
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.formula import function
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, cross, minus, plus, times, vector_of
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Node,
+    Pose,
+    Scalar,
+    Vector,
+    apply,
+    cross,
+    function,
+    is_zero,
+    minus,
+    plus,
+    substituted,
+    symbols_of,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.numeric import FLOAT, evaluate
 
 BESIDE = 1  # of springs and dampers between the same places, each to its side [symbol units]
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any, ClassVar
 
 from eomgen.frozen import dataclass
-from eomgen.model.shapes.forms import (
+from eomgen.model import (
     ArcForm,
     BoxForm,
     EllipsoidForm,
@@ -19,7 +19,7 @@ from eomgen.model.shapes.forms import (
     PrismForm,
     RevolutionForm,
 )
-from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression import Vector
 
 
 @dataclass(frozen=True)

@@ -15,19 +15,16 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.dynamics.system import System
-from eomgen.model.shapes.forms import Form
-from eomgen.proof.pictures_reported import ReportedArrow, ReportedPicture
+from eomgen.codegen import compiled, program_of
+from eomgen.mechanics.dynamics import System
+from eomgen.model import Form
+from eomgen.proof import ReportedArrow, ReportedPicture
 from eomgen.scene.connections import Resultant, reaction_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
 from eomgen.scene.strokes import Drawing, SceneNumbers, Stroke
-from eomgen.simulation.result import Phase, Trajectory
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Pose, Vector, vector_of
+from eomgen.simulation import Phase, Trajectory
+from eomgen.symbolic.expression import Fraction, Node, Pose, Scalar, Vector, vector_of
 
 Piece = tuple[SceneNumbers, np.ndarray]
 """A scene over its own instants, and their places among those of the whole."""

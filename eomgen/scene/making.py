@@ -8,12 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import combinations, pairwise
 
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.shapes.forms import ArcForm, PolygonForm
-from eomgen.model.trusses import is_node
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, with_nodes_balanced
+from eomgen.mechanics.kinematics import GROUND, BodyLink
+from eomgen.model import ArcForm, ModelOrPath, PolygonForm, is_node, model_at
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
 from eomgen.scene.connections import (
     applied_marks,
@@ -27,10 +24,7 @@ from eomgen.scene.connections import (
 from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
 from eomgen.study import study_of
-from eomgen.symbolic.expression.derivative import derivative
-from eomgen.symbolic.expression.node import Node, collected, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, plus, times
+from eomgen.symbolic.expression import ZERO, Fraction, Node, Vector, collected, derivative, is_zero, minus, plus, times
 
 
 def scene_of_system(system: System, equations: EquationsOfMotion | None = None) -> Scene:

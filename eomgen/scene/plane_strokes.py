@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.model.shapes.forms import ArcForm, LineForm, PolygonForm
+from eomgen.model import ArcForm, LineForm, PolygonForm
 from eomgen.scene import forms
 from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSizes, SceneNumbers, Stroke, drawn_with

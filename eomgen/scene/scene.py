@@ -13,19 +13,15 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import Program, program_in_motion, program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import Program, compiled, program_in_motion, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.start.state import start_state
-from eomgen.model.shapes.forms import Form
-from eomgen.model.values import exact_parameters, start_values
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.start import start_state
+from eomgen.model import Form, exact_parameters, start_values
 from eomgen.scene.symbols import symbols_used
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import Pose, Vector
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.expression import Node, Pose, Scalar, Vector, symbols_of
+from eomgen.symbolic.numeric import FLOAT, evaluate
 
 FORMAT = 1
 

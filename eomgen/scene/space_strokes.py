@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.model.shapes.forms import (
+from eomgen.model import (
     ArcForm,
     BoxForm,
     EllipsoidForm,

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.model.shapes.forms import Form
+from eomgen.model import Form
 from eomgen.scene.scene import Mark, Scene, is_moving, plain_number
-from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression import Vector
 
 SYMBOL = 0.028  # symbol unit, of the extent
 ARROW = 0.2  # the longest arrow, of the extent

@@ -9,9 +9,8 @@ import math
 from collections.abc import Iterable
 from typing import Any
 
-from eomgen.model.shapes.forms import ArcForm, BoxForm, EllipsoidForm, Form, LineForm, PolygonForm, RevolutionForm
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.model import ArcForm, BoxForm, EllipsoidForm, Form, LineForm, PolygonForm, RevolutionForm
+from eomgen.symbolic.expression import ZERO, Fraction, Vector
 
 TEETH = 8  # of a spring
 

@@ -16,17 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import compiled, program_of
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
-from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.mechanics.rigidity.structure import Structure
-from eomgen.mechanics.rigidity.velocity_plan import blocks_of, numeral
-from eomgen.mechanics.statics.virtual_work import StaticReaction, WorkEquation
-from eomgen.model.forces.load import UniformField
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Axes, Effect
+from eomgen.mechanics.kinematics import BodyLink, SystemScene
+from eomgen.mechanics.rigidity import Structure, blocks_of, numeral
+from eomgen.mechanics.statics import StaticReaction, WorkEquation
+from eomgen.model import UniformField
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm, LabelForm, PointForm, SymbolForm
 from eomgen.scene.making import scene_of_system
@@ -34,10 +31,8 @@ from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Mark, Scene
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, cross, plus, times, transposed
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import WIDE_STEP
+from eomgen.symbolic.expression import ZERO, Node, Pose, Scalar, Vector, cross, is_zero, plus, times, transposed
+from eomgen.symbolic.numeric import FLOAT, WIDE_STEP, evaluate
 
 SWING = 0.12  # of the extent, by which the point that moves most is swung out
 IN_SIGHT = 0.5  # of the extent: centres of rotation farther outside are not drawn

@@ -16,43 +16,52 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.linearize.result import Linearization, linearize
-from eomgen.documents.result import Result
-from eomgen.documents.statements import Found, Listing, Quantity
+from eomgen.documents import Document, Found, Linearization, Listing, Quantity, Result, linearize, plain_document
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.instant.quantities import requests_of
-from eomgen.mechanics.linearization.modes import MATRICES
-from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes
-from eomgen.mechanics.start.exact import Seeds, parameter_seeds, start_seeds
-from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.dynamics import with_nodes_balanced
+from eomgen.mechanics.instant import requests_of
+from eomgen.mechanics.linearization import MATRICES, ParameterSlopes
+from eomgen.mechanics.start import Seeds, parameter_seeds, start_seeds, start_state
 from eomgen.mechanics.state import Numbers, Split
-from eomgen.model.fields import AtRest, Table
-from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, names_of
-from eomgen.model.parts import Model, Output
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values
-from eomgen.model.units import units_of
-from eomgen.model.values import numeric_parameters
-from eomgen.proof.check import Certificate, Check, Tally, checked, differing
+from eomgen.model import (
+    OF_A_RUN,
+    SMALL_MOTIONS,
+    AtRest,
+    Model,
+    ModelOrPath,
+    Output,
+    Table,
+    Values,
+    model_at,
+    names_of,
+    numeric_parameters,
+    units_of,
+)
+from eomgen.proof import Certificate, Check, Tally, checked, differing
 from eomgen.questions import requested_of
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
-from eomgen.simulation.integrate import instants_of
+from eomgen.simulation import instants_of
 from eomgen.study import Study, study_of
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import jacobian, substituted, tangent
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import parse, single_call
-from eomgen.symbolic.expression.units import Typed, Unit, parse_unit, seconds
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY
-from eomgen.symbolic.numeric.work import Work, doing
-from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
+from eomgen.symbolic.exact import book_form, legible
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    Typed,
+    Unit,
+    jacobian,
+    parse,
+    parse_unit,
+    seconds,
+    single_call,
+    substituted,
+    tangent,
+)
+from eomgen.symbolic.numeric import COMPUTED, RANK_NEARBY, NoValue, Work, doing, evaluate, fifty_digits
+from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
 
 RHS, STATE, FREQUENCIES, REST = "rhs", "state", "frequencies", "equilibrium"
 MOST_WRITTEN = 6  # speeds of equations whose slopes are written out

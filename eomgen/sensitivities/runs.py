@@ -9,31 +9,21 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import kinematic_rates, program_of
-from eomgen.codegen.rhs import compiled, parameter_vector
+from eomgen.codegen import compiled, kinematic_rates, parameter_vector, program_of
 from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.linearization.first_order import FirstOrder
-from eomgen.mechanics.linearization.linearization import CORNERS
-from eomgen.mechanics.start.exact import Seeds
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.linearization import CORNERS, FirstOrder
+from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Numbers
-from eomgen.model.fields import Table
-from eomgen.model.parts import Model, Output
-from eomgen.model.reader import model_at
-from eomgen.model.values import numeric_parameters, start_values
+from eomgen.model import Model, Output, Table, model_at, numeric_parameters, start_values
 from eomgen.pipeline import simulator
-from eomgen.proof.check import Certificate, Check, checked, unchecked
+from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import requested_of, solve
-from eomgen.simulation.contacts import changing, has_phases
-from eomgen.simulation.solvers import breakpoints_of, solver_of, step
+from eomgen.simulation import breakpoints_of, changing, has_phases, solver_of, step
 from eomgen.study import Study
-from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.symbolic.expression import Expression, Node, Scalar, depends_on, order, substituted, tangent
+from eomgen.symbolic.numeric import (
     BESIDE,
     CARRIED,
     COMPUTED,
@@ -41,8 +31,11 @@ from eomgen.symbolic.numeric.tolerances import (
     FINE_RUN,
     PARAMETER_STEP,
     RANK,
+    check_patience,
+    evaluate,
+    fifty_digits,
+    floats_of,
 )
-from eomgen.symbolic.numeric.work import check_patience
 
 # -------- along a run -----------------------------------------------------------------------------------------
 # Equations, changes of parameters and start -> change along a motion: the variational equations, integrated with it.

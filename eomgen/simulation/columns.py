@@ -14,24 +14,18 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.instant.quantities import Quantities, requests_of
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
-from eomgen.model.parts import Model
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction
+from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.model import BALANCE, FUNCTIONS, OF_A_RUN, SMALL_MOTIONS, Model
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression import Call, Expression, Node, Scalar, depends_on, derivative, substituted
 
 
 @dataclass(frozen=True)

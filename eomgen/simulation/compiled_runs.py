@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from eomgen.codegen.batching import in_threads, pieces_of
+from eomgen.codegen import in_threads, pieces_of
 from eomgen.frozen import dataclass
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout

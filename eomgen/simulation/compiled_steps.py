@@ -21,11 +21,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from eomgen.codegen.program import Program, Solve
-from eomgen.codegen.rhs import RightHandSide, in_c
-from eomgen.codegen.targets.base import Address
-from eomgen.codegen.taylor import ALONE, order_for
-from eomgen.codegen.vectors import outputs_at
+from eomgen.codegen import ALONE, Address, Program, RightHandSide, Solve, in_c, order_for, outputs_at
 from eomgen.errors import ToolMissing, UsageError
 from eomgen.simulation import event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, RankLookout, Rows
@@ -41,10 +37,8 @@ from eomgen.simulation.many_runs import (
 )
 from eomgen.simulation.phase_model import ExactSlope
 from eomgen.simulation.solvers import AUTO, SEEN, TAYLOR, LateSlope, stiff_words
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, Arithmetic
-from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.symbolic.expression import Node, order
+from eomgen.symbolic.numeric import FLOAT, SOLVED, Arithmetic
 
 COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
 FEW = 8  # steps in the first call

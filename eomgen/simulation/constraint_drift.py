@@ -23,21 +23,14 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import QuaternionPlaces, at_unit_norms, program_of, unit_quaternions_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compiled, program_of, unit_quaternions_of
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import gaps_of
-from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
-from eomgen.mechanics.constraints.rank import rank_of_constraints
-from eomgen.mechanics.dynamics.formulations import mass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.kinematics.motion import locks_of
-from eomgen.mechanics.kinematics.tree import branches_of
+from eomgen.mechanics.constraints import PLACE, gaps_of, rank_of_constraints, singular_blocks
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
+from eomgen.mechanics.kinematics import branches_of, locks_of
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.roots import Newton
-from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR
+from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.numeric import NEARLY_SINGULAR, Newton, dense
 
 STEPS = 8
 FAR = 1e-3  # of what is allowed to be open: so far it is closed

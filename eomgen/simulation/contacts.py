@@ -9,29 +9,20 @@ from typing import Any, Literal
 
 import numpy as np
 
-from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen import RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import redundant_rows
-from eomgen.mechanics.constraints.rows import Row, rows_of_constraint
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.kinematics.scene import ContactMode
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.model.contacts import Contact, contacts_of, pieces_of
-from eomgen.model.fields import Table
-from eomgen.model.part import altered
-from eomgen.model.parts import Model
+from eomgen.mechanics.constraints import Row, redundant_rows, rows_of_constraint
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Indeterminate
+from eomgen.mechanics.kinematics import ContactMode
+from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.model import Contact, Model, Table, altered, contacts_of, pieces_of
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.formula import Expression, function, sqrt
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED, SUMMED
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, function, order, sqrt, symbols_of
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, SUMMED, evaluate
 
 # -------- contact events --------------------------------------------------------------------------------------
 # System, configuration of its contacts -> ContactEvents: what the contacts say, and the functions that end a phase.

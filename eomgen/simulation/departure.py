@@ -8,33 +8,30 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import compiled, program_of
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.integrals.laws import position_equations
-from eomgen.mechanics.integrals.speeds import Relations, rates_and_extent, relations_of
+from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.mechanics.integrals import Relations, position_equations, rates_and_extent, relations_of
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.roots import all_roots, least_left
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.symbolic.expression import Fraction, Node, Scalar, State, depends_on, inner, substituted
+from eomgen.symbolic.numeric import (
     CARRIED,
     COMPUTED,
     DIFFERENCE_STEP,
     FINE_RUN,
+    FLOAT,
     GAP_CLOSED,
     RANK_NEARBY,
     SUMMED,
     WIDE_STEP,
+    all_roots,
+    evaluate,
+    least_left,
 )
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.solve import vanishes
 
 # -------- rest departure --------------------------------------------------------------------------------------
 # System, start -> where a motion goes from a rest or a dead centre: along the configurations, by the energy theorem.

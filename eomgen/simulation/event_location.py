@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.rhs import RateFunction, RightHandSide
+from eomgen.codegen import RateFunction, RightHandSide
 from eomgen.frozen import dataclass
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, SOLVED
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, ITERATED, SOLVED
 
 PARTS = 8  # of a step: how often the functions are looked at
 MOST_PARTS = 4096  # of a step in which a function goes up and down many times

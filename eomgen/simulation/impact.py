@@ -15,17 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import Row, rows_of_constraint
-from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
-from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.constraints import Row, rows_of_constraint
+from eomgen.mechanics.dynamics import System, assembled_by_recursion
 from eomgen.simulation.phase_model import Values, slack_name
-from eomgen.symbolic.expression.derivative import jacobian, substituted
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE
+from eomgen.symbolic.expression import Scalar, jacobian, substituted
+from eomgen.symbolic.numeric import COMPUTED, LEAST_CHANGE
 
 
 @dataclass(frozen=True)

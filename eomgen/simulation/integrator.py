@@ -14,16 +14,23 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen.program import QuaternionPlaces
-from eomgen.codegen.rhs import RateFunction, in_c
+from eomgen.codegen import QuaternionPlaces, RateFunction, in_c
 from eomgen.frozen import dataclass, with_fields
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, HeyokaSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.result import RunStatus
 from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, FINEST_RUN, LEAST_RTOL, RUN
-from eomgen.symbolic.numeric.work import PatienceEnded, check_patience, keep_what_there_is
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    DIFFERENCE_STEP,
+    FINEST_RUN,
+    LEAST_RTOL,
+    RUN,
+    PatienceEnded,
+    check_patience,
+    keep_what_there_is,
+)
 
 MOST = 20_000  # states
 

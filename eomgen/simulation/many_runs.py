@@ -11,32 +11,29 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.build import function_of, library, of_this_machine
-from eomgen.codegen.program import at_unit_norms, program_of, unit_quaternions_of
-from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.codegen.targets.base import Address
-from eomgen.codegen.targets.c import c_together
+from eomgen.codegen import (
+    Address,
+    RightHandSide,
+    at_unit_norms,
+    c_together,
+    compiled,
+    function_of,
+    library,
+    of_this_machine,
+    program_of,
+    unit_quaternions_of,
+)
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import fixed_by_position
-from eomgen.mechanics.constraints.closure import CLOSING, gaps_of, norms_of
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.scene import start_value
-from eomgen.mechanics.start.state import start_speeds
+from eomgen.mechanics.constraints import CLOSING, fixed_by_position, gaps_of, norms_of
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import start_value
+from eomgen.mechanics.start import start_speeds
 from eomgen.simulation import constraint_drift, event_location
 from eomgen.simulation.constraint_drift import ARMED, REMEMBERED, STEEP
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import FORGOTTEN, HELD_SHORT, SEEN
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.numeric.tolerances import (
-    DIFFERENCE_STEP,
-    ITERATED,
-    NEARLY_SINGULAR,
-    PIVOT,
-    ROUNDING,
-    SOLVED,
-    SUMMED,
-)
+from eomgen.symbolic.expression import Node, Scalar, jacobian
+from eomgen.symbolic.numeric import DIFFERENCE_STEP, ITERATED, NEARLY_SINGULAR, PIVOT, ROUNDING, SOLVED, SUMMED
 
 # -------- march -----------------------------------------------------------------------------------------------
 # march.c -> its functions and its structure, as Python sees them.

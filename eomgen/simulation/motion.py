@@ -10,14 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import compiled, program_of
 from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
-from eomgen.mechanics.constraints.rows import left_of, stopped_at
-from eomgen.mechanics.dynamics.pieces import SMOOTH, signs_of_rates
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.mechanics.constraints import PLACE, left_of, singular_blocks, stopped_at
+from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.departure import RestDeparture
 from eomgen.simulation.event_location import TOUCH, Events
@@ -28,13 +25,22 @@ from eomgen.simulation.phase_models import PhaseModels, one_phase
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import Flow, ended_where_singular, march_across
 from eomgen.simulation.solvers import AUTO
-from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.isolation import nodes_between, transform
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DEGENERATE, FAIR_RUN, FINE_RUN, FINEST_RUN, ROUNDING, SOLVED
-from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import roots
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    DEGENERATE,
+    FAIR_RUN,
+    FINE_RUN,
+    FINEST_RUN,
+    FLOAT,
+    ROUNDING,
+    SOLVED,
+    evaluate,
+    nodes_between,
+    transform,
+)
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import roots
 
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
 MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work

@@ -15,17 +15,15 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.kinematics.scene import ContactMode
-from eomgen.mechanics.start.state import Start
-from eomgen.model.contacts import Contact, contacts_of
-from eomgen.model.fields import Table
-from eomgen.model.parts import Model
+from eomgen.mechanics.free_bodies import Indeterminate
+from eomgen.mechanics.kinematics import ContactMode
+from eomgen.mechanics.start import Start
+from eomgen.model import Contact, Model, Table, contacts_of
 from eomgen.simulation.contacts import Configuration, bounds_of, has_phases, on_pieces, paths_of, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric import COMPUTED
 
 
 @dataclass(frozen=True)

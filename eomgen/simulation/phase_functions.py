@@ -7,13 +7,10 @@ from dataclasses import field, replace
 
 import numpy as np
 
-from eomgen.codegen.program import bordered, program_of, right_hand_side
-from eomgen.codegen.rhs import RightHandSide, compiled, compiled_together
+from eomgen.codegen import RightHandSide, bordered, compiled, compiled_together, program_of, right_hand_side
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.dynamics.wellposed import refuse_massless
-from eomgen.symbolic.expression.node import Scalar
+from eomgen.mechanics.dynamics import EquationsOfMotion, refuse_massless, with_accelerations
+from eomgen.symbolic.expression import Scalar
 
 
 @dataclass(frozen=True)

@@ -12,18 +12,23 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import bordered, kinematic_rates, program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, bordered, compiled, kinematic_rates, program_of
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import edges_of
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.dynamics.wellposed import Valueless, is_conservative, overlarge, valueless, why_not_conservative
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
-from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.mechanics.start.state import Start, start_of_motion
-from eomgen.model.constraints.row import Edge
-from eomgen.model.contacts import Contact
+from eomgen.mechanics.constraints import edges_of
+from eomgen.mechanics.dynamics import (
+    EquationsOfMotion,
+    System,
+    Valueless,
+    is_conservative,
+    overlarge,
+    valueless,
+    why_not_conservative,
+)
+from eomgen.mechanics.free_bodies import equations_of_motion
+from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.start import Start, start_of_motion
+from eomgen.model import Contact, Edge
 from eomgen.simulation.constraint_drift import (
     EnergyLevel,
     Nearness,
@@ -36,9 +41,8 @@ from eomgen.simulation.constraint_drift import (
 from eomgen.simulation.contacts import Configuration, ContactEvents, ContactSignals, EventFunction
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.solvers import StateRate
-from eomgen.symbolic.expression.derivative import depends_on, jacobian
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE
+from eomgen.symbolic.expression import Node, depends_on, jacobian
+from eomgen.symbolic.numeric import COMPUTED, LEAST_CHANGE
 
 Fed = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 """(p, t, x) -> p at a state"""

@@ -9,28 +9,27 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.elimination import dependent_coordinates, singular_blocks
-from eomgen.mechanics.constraints.rank import degrees_of_freedom, rank_of_constraints, redundant_rows
-from eomgen.mechanics.constraints.rows import rows_of_constraint
-from eomgen.mechanics.dynamics.accelerations import PullBack, stabilized
-from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_friction
-from eomgen.mechanics.free_bodies.release import released, stays_straight
-from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes, start_values, with_unit_quaternions
-from eomgen.model.contacts import Contact, contacts_of
-from eomgen.model.parts import Model
+from eomgen.mechanics.constraints import (
+    degrees_of_freedom,
+    dependent_coordinates,
+    rank_of_constraints,
+    redundant_rows,
+    rows_of_constraint,
+    singular_blocks,
+)
+from eomgen.mechanics.dynamics import EquationsOfMotion, PullBack, System, assembled_by_recursion, stabilized, system_of
+from eomgen.mechanics.free_bodies import equations_of_motion, released, stays_straight, with_friction
+from eomgen.mechanics.kinematics import ContactMode, ContactModes, start_values, with_unit_quaternions
+from eomgen.model import Contact, Model, contacts_of
 from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, has_phases, on_pieces, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
 from eomgen.simulation.solvers import breakpoints_of
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.numeric.tolerances import COMPUTED, NEARLY_SINGULAR, ROUNDING
+from eomgen.symbolic.expression import Node, Scalar, symbols_of
+from eomgen.symbolic.numeric import COMPUTED, NEARLY_SINGULAR, ROUNDING
 
 OPEN = ContactMode(closed=False)
 

@@ -19,24 +19,20 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageError
 from eomgen.frozen import dataclass, with_fields
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.model.fields import Table, WrittenEquation
-from eomgen.model.parts import Model, Output
-from eomgen.model.replaced import equation_typed
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import Quantities
+from eomgen.model import Model, Output, Table, WrittenEquation, equation_typed
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.contacts import EventFunction, changed
-from eomgen.simulation.integrate import drift_of
+from eomgen.simulation.integration import drift_of
 from eomgen.simulation.integrator import Run, measured
 from eomgen.simulation.phase_change import PhaseStart
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Kept, OnDemand, Phase, Trajectory
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import Expression, Scalar, parse
+from eomgen.symbolic.numeric import COMPUTED
 
 SystemCondition = Callable[[System], Scalar]
 """A function that is to become 0, over the symbols, accelerations and multipliers of a system."""

@@ -14,17 +14,13 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.programs import determinate
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen import RightHandSide, compiled, determinate, program_of
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import STILL
-from eomgen.mechanics.free_bodies.balance import BodyEquation
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.numeric.dense import balanced
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE, SUMMED, UNBALANCED
+from eomgen.mechanics.constraints import STILL
+from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, named_reactions
+from eomgen.mechanics.reactions import Reactions
+from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.numeric import RANK_NEARBY, SHARE, SUMMED, UNBALANCED, balanced
 
 AT_ONCE = 2_000_000  # entries of C that are held in memory at once
 

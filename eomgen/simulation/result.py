@@ -15,9 +15,9 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.frozen import Pickled, dataclass
-from eomgen.model.units import OUTPUT
-from eomgen.symbolic.expression.units import Unit
-from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.model import OUTPUT
+from eomgen.symbolic.expression import Unit
+from eomgen.symbolic.numeric import SOLVED
 
 NO_EQUATIONS = "nothing is known of the equations behind these numbers"  # given by hand, or read from a pickle
 SHOWN = 80  # characters of names on a line

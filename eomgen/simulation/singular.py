@@ -15,14 +15,14 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import QuaternionPlaces
+from eomgen.codegen import QuaternionPlaces
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.elimination import PLACE
+from eomgen.mechanics.constraints import PLACE
 from eomgen.simulation.constraint_drift import EnergyLevel, Nearness, Projection, RankLookout, Undetermined
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.solvers import LateSlope, StateRate
-from eomgen.symbolic.numeric.tolerances import FAIR_RUN, FINEST_RUN, RUN, RUNS_AGREE, WIDE_STEP
+from eomgen.symbolic.numeric import FAIR_RUN, FINEST_RUN, RUN, RUNS_AGREE, WIDE_STEP
 
 STEPS = 100  # tolerances of one step by which they may differ
 NEAR = 0.02  # of a determinant's largest value: how small a minimum may be the sign of a zero

@@ -15,11 +15,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.model.part import leaves_of
-from eomgen.model.parts import Model
+from eomgen.model import Model, leaves_of
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.numeric.tolerances import BEST, LEAST_RTOL, SAME_PLACE, SOLVED
+from eomgen.symbolic.expression import Expression
+from eomgen.symbolic.numeric import BEST, LEAST_RTOL, SAME_PLACE, SOLVED
 
 
 def breakpoints_of(model: Model) -> tuple[float, ...]:

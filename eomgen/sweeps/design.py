@@ -23,12 +23,9 @@ import numpy as np
 
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.model.diagnostics import nearest
-from eomgen.model.parts import Model
-from eomgen.model.reader import loads
-from eomgen.model.replaced import Taken, TypedNumbers, refuse_what_is_not_set, with_values
+from eomgen.model import Model, Taken, TypedNumbers, loads, nearest, refuse_what_is_not_set, with_values
 from eomgen.sensitivities import slope_requested
-from eomgen.symbolic.numeric.tolerances import RUN
+from eomgen.symbolic.numeric import RUN
 from eomgen.version import __version__
 
 DesignKind = Literal["random", "sobol", "lhs"]

@@ -7,7 +7,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.documents.figures import Picture
+from eomgen.documents import Picture
 from eomgen.errors import RunFailed, UsageError
 from eomgen.sweeps.design import SweepPlan
 

@@ -16,16 +16,22 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import ExpressionError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.model.fields import Table
-from eomgen.model.parts import Model
-from eomgen.model.reader import ModelOrPath, bytes_at, loads
-from eomgen.model.replaced import LIKE, TypedNumbers, range_of, refuse_what_is_not_set, typed_values
-from eomgen.model.units import units_of
+from eomgen.model import (
+    LIKE,
+    Model,
+    ModelOrPath,
+    Table,
+    TypedNumbers,
+    bytes_at,
+    loads,
+    range_of,
+    refuse_what_is_not_set,
+    typed_values,
+    units_of,
+)
 from eomgen.questions import requested_of
 from eomgen.sensitivities import unit_of_slope
-from eomgen.simulation.integrate import refuse_bad_run
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.result import Trajectory
+from eomgen.simulation import Stepping, Trajectory, refuse_bad_run
 from eomgen.sweeps.design import FIXED, Stepped, SweepPlan, plan_of, refuse_bad_design, spread_of, texts
 from eomgen.sweeps.workers import (
     UNKNOWN_WORKERS,
@@ -42,9 +48,8 @@ from eomgen.sweeps.workers import (
     rows_here,
     value_of_run,
 )
-from eomgen.symbolic.expression.units import Typed, seconds
-from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
-from eomgen.symbolic.numeric.work import another_stretch
+from eomgen.symbolic.expression import Typed, seconds
+from eomgen.symbolic.numeric import RUN, SOLVED, another_stretch
 
 PLAN, LEDGER, TABLE, PARQUET, CRITICAL = "plan.json", "ledger.sqlite", "table.csv", "table.parquet", "critical.csv"
 BLOCK = 100_000  # runs whose rows are looked for at once

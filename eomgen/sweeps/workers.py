@@ -28,17 +28,14 @@ from typing import Any
 
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant.quantities import requests_of
-from eomgen.model.fields import AtRest, Table
-from eomgen.model.outputs.base import SMALL_MOTIONS
-from eomgen.model.parts import Model, Output
-from eomgen.model.replaced import with_values
+from eomgen.mechanics.instant import requests_of
+from eomgen.model import SMALL_MOTIONS, AtRest, Model, Output, Table, with_values
 from eomgen.pipeline import simulator
 from eomgen.questions import Simulator, requested_of, solve
 from eomgen.sensitivities import slope_in_si
-from eomgen.simulation.result import Trajectory
+from eomgen.simulation import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of
-from eomgen.symbolic.numeric.work import PatienceEnded
+from eomgen.symbolic.numeric import PatienceEnded
 
 A_CHUNK = 0.5  # s of work in one: long compared with the cost of giving it out, short compared with the loss by a kill
 MOST_IN_ONE = 2000  # runs

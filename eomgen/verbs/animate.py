@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from eomgen import files, pipeline
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.moving_picture import (
+from eomgen.documents import (
     FINE,
     PERIOD,
+    Document,
     Movie,
     Progress,
     frame_times,
@@ -22,34 +22,29 @@ from eomgen.documents.moving_picture import (
     movie_of,
     mp4,
     on_stderr,
+    plain_document,
+    prose,
     refuse_rates,
     strip,
     virtual_movie,
+    virtual_work_step,
 )
-from eomgen.documents.statements import prose
-from eomgen.documents.statics.steps import virtual_work_step
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom, with_drives_held
-from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
-from eomgen.mechanics.statics.contacts import modes_at_rest
-from eomgen.mechanics.statics.virtual_work import released_in
-from eomgen.model.parts import Model
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values
+from eomgen.mechanics.dynamics import system_of, with_nodes_balanced
+from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
+from eomgen.mechanics.rigidity import refuse_loose, structure_of
+from eomgen.mechanics.statics import modes_at_rest, released_in
+from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.page import PlayedRun, PlayerOptions, player_page_of, player_read_back
-from eomgen.proof.check import Check
-from eomgen.proof.pictures_reported import pictures_reported, states_shown
+from eomgen.proof import Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, page_stepping, page_time
 from eomgen.questions import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.units import Typed
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.simulation import Stepping, Trajectory
+from eomgen.symbolic.expression import Typed
+from eomgen.symbolic.numeric import COMPUTED
 from eomgen.verbs.outcome import with_start_reported
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
@@ -381,7 +376,7 @@ def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movi
     Raises:
         UsageError: it shows fewer.
     """
-    from eomgen.documents.linearize.result import linearize
+    from eomgen.documents import linearize
 
     if _ending(output) == ".html":
         raise UsageError("small motions have no page", fix="write a .gif")

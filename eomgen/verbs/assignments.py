@@ -8,9 +8,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
-from eomgen.model.fields import AtRest
-from eomgen.model.parts import Model
-from eomgen.model.replaced import Taken, Valued, equation_typed, with_values
+from eomgen.model import AtRest, Model, Taken, Valued, equation_typed, with_values
 from eomgen.verbs.outcome import listed
 
 OPTIONS = {"set_": "--set", "start": "--start", "from_rest": "--from-rest", "at": "--at", "until": "--until"}

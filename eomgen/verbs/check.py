@@ -5,17 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.statements import Lines
+from eomgen.documents import Document, Lines, plain_document
 from eomgen.errors import Problem
-from eomgen.mechanics.constraints.rank import Freedom
-from eomgen.mechanics.dynamics.formulations import reported_of_nodes, with_nodes_balanced
-from eomgen.mechanics.rigidity.structure import Structure
-from eomgen.model.dimensions import inferred_units
-from eomgen.model.parts import Model, Truss
-from eomgen.model.unbuilt import warnings_of
-from eomgen.proof.degrees_of_freedom import counted_otherwise, lines_otherwise, standing_otherwise
-from eomgen.symbolic.print.text import to_text
+from eomgen.mechanics.constraints import Freedom
+from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
+from eomgen.mechanics.rigidity import Structure
+from eomgen.model import Model, Truss, inferred_units, warnings_of
+from eomgen.proof import counted_otherwise, lines_otherwise, standing_otherwise
+from eomgen.symbolic.print import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
 from eomgen.verbs.outcome import listed

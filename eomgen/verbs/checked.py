@@ -8,24 +8,14 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import Freedom, freedom_of
-from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
-from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.dynamics.wellposed import massless_motions
-from eomgen.mechanics.instant.velocity_analysis import mobility_of
-from eomgen.mechanics.kinematics.motion import motion_of
-from eomgen.mechanics.kinematics.scene import ContactModes, SystemScene
-from eomgen.mechanics.kinematics.symbols import scope_of
-from eomgen.mechanics.rigidity.structure import Structure, structure_of
-from eomgen.mechanics.start.assembly_modes import Branches, branches_of_loops
-from eomgen.mechanics.start.state import Start, start_of_motion
-from eomgen.mechanics.statics.contacts import contacts_at_start, modes_at_rest
-from eomgen.model.arithmetic import value_of
-from eomgen.model.catalog import Catalog
-from eomgen.model.fields import Table
-from eomgen.model.parts import Model
-from eomgen.model.unbuilt import unbuilt
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.constraints import Freedom, freedom_of
+from eomgen.mechanics.dynamics import assembled_by_recursion, massless_motions, system_of
+from eomgen.mechanics.instant import mobility_of
+from eomgen.mechanics.kinematics import ContactModes, SystemScene, motion_of, scope_of
+from eomgen.mechanics.rigidity import Structure, structure_of
+from eomgen.mechanics.start import Branches, Start, branches_of_loops, start_of_motion
+from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
+from eomgen.model import Catalog, Model, Table, exact_parameters, unbuilt, value_of
 
 
 @dataclass(frozen=True)

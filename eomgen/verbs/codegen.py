@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.codegen.targets import ALL
-from eomgen.documents.document import Document, lines_document, plain_document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Lines
+from eomgen.codegen import ALL as TARGETS
+from eomgen.documents import Document, Lines, lines_document, plain_document, proven
 from eomgen.generated import Generated, generate
-from eomgen.model.parts import Model
+from eomgen.model import Model
 from eomgen.verbs.outcome import with_constraints_closed
 
 
@@ -92,5 +90,5 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
 
 def languages() -> Document:
     """The targets that there are, a line each."""
-    found = [{"name": target.name, "about": target.about} for target in ALL]
-    return lines_document(lambda: {"targets": found}, *(f"{target.name:10} {target.about}" for target in ALL))
+    found = [{"name": target.name, "about": target.about} for target in TARGETS]
+    return lines_document(lambda: {"targets": found}, *(f"{target.name:10} {target.about}" for target in TARGETS))

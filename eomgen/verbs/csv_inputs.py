@@ -11,11 +11,8 @@ from typing import Any
 
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
-from eomgen.model.fields import Table
-from eomgen.model.part import altered
-from eomgen.model.parts import Coordinate, Input, Model
-from eomgen.model.samples import samples
-from eomgen.symbolic.expression.formula import Expression
+from eomgen.model import Coordinate, Input, Model, Table, altered, samples
+from eomgen.symbolic.expression import Expression
 from eomgen.verbs.assignments import assignments, nearest_name
 
 EXAMPLE = "--follow theta=run.csv"

@@ -5,16 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.documents.document import Document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Grid, Step
+from eomgen.documents import Document, Grid, Step, proven
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.free_bodies.balance import balance_of
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
-from eomgen.model.parts import Model
-from eomgen.model.reader import load
-from eomgen.model.units import units_of_model
+from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
+from eomgen.model import Model, load, units_of_model
 from eomgen.verbs.outcome import with_constraints_closed
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}

@@ -8,24 +8,16 @@ from functools import cached_property
 from typing import Any
 
 from eomgen import pipeline
-from eomgen.documents.document import Document, document_of
-from eomgen.documents.equation_steps import sides_of
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Formula, Grid, Statement, Step, prose
+from eomgen.documents import Document, Formula, Grid, Statement, Step, document_of, prose, proven, sides_of
 from eomgen.equations import Equations
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
-from eomgen.proof.check import Certificate
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.numeric.evaluation import transplanted
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import to_text
+from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.model import Model, exact_parameters
+from eomgen.proof import Certificate
+from eomgen.symbolic.exact import book_form, equal_at_random_states
+from eomgen.symbolic.expression import Graph, Scalar, symbols_of
+from eomgen.symbolic.numeric import Work, transplanted
+from eomgen.symbolic.print import to_text
 
 DECLARED = ("coordinates", "speeds", "parameters", "inputs", "bodies", "constraints", "forces")
 

@@ -7,10 +7,9 @@ import platform
 import shutil
 from importlib import metadata
 
-from eomgen.codegen.build import compiler
+from eomgen.codegen import compiler
 from eomgen.disk_cache import cache_folder
-from eomgen.documents.document import Document, lines_document
-from eomgen.documents.moving_picture import ffmpeg
+from eomgen.documents import Document, ffmpeg, lines_document
 from eomgen.errors import ToolMissing
 from eomgen.version import __version__
 

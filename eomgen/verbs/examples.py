@@ -6,9 +6,9 @@ import tomllib
 from functools import cache
 from pathlib import Path
 
-from eomgen.documents.document import Document, lines_document
+from eomgen.documents import Document, lines_document
 from eomgen.errors import UsageError
-from eomgen.model.diagnostics import nearest
+from eomgen.model import nearest
 
 HOMES = (Path(__file__).parent.parent / "examples", Path(__file__).parent.parent.parent / "models")
 """where the models are: in what is installed, in the tree"""

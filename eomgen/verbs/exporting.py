@@ -3,25 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 
 from eomgen import files
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.statements import Lines
-from eomgen.errors import UsageError
+from eomgen.documents import Document, Lines, plain_document
 from eomgen.exported import urdf_of
-from eomgen.model.parts import Model
-from eomgen.proof.imported import imported_otherwise, unsaid_otherwise
-
-
-def refuse_strange_endings(output: str) -> None:
-    """Refuses a file name that does not end in .urdf, before any work.
-
-    Raises:
-        UsageError: another ending.
-    """
-    if Path(output).suffix.lower() != ".urdf":
-        raise UsageError(f"'{output}' is no name for a robot: the ending is .urdf", fix="name it so")
+from eomgen.model import Model
+from eomgen.proof import imported_otherwise, unsaid_otherwise
 
 
 def export_document(model: Model, *, output: str) -> Document:

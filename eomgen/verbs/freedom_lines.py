@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.constraints.rank import Freedom, RowName, VelocityRow
-from eomgen.mechanics.start.assembly_modes import AssemblyMode, Branches
-from eomgen.model.parts import Model
-from eomgen.model.units import in_own_unit
-from eomgen.symbolic.print.text import to_text
+from eomgen.mechanics.constraints import Freedom, RowName, VelocityRow
+from eomgen.mechanics.start import AssemblyMode, Branches
+from eomgen.model import Model, in_own_unit
+from eomgen.symbolic.print import to_text
 from eomgen.verbs.outcome import listed
 
 

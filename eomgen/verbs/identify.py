@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Lines, prose
+from eomgen.documents import Document, Lines, plain_document, prose, proven
 from eomgen.errors import UsageError
 from eomgen.files import read
 from eomgen.identification import Identified, Regressor, identify, regressor
-from eomgen.model.parts import Model
+from eomgen.model import Model
 
 LARGEST = 200_000_000  # bytes of a file
 BIASED = (

@@ -4,28 +4,15 @@ from __future__ import annotations
 
 import shlex
 from dataclasses import replace
-from pathlib import Path
 
 from eomgen import files
-from eomgen.documents.document import Document, lines_document
-from eomgen.errors import UsageError
+from eomgen.documents import Document, lines_document
 from eomgen.pipeline import derive
-from eomgen.proof.imported import imported_otherwise, sdf_otherwise, without_units
-from eomgen.proof.imported_mjcf import mjcf_otherwise
+from eomgen.proof import imported_otherwise, mjcf_otherwise, sdf_otherwise, without_units
 from eomgen.robots import ImportedRobot, first_element, imported
 
 MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared
 OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}
-
-
-def refuse_other_endings(output: str | None) -> None:
-    """Refuses a file name that does not end in .toml, before any work.
-
-    Raises:
-        UsageError: another ending.
-    """
-    if output is not None and Path(output).suffix.lower() != ".toml":
-        raise UsageError(f"'{output}' is no name for a model file: the ending is .toml", fix="name it so")
 
 
 def import_document(

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.documents.kinematics.result import Kinematics
+from eomgen.documents import Kinematics
 from eomgen.errors import ModelError, UsageError
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.parts import Model
+from eomgen.model import Model, WrittenEquation
 from eomgen.questions import kinematics as found_in
 from eomgen.verbs.assignments import nearest_name
 

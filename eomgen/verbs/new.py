@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from eomgen import files
-from eomgen.documents.document import Document, lines_document
+from eomgen.documents import Document, lines_document
 from eomgen.errors import UsageError
 from eomgen.verbs.examples import example_named
 

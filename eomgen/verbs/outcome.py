@@ -6,17 +6,15 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eomgen.documents.document import Document
-from eomgen.documents.proven import proven
-from eomgen.documents.result import Result
+from eomgen.documents import Document, Result, proven
 from eomgen.errors import DerivationError, ModelError, OpenConstraints, Problem
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.start.state import Start, start_of_motion
-from eomgen.model.parts import Model
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.start import Start, start_of_motion
+from eomgen.model import Model
 from eomgen.study import study_of
 
 if TYPE_CHECKING:
-    from eomgen.simulation.result import Trajectory
+    from eomgen.simulation import Trajectory
 
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from pathlib import Path
 from typing import Any
 
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Lines
-from eomgen.errors import UsageError
-from eomgen.model.parts import Model
+from eomgen.documents import Document, Lines, plain_document, proven
+from eomgen.model import Model
 from eomgen.page import PlayerOptions, played, slider_ranges
 from eomgen.verbs.outcome import with_start_reported
 
@@ -41,13 +37,3 @@ def play_document(
     document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
     document = replace(document, taken=taken, notes=tuple(filter(None, (found.rests, found.shorter))))
     return proven(with_start_reported(document, model, run), found.certify() if certify else None)
-
-
-def refuse_other_endings(output: str) -> None:
-    """Refuses a file name that is no page's.
-
-    Raises:
-        UsageError: the name does not end in .html.
-    """
-    if Path(output).suffix.lower() not in (".html", ".htm"):
-        raise UsageError(f"no page can be written as '{output}'", fix="the ending is .html")

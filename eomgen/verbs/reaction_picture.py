@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 
 from eomgen import pipeline
-from eomgen.documents.figures import Picture, run_picture
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.start.exact import known_exactly
-from eomgen.model.parts import Model
+from eomgen.documents import Picture, run_picture
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.start import known_exactly
+from eomgen.model import Model
 from eomgen.questions import run_of_a_page
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.expression import is_zero, symbols_of
+from eomgen.symbolic.numeric import number_of
 
 SAMPLES = 721  # of a cycle
 

@@ -13,39 +13,51 @@ import numpy as np
 
 from eomgen import pipeline
 from eomgen.certificate import certify as certificate_of_equations
-from eomgen.codegen.rhs import parameter_vector
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.markdown import listing_markdown
-from eomgen.documents.proven import proven
-from eomgen.documents.reaction_values import null_space, reaction_formulas, said, sums_of_open
-from eomgen.documents.statements import Found, Lines, Listing, Quantity, Statement, prose
-from eomgen.documents.statics.result import why_not_at_rest
+from eomgen.codegen import parameter_vector
+from eomgen.documents import (
+    Document,
+    Found,
+    Lines,
+    Listing,
+    Quantity,
+    Statement,
+    listing_markdown,
+    null_space,
+    plain_document,
+    prose,
+    proven,
+    reaction_formulas,
+    said,
+    sums_of_open,
+    why_not_at_rest,
+)
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.mechanics.dynamics.pieces import refuse_jump
-from eomgen.mechanics.dynamics.system import System, system_of
-from eomgen.mechanics.free_bodies.balance import balance_of
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.start.exact import known_exactly
-from eomgen.mechanics.statics.contacts import resting_contacts
-from eomgen.model.fields import AtRest, Table, WrittenEquation
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.parts import Model, Output
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values, equation_typed, with_values
-from eomgen.model.unknowns import in_loads
-from eomgen.proof.at_a_state import NumericState
-from eomgen.proof.check import Certificate, Check
-from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
+from eomgen.mechanics.dynamics import System, refuse_jump, system_of, with_nodes_balanced
+from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
+from eomgen.mechanics.start import known_exactly
+from eomgen.mechanics.statics import resting_contacts
+from eomgen.model import (
+    FUNCTIONS,
+    AtRest,
+    Model,
+    ModelOrPath,
+    Output,
+    Table,
+    Values,
+    WrittenEquation,
+    equation_typed,
+    in_loads,
+    model_at,
+    with_values,
+)
+from eomgen.proof import Certificate, Check, NumericState, reaction_numbers, reaction_texts
 from eomgen.questions import Answers, solve
-from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.tolerances import ROUNDING
-from eomgen.symbolic.numeric.work import doing
-from eomgen.symbolic.print.text import to_text
+from eomgen.simulation import ReactionColumns
+from eomgen.symbolic.exact import book_form
+from eomgen.symbolic.expression import Fraction, parse
+from eomgen.symbolic.numeric import ROUNDING, doing
+from eomgen.symbolic.print import to_text
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
 from eomgen.verbs.outcome import listed, with_start_reported
 

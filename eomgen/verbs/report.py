@@ -11,25 +11,27 @@ from pathlib import Path
 from typing import Any
 
 from eomgen import files, pipeline
-from eomgen.codegen.program import identifier
-from eomgen.documents.document import Document, document_of, plain_document
-from eomgen.documents.equilibrium_picture import drawing_at_rest
-from eomgen.documents.inertia.result import inertia
-from eomgen.documents.latex import with_listings_typeset
-from eomgen.documents.linearize.result import linearize
-from eomgen.documents.proven import proven
-from eomgen.documents.result import Result
-from eomgen.documents.statements import Lines
-from eomgen.documents.statics.result import Statics, statics
+from eomgen.codegen import identifier
+from eomgen.documents import (
+    Document,
+    Lines,
+    Result,
+    Statics,
+    document_of,
+    drawing_at_rest,
+    inertia,
+    linearize,
+    plain_document,
+    proven,
+    statics,
+    with_listings_typeset,
+)
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.generated import Generated
-from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
-from eomgen.model.parts import Model
-from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
-from eomgen.model.replaced import Values
-from eomgen.model.units import units_of
+from eomgen.mechanics.dynamics import with_nodes_balanced
+from eomgen.model import Model, ModelOrPath, Values, bytes_at, loads, model_at, units_of
 from eomgen.page import (
     FORMATS,
     PLAYER,
@@ -55,13 +57,12 @@ from eomgen.page import (
     rest_figure,
     written_as,
 )
-from eomgen.proof.check import Certificate, Check
-from eomgen.proof.pictures_reported import pictures_reported, states_shown
+from eomgen.proof import Certificate, Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, kinematics, run_of_a_page, solve
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.units import Typed, seconds
-from eomgen.symbolic.numeric.work import doing
+from eomgen.simulation import Trajectory
+from eomgen.symbolic.expression import Typed, seconds
+from eomgen.symbolic.numeric import doing
 from eomgen.verbs.assignments import nearest_name
 from eomgen.verbs.outcome import with_start_reported
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import json
 
-from eomgen.documents.document import Document, lines_document
-from eomgen.model.schema import json_schema
+from eomgen.documents import Document, lines_document
+from eomgen.model import json_schema
 
 
 def schema_document() -> Document:

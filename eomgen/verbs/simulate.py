@@ -12,25 +12,17 @@ from typing import Any
 import numpy as np
 
 from eomgen import pipeline
-from eomgen.codegen.rhs import closing_accelerations, parameter_vector
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Grid, Statement, prose
-from eomgen.documents.text import cell_text
+from eomgen.codegen import closing_accelerations, parameter_vector
+from eomgen.documents import Document, Grid, Statement, cell_text, plain_document, prose, proven
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
-from eomgen.mechanics.constraints.rows import limits_passed
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.parts import Model
-from eomgen.model.samples import left_tables
-from eomgen.model.units import units_of
-from eomgen.proof.run_reported import ReportedRun, run_reported
+from eomgen.mechanics.constraints import limits_passed
+from eomgen.model import Model, WrittenEquation, left_tables, units_of
+from eomgen.proof import ReportedRun, run_reported
 from eomgen.questions import run as simulated
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.result import Trajectory
-from eomgen.simulation.solvers import Accuracy
-from eomgen.symbolic.expression.units import Unit
+from eomgen.simulation import Accuracy, Stepping, Trajectory
+from eomgen.symbolic.expression import Unit
 
 MOST_REPORTED = 20  # phases in the text
 MOST_AGAIN = 500_000  # evaluations of a run that is made again, finer, to know its error
@@ -65,7 +57,7 @@ def simulate_document(
     if output:
         _write_run(run, output, units_of(model, run.columns()) if units else None)
     if plot:
-        from eomgen.documents.figures import run_picture
+        from eomgen.documents import run_picture
 
         run_picture(run, view, title=model.name, units=units_of(model, run.columns())).save(plot)
     assembled = f"The start was {run.assembled}." if run.assembled else ""

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.documents.document import Document
-from eomgen.documents.proven import proven
-from eomgen.model.parts import Model
+from eomgen.documents import Document, proven
+from eomgen.model import Model
 from eomgen.questions import solve
 from eomgen.verbs.outcome import with_start_reported
 

@@ -9,20 +9,15 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Grid, prose
+from eomgen.documents import Document, Grid, plain_document, prose, proven
 from eomgen.errors import EomgenError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.model.fields import Table
-from eomgen.model.parts import Model, Output
-from eomgen.model.replaced import range_of
+from eomgen.model import Model, Output, Table, range_of
 from eomgen.pipeline import simulate
-from eomgen.proof.check import Certificate, Check, Tally, differing
-from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
+from eomgen.proof import Certificate, Check, Tally, differing, drawn_otherwise, reported_of_all
 from eomgen.questions import answered_otherwise, requested_of, requested_typed, solve
 from eomgen.sensitivities import checks_of_slope, slope_in_si
-from eomgen.simulation.result import Trajectory
+from eomgen.simulation import Trajectory
 from eomgen.sweeps import (
     CRITICAL,
     FAILED,
@@ -41,7 +36,7 @@ from eomgen.sweeps import (
     sweep_at,
     swept,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric import NoValue
 from eomgen.verbs.assignments import assignments, typed
 
 FEW = 5  # failed runs that are named

@@ -9,17 +9,12 @@ from typing import Any
 
 from eomgen import files
 from eomgen.certificate import certify as certificate_of_equations
-from eomgen.documents.document import Document, plain_document
-from eomgen.documents.proven import proven
-from eomgen.documents.statements import Lines
+from eomgen.documents import Document, Lines, plain_document, proven
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Case, Judge, Verdict
-from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.model.parts import Model
-from eomgen.model.replaced import with_values
-from eomgen.proof.check import Certificate
-from eomgen.proof.verdicts import verdicts_again
+from eomgen.model import AtRest, Model, WrittenEquation, with_values
+from eomgen.proof import Certificate, verdicts_again
 from eomgen.verbs.outcome import with_constraints_closed
 
 LARGEST = 1_000_000  # bytes of a file of answers

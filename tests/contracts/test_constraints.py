@@ -12,7 +12,7 @@ from eomgen.mechanics.constraints.rows import Row
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.loads import body_wrench
 from eomgen.model.constraints import ALL
-from eomgen.symbolic.expression.derivative import gradient, tangent
+from eomgen.symbolic.expression.derivatives import gradient, tangent
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, apply, cross, plus
 from eomgen.symbolic.numeric.evaluation import fifty_digits

@@ -29,7 +29,7 @@ from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
 from eomgen.proof.declared_loads import acting_otherwise, working_otherwise
-from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus
 from eomgen.symbolic.expression.text import parse

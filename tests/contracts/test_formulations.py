@@ -22,8 +22,8 @@ from eomgen.mechanics.dynamics.formulations import ALL, Formulation
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
 from eomgen.mechanics.kinematics.inertia import armature_energy
 from eomgen.mechanics.kinematics.tree import branches_of
-from eomgen.model.unbuilt import unbuilt
-from eomgen.symbolic.expression.derivative import depends_on_any
+from eomgen.model.likely_mistakes import unbuilt
+from eomgen.symbolic.expression.derivatives import depends_on_any
 from eomgen.symbolic.expression.graph import same_number
 from eomgen.symbolic.numeric.evaluation import NoValue
 

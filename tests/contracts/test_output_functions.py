@@ -13,7 +13,7 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.documents.linearize.result import linearize
+from eomgen.documents.small_motions.result import linearize
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import system_of

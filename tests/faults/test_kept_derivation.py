@@ -10,7 +10,7 @@ import pytest
 
 from eomgen import disk_cache
 from eomgen.cli import main
-from eomgen.verbs import cached_derivation, derive
+from eomgen.verbs import derive, kept_derivations
 
 MODEL = (Path(__file__).parents[2] / "models" / "simple_pendulum.toml").read_text(encoding="utf-8")
 
@@ -126,6 +126,6 @@ def test_an_entry_of_another_model_is_not_believed(place, reported):
 def test_an_error_in_the_laws_is_not_hidden_by_what_was_kept(place, reported, monkeypatch):
     """With gravity upside down in the laws of today, what was derived before is not told: it is derived, with them."""
     first, _ = reported(MODEL)
-    real = cached_derivation.equations_of_motion
-    monkeypatch.setattr(cached_derivation, "equations_of_motion", lambda of: replace(real(of), V=-real(of).V))
+    real = kept_derivations.equations_of_motion
+    monkeypatch.setattr(kept_derivations, "equations_of_motion", lambda of: replace(real(of), V=-real(of).V))
     assert reported(MODEL) == (first, True)

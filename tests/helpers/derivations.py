@@ -19,12 +19,12 @@ from eomgen.documents.document import Document
 from eomgen.equations import Equations
 from eomgen.mechanics.dynamics.formulations import METHODS
 from eomgen.mechanics.dynamics.system import System
+from eomgen.model.likely_mistakes import unbuilt
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
-from eomgen.model.unbuilt import unbuilt
 from eomgen.pipeline import derive
 from eomgen.questions.outputs_answered import Answers
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.formula import Call, Reference, over
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.text import parse

@@ -25,7 +25,7 @@ from eomgen.documents.statements import Formula, Side
 from eomgen.documents.text import side_text
 from eomgen.questions.outputs_answered import Answers
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import derivative, substituted
+from eomgen.symbolic.expression.derivatives import derivative, substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.text import parse

@@ -24,7 +24,7 @@ from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, ma
 from eomgen.mechanics.kinematics.loads import body_wrench, weights
 from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.mechanics.reactions.equilibrium import BodyNumbers
-from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
 from eomgen.symbolic.numeric.dense import balanced, independent, without_rounding

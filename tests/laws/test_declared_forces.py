@@ -8,7 +8,7 @@ from random import Random
 import pytest
 
 import eomgen
-from eomgen.mechanics.free_bodies import named_reactions
+from eomgen.mechanics.free_bodies import names_of_reactions as named_reactions
 from eomgen.mechanics.free_bodies import wrenches as components
 from eomgen.mechanics.kinematics import scene as contact_modes
 from eomgen.mechanics.statics import contacts as contacts_at_start

@@ -16,7 +16,7 @@ from eomgen.mechanics.start.assembly_modes import branches_of_loops
 from eomgen.mechanics.start.state import start_of_motion
 from eomgen.model.parts import Model
 from eomgen.simulation.constraint_drift import projection_of
-from eomgen.simulation.integrate import integrate
+from eomgen.simulation.integration import integrate
 
 pytestmark = pytest.mark.slow
 

@@ -18,8 +18,8 @@ from eomgen.mechanics.rigidity import velocity_plan as blocks
 from eomgen.mechanics.rigidity.structure import structure_of
 from eomgen.mechanics.statics.virtual_work import by_virtual_work, requested_reactions
 from eomgen.symbolic.exact.equality import real_values
-from eomgen.symbolic.exact.normal_form import simple_constants
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.exact.normal_forms import simple_constants
+from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import fifty_digits

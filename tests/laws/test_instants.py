@@ -26,7 +26,7 @@ from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 

@@ -20,7 +20,7 @@ from eomgen.mechanics.integrals.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
 from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.derivatives import depends_on, substituted
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 

@@ -17,7 +17,7 @@ from eomgen.equations import Equations
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.proof.states import closed_state, real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.expression.derivatives import depends_on, gradient, substituted
 from eomgen.symbolic.expression.node import Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 

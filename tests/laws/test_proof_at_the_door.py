@@ -14,7 +14,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.documents.document import Document
-from eomgen.documents.proven import proven, proven_for_machines
+from eomgen.documents.proven_documents import proven, proven_for_machines
 from eomgen.errors import EomgenError
 
 MODELS = sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))

@@ -11,7 +11,7 @@ from eomgen.documents import reaction_values
 from eomgen.documents.reading import Reader
 from eomgen.documents.statements import Omitted
 from eomgen.mechanics.integrals import first_integrals as constants_of_motion
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.formula import function
 from eomgen.symbolic.expression.traversal import order
 from eomgen.verbs.derive import derive_document

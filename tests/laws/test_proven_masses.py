@@ -12,10 +12,10 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.cli import main
-from eomgen.documents.inertia import result, steps
-from eomgen.documents.inertia import steps as rows
-from eomgen.documents.inertia.result import inertia as verb
 from eomgen.documents.json_form import as_dict
+from eomgen.documents.mass_properties import result, steps
+from eomgen.documents.mass_properties import steps as rows
+from eomgen.documents.mass_properties.result import inertia as verb
 from eomgen.mechanics.kinematics import motion as composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.proof.masses import FILLED

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
+from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 BICYCLE = """

@@ -6,8 +6,8 @@ import pytest
 
 from eomgen.documents.reaction_values import readings_of
 from eomgen.documents.reading import Reader
-from eomgen.symbolic.exact.normal_form import equal
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.exact.normal_forms import equal
+from eomgen.symbolic.expression.derivatives import substituted
 from tests.helpers.derivations import equations
 
 pytestmark = pytest.mark.slow

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import eomgen
 from eomgen.mechanics.linearization.linearization import SmallMotions
-from eomgen.symbolic.expression.derivative import derivative, substituted
+from eomgen.symbolic.expression.derivatives import derivative, substituted
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.print.text import text_size, to_text

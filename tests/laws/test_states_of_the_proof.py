@@ -11,7 +11,7 @@ from eomgen.mechanics.free_bodies import friction
 from eomgen.model.joints.path import Stretch
 from eomgen.proof.check import Certificate
 from eomgen.proof.trials import NOWHERE, Trials
-from eomgen.symbolic.expression import derivative
+from eomgen.symbolic.expression import derivatives as derivative
 from eomgen.symbolic.expression.splines import Spline
 
 HEAD = """

@@ -18,7 +18,7 @@ import eomgen
 from eomgen.errors import EomgenError, ModelError
 from eomgen.mechanics.constraints.rank import freedom_of
 from eomgen.mechanics.kinematics.symbols import primitive
-from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.formula import function
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

@@ -8,7 +8,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.linearization import polynomial as conditions
-from eomgen.proof.small_motions_reported import linear_entries
+from eomgen.proof.reported_small_motions import linear_entries
 
 TURNING = """
 eomgen = 1

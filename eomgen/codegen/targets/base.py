@@ -14,7 +14,7 @@ from eomgen.codegen.lowering import Statements, statements
 from eomgen.codegen.program import Program
 from eomgen.codegen.statements import Language
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.formula import NAMES
+from eomgen.symbolic.expression import NAMES
 
 
 @dataclass(frozen=True)

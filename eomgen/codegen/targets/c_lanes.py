@@ -19,8 +19,7 @@ from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, unit_quaternions_of
 from eomgen.codegen.statements import CHANGED, READ, REAL, ROOM, Language
 from eomgen.codegen.targets.c import C, c_text
-from eomgen.symbolic.expression.formula import NAMES
-from eomgen.symbolic.expression.numbers import Number
+from eomgen.symbolic.expression import NAMES, Number
 
 WIDTH = 8  # lanes
 _NAMED = {"abs": "fabs", **{name: name for name in (*NAMES, "pow", "less", "less_equal", "select") if name != "abs"}}

@@ -16,7 +16,7 @@ from eomgen.codegen.targets.base import QUOTED, SUFFIXED, SingleWords, by_cases,
 from eomgen.codegen.targets.c import CONSTANTS, ENTRY, SELF_TEST, C
 from eomgen.codegen.targets.c import FORM as C_FORM
 from eomgen.codegen.targets.loading import compiled_target
-from eomgen.symbolic.expression.numbers import Number
+from eomgen.symbolic.expression import Number
 
 
 def _number(a: Number) -> RankedText:

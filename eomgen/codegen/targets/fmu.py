@@ -26,8 +26,7 @@ from eomgen.codegen.program import Assign, Program
 from eomgen.codegen.targets.base import OUTPUTS, RHS, Called, Description, Emitted, FileContent, Role, Target, header
 from eomgen.codegen.targets.c import CONSTANTS, apart, c_functions, c_text
 from eomgen.errors import RunFailed, ToolMissing
-from eomgen.symbolic.numeric.isolation import JUMPS
-from eomgen.symbolic.numeric.tolerances import BEST, RUN
+from eomgen.symbolic.numeric import BEST, JUMPS, RUN
 
 ROLES = ("rhs", "outputs", "reactions")
 UNTIL_STUCK = (0.2, 0.1, 0.05, 0.02)  # s, that its own test simulates: the longest that a solver without events can

@@ -16,7 +16,7 @@ from eomgen.codegen.lowering import Statements
 from eomgen.codegen.statements import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
 from eomgen.codegen.targets.base import CHECK, FileForm, SingleWords, by_cases
 from eomgen.codegen.targets.loading import compiled_target
-from eomgen.symbolic.expression.numbers import Number
+from eomgen.symbolic.expression import Number
 
 WIDTH = 120  # of a line; the standard has 132
 LONGEST_LIST = 500  # values in a statement, which has at most 255 lines

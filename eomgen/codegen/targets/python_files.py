@@ -21,7 +21,7 @@ from eomgen.codegen.targets.base import (
     functions_by,
 )
 from eomgen.errors import ToolMissing
-from eomgen.symbolic.numeric.tolerances import DEPENDENT_EASE, TINIEST
+from eomgen.symbolic.numeric import DEPENDENT_EASE, TINIEST
 
 _TEST = '''\
 """Held against the answers in test_vectors.json: python -m pytest"""

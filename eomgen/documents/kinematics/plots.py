@@ -8,21 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen import compiled, program_of
 from eomgen.documents.drawing import ARROW, REACTION, PagePoint, Sketch, arrow, draw_model, name_beside
 from eomgen.documents.figures import Picture
 from eomgen.errors import MissingValues, RunFailed
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.instant.kinematic_state import KinematicState
-from eomgen.mechanics.instant.mechanism import FIXED, Mechanism
-from eomgen.mechanics.instant.motion_kind import Centrodes
-from eomgen.mechanics.kinematics.motion import field_of
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import FIXED, Centrodes, KinematicState, Mechanism
+from eomgen.mechanics.kinematics import field_of
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, order, substituted, symbols_of
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, evaluate
 
 # -------- centrode plot ---------------------------------------------------------------------------------------
 # Centrodes, an instant -> a panel: the curve in the ground, and the body's own that rolls on it, as it lies then.

@@ -26,14 +26,10 @@ from eomgen.documents.motion_steps import data_step
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant.kinematic_state import KinematicState, body_motions
-from eomgen.mechanics.instant.mechanism import RotationCenter
-from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
-from eomgen.proof.check import Certificate
-from eomgen.proof.instant import instant_checks
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.print.text import readable_text, text_size
+from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, all_centrodes, body_motions
+from eomgen.proof import Certificate, instant_checks
+from eomgen.symbolic.expression import Node, Scalar, Vector
+from eomgen.symbolic.print import readable_text, text_size
 
 LINE = 80  # characters of a formula among the fields
 

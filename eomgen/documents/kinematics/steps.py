@@ -23,28 +23,48 @@ from eomgen.documents.statements import (
     Step,
     prose,
 )
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.instant.kinematic_state import (
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import (
+    FIXED,
+    HELICAL,
+    POINT,
     BodyMotion,
+    Centrodes,
+    Curve,
+    FoundPoint,
+    Kind,
+    Kinds,
     KinematicState,
+    LineOf,
+    Mechanism,
+    PointPair,
     Readable,
+    RotationCenter,
+    all_centrodes,
     body_motions,
     composition_of,
     readable_at,
 )
-from eomgen.mechanics.instant.mechanism import FIXED, POINT, FoundPoint, LineOf, Mechanism, PointPair, RotationCenter
-from eomgen.mechanics.instant.motion_kind import HELICAL, Centrodes, Curve, Kind, Kinds, all_centrodes
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.loads import body_wrench, joint_wrenches, weights
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, plus, times, transposed
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size, to_text
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.mechanics.kinematics import body_wrench, joint_wrenches, mass_properties, weights
+from eomgen.symbolic.exact import book_form
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Node,
+    Scalar,
+    Vector,
+    apply,
+    dot,
+    is_zero,
+    over,
+    plus,
+    sqrt,
+    times,
+    transposed,
+)
+from eomgen.symbolic.numeric import COMPUTED, ZERO_AT_50, Work
+from eomgen.symbolic.print import text_size, to_text
+from eomgen.symbolic.solve import vanishes
 
 # -------- field steps -----------------------------------------------------------------------------------------
 # BodyMotion, Centrodes, Composition -> the steps about the motion of bodies, and the same as plain data.

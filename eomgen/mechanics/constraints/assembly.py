@@ -27,20 +27,36 @@ from eomgen.mechanics.constraints.closure import (
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.constraints.rows import Constraints, Row
-from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.mechanics.kinematics.scene import start_values, with_unit_quaternions
+from eomgen.mechanics.kinematics import Located, places_of, start_values, with_unit_quaternions
 from eomgen.mechanics.state import Numbers
-from eomgen.model.contacts import contacts_of
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import Newton, all_roots
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, OPEN_GAP, RANK, SHARE, SOLVED, TINIEST
+from eomgen.model import Model, contacts_of, exact_parameters
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    State,
+    depends_on,
+    gradient,
+    jacobian,
+    order,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import (
+    CARRIED,
+    COMPUTED,
+    OPEN_GAP,
+    RANK,
+    SHARE,
+    SOLVED,
+    TINIEST,
+    Newton,
+    NoValue,
+    all_roots,
+    evaluate,
+    fifty_digits,
+    of_one_length,
+)
 
 SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
 

@@ -18,15 +18,9 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, OpenConst
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.state import Numbers
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters, first_guesses, start_values
-from eomgen.symbolic.expression.derivative import depends_on, jacobian
-from eomgen.symbolic.expression.formula import Expression, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.numeric.dense import balanced
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import Newton
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.model import Model, exact_parameters, first_guesses, start_values
+from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian, sqrt
+from eomgen.symbolic.numeric import (
     CLOSED_AT_50,
     DEGENERATE,
     LEAST_CHANGE,
@@ -35,6 +29,11 @@ from eomgen.symbolic.numeric.tolerances import (
     SAME_PLACE,
     SOLVED,
     SUMMED,
+    Newton,
+    NoValue,
+    balanced,
+    evaluate,
+    fifty_digits,
 )
 
 CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)

@@ -19,15 +19,10 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
 from eomgen.mechanics.constraints.rows import Constraints, holds_identically
-from eomgen.mechanics.kinematics.symbols import Scope, shorter, with_speeds_named
+from eomgen.mechanics.kinematics import Scope, shorter, with_speeds_named
 from eomgen.mechanics.state import Split
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.traversal import operations, order
-from eomgen.symbolic.numeric.dense import divisor, rank
-from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import RANK
+from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations, order, substituted
+from eomgen.symbolic.numeric import RANK, NoValue, divisor, rank
 from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]

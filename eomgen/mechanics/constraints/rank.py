@@ -13,24 +13,45 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of, holds_identically
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of
-from eomgen.mechanics.kinematics.scene import ContactModes, SystemScene
-from eomgen.mechanics.kinematics.symbols import primitive, scope_of
+from eomgen.mechanics.kinematics import (
+    GROUND,
+    BodyLink,
+    ContactModes,
+    Motion,
+    SystemScene,
+    motion_of,
+    primitive,
+    scope_of,
+)
 from eomgen.mechanics.state import Numbers
-from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values
-from eomgen.model.unbuilt import unbuilt_constraints
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, tangent
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.numeric.dense import closed_entries, independent_rows
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK, RANK_NEARBY, SHARE
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, general_solution
+from eomgen.model import ModelOrPath, Values, model_at, unbuilt_constraints
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    State,
+    Vector,
+    depends_on,
+    gradient,
+    is_zero,
+    jacobian,
+    over,
+    tangent,
+)
+from eomgen.symbolic.numeric import (
+    CERTAIN_AT_50,
+    RANK,
+    RANK_NEARBY,
+    SHARE,
+    NoValue,
+    Work,
+    closed_entries,
+    evaluate,
+    fifty_digits,
+    independent_rows,
+)
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
 
 # -------- freedom ---------------------------------------------------------------------------------------------
 # Model -> Freedom: the degrees of freedom by rank and by the count of formulas; redundant constraints by name.

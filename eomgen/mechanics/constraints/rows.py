@@ -12,32 +12,43 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ModelError, NotYet, Problem
 from eomgen.frozen import RECALLED, dataclass
-from eomgen.mechanics.kinematics.loads import body_wrench, in_ground_axes
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of, slide_of
-from eomgen.mechanics.kinematics.scene import (
+from eomgen.mechanics.kinematics import (
     CLOSED,
+    GROUND,
+    BodyLink,
     ContactMode,
     ContactModes,
+    Motion,
     SystemScene,
+    body_wrench,
     friction_factor,
+    in_ground_axes,
+    motion_of,
     rows_in_mode,
+    scope_of,
+    shorter_row,
+    slide_of,
     start_values,
 )
-from eomgen.mechanics.kinematics.symbols import scope_of, shorter_row
-from eomgen.model.constraints.row import ConstraintRow, Edge
-from eomgen.model.forces.load import PointForce, Push
-from eomgen.model.parts import Model
-from eomgen.model.unbuilt import unbuilt_constraints
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.equality import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
-from eomgen.symbolic.numeric.evaluation import FLOAT, PRIME_FIELD, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE, SOLVED
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, exact_parameters, unbuilt_constraints
+from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    Wrench,
+    apply,
+    depends_on,
+    dot,
+    is_zero,
+    jacobian,
+    over,
+    sqrt,
+    substituted,
+    times,
+)
+from eomgen.symbolic.numeric import AT_AN_EDGE, FLOAT, PRIME_FIELD, SOLVED, evaluate, fifty_digits
+from eomgen.symbolic.print import text_size, to_text
 
 # -------- constraints ------------------------------------------------------------------------------------------------
 # Motion -> Constraints: the rows of the constraints.

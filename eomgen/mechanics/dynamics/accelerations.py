@@ -10,30 +10,39 @@ import numpy as np
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, joint_forces, placeless_forces
-from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass
-from eomgen.mechanics.kinematics.loads import Loads
-from eomgen.mechanics.kinematics.motion import GROUND, Motion
-from eomgen.mechanics.kinematics.tree import Branch, applied_wrenches, branches_of, inertia_wrench, rate_matrix
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Scalar, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction, fraction_of
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.kinematics import (
+    GROUND,
+    Branch,
+    Loads,
+    Motion,
+    applied_wrenches,
+    armature_bias,
+    armature_mass,
+    branches_of,
+    inertia_wrench,
+    rate_matrix,
+)
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
+    Fraction,
     Matrix,
+    Scalar,
+    State,
     Vector,
     apply,
     cross,
+    fraction_of,
+    is_zero,
     matrix_of,
+    over,
     plus,
     product,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, REFINED_AT_50
+from eomgen.symbolic.numeric import LEAST_CHANGE, REFINED_AT_50, NoValue, dense, evaluate, fifty_digits
 
 # -------- accelerations ---------------------------------------------------------------------------------------
 # Equations of motion, state -> accelerations with more digits than doubles have.

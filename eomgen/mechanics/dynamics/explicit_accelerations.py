@@ -11,15 +11,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.rank import redundant_rows
+from eomgen.mechanics.constraints import redundant_rows
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.wellposed import massless_motions
-from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.formula import inner, over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.factorization import factor_solution
+from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, inner, is_zero, over
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import cramer, factor_solution
 
 MOST = 6  # unknowns that are written out for a reader
 

@@ -17,27 +17,47 @@ from eomgen.mechanics.dynamics.system import (
     per_speed,
     placeless_forces,
 )
-from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, kinetic_energy, mass_properties
-from eomgen.mechanics.kinematics.loads import Loads, body_wrench, joint_wrenches, weights
-from eomgen.mechanics.kinematics.motion import Motion
-from eomgen.mechanics.kinematics.tree import Branch, applied_wrenches, bias_forces, branches_of, composite_mass_matrix
-from eomgen.model.constraints.equation import NodeBalance
-from eomgen.model.fields import Table
-from eomgen.model.parts import Body, Coordinate, Model
-from eomgen.symbolic.expression.derivative import (
+from eomgen.mechanics.kinematics import (
+    Branch,
+    Loads,
+    Motion,
+    applied_wrenches,
+    armature_bias,
+    armature_mass,
+    bias_forces,
+    body_wrench,
+    branches_of,
+    composite_mass_matrix,
+    joint_wrenches,
+    kinetic_energy,
+    mass_properties,
+    weights,
+)
+from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
+from eomgen.symbolic.expression import (
+    ZERO,
+    Node,
+    Scalar,
+    ScalarRow,
+    SpatialInertia,
+    Twist,
+    Wrench,
+    cross,
     depends_on,
     derivative,
     gradient,
+    inner,
+    is_zero,
     jacobian,
+    parse,
+    plus,
     pullback,
     substituted,
     tangent,
+    times,
+    vector_of,
 )
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus, times, vector_of
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.symbolic.print import text_size, to_text
 
 # -------- lagrange --------------------------------------------------------------------------------------------
 # Lagrange's equations of the second kind, by derivatives of the energies.

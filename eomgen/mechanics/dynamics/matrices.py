@@ -6,14 +6,10 @@ from typing import Any
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, load_row, summed
-from eomgen.mechanics.kinematics.loads import weights
-from eomgen.mechanics.kinematics.motion import velocity_of
-from eomgen.model.diagnostics import nearest
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import ScalarRow, ScalarRows
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.mechanics.kinematics import velocity_of, weights
+from eomgen.model import nearest
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expression import Fraction, ScalarRow, ScalarRows, inner, jacobian
 
 # -------- matrices --------------------------------------------------------------------------------------------
 # EquationsOfMotion -> g(q) and C(q, u) of M u' + C u + g = everything else, and Jacobians of points.
@@ -82,7 +78,7 @@ def sympy_system(equations: EquationsOfMotion) -> Any:
     from sympy.physics.mechanics import SymbolicSystem
     from sympy.physics.vector import dynamicsymbols
 
-    from eomgen.symbolic.print.sympy_form import symbol, to_sympy
+    from eomgen.symbolic.print import symbol, to_sympy
 
     if equations.friction:
         raise DerivationError("friction that hangs on the reactions has no mass matrix", fix="take `rhs`, or codegen")

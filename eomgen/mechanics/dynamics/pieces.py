@@ -9,39 +9,45 @@ from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import (
-    begun_state,
-    closed,
-    generic_state,
-    movable,
-    of_50_digits,
-    on_unit_norms,
-)
+from eomgen.mechanics.constraints import begun_state, closed, generic_state, movable, of_50_digits, on_unit_norms
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, generalized_forces
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.normal_form import readable
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import function
-from eomgen.symbolic.expression.node import Node, Scalar, State, holds_op, is_zero, linear_terms
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.pieces import (
+from eomgen.model import exact_parameters
+from eomgen.symbolic.exact import readable
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    State,
+    depends_on,
+    function,
+    holds_op,
+    is_zero,
+    linear_terms,
+    order,
+    sampled_of,
+    substituted,
+)
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    DIFFERENCE_AT_50,
     PIECEWISE,
+    SOON,
     Choices,
+    NoValue,
     Switch,
+    Work,
     as_chosen,
+    check_patience,
     choices_at,
     compared_sides,
+    evaluate,
+    fifty_digits,
     piecewise_nodes,
     switches_of,
 )
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, SOON
-from eomgen.symbolic.numeric.work import Work, check_patience
-from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import vanishes
 
 # -------- pieces ----------------------------------------------------------------------------------------------
 # Equations of motion, scalars -> the pieces of which these are made, and in which of them something holds.

@@ -8,31 +8,52 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import begun_places
-from eomgen.mechanics.constraints.elimination import Elimination, dependent_coordinates, elimination_of
-from eomgen.mechanics.constraints.rank import rows_alike
-from eomgen.mechanics.constraints.rows import Constraints, constraints_of, holds_identically
-from eomgen.mechanics.kinematics.inertia import spin_of
-from eomgen.mechanics.kinematics.loads import (
+from eomgen.mechanics.constraints import (
+    Constraints,
+    Elimination,
+    begun_places,
+    constraints_of,
+    dependent_coordinates,
+    elimination_of,
+    holds_identically,
+    rows_alike,
+)
+from eomgen.mechanics.kinematics import (
     Applied,
+    ContactModes,
     JointEffort,
     Loads,
+    Motion,
+    Scope,
+    Solved,
     in_body_axes,
     in_ground_axes,
     loads_of,
+    motion_of,
+    scope_of,
+    shorter,
+    slide_of,
+    spin_of,
     weights,
+    with_declared_speeds,
 )
-from eomgen.mechanics.kinematics.motion import Motion, motion_of, slide_of
-from eomgen.mechanics.kinematics.scene import ContactModes
-from eomgen.mechanics.kinematics.symbols import Scope, Solved, scope_of, shorter, with_declared_speeds
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
-from eomgen.model.parts import Model
-from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, ScalarRows
-from eomgen.symbolic.expression.spatial import ZERO, Vector, dot, vector_of
-from eomgen.symbolic.expression.traversal import Symbols
-from eomgen.symbolic.numeric.evaluation import transplanted
+from eomgen.model import Couple, GeneralizedForce, Load, Model, PointForce, UniformField
+from eomgen.symbolic.expression import (
+    ZERO,
+    Node,
+    Scalar,
+    ScalarRow,
+    ScalarRows,
+    Symbols,
+    Vector,
+    dot,
+    gradient,
+    inner,
+    jacobian,
+    substituted,
+    vector_of,
+)
+from eomgen.symbolic.numeric import transplanted
 
 # -------- system ----------------------------------------------------------------------------------------------
 # Model -> System: motion, loads and constraints of one model, over one graph.

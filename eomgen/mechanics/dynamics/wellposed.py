@@ -11,21 +11,27 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
+from eomgen.mechanics.constraints import generic_state, of_50_digits, scattered_state
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, from_potential
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.mechanics.kinematics import BodyLink, mass_properties
 from eomgen.mechanics.state import Doubles
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import depends_on, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import LARGEST_SQUARED, RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.symbolic.exact import equal_at_random_states
+from eomgen.symbolic.expression import Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
+from eomgen.symbolic.numeric import (
+    FLOAT,
+    LARGEST_SQUARED,
+    RANK,
+    SHARE,
+    SOLVED,
+    SQUARED_AT_50,
+    SUMMED,
+    NoValue,
+    evaluate,
+    fifty_digits,
+    of_one_length,
+)
+from eomgen.symbolic.print import text_size, to_text
 
 # -------- wellposed -------------------------------------------------------------------------------------------
 # Equations of motion -> what can be said of its energy and its mass before anything moves.

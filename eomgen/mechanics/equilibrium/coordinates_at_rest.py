@@ -14,16 +14,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import is_guess
+from eomgen.mechanics.constraints import is_guess
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import place_near
 from eomgen.mechanics.state import Split
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.tolerances import SAME_PLACE, SUMMED
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.expression import Node, jacobian
+from eomgen.symbolic.numeric import SAME_PLACE, SUMMED, dense, rank
+from eomgen.symbolic.solve import vanishes
 
 ASIDE = 0.01  # distance from the first equilibrium at which another one is sought
 

@@ -12,37 +12,29 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rank import degrees_of_freedom
-from eomgen.mechanics.constraints.rows import constraints_of
-from eomgen.mechanics.dynamics.system import (
-    System,
-    acting,
-    generalized_forces,
-    powered_forces,
-    reduced_system,
-    system_of,
-)
-from eomgen.mechanics.kinematics.loads import loads_of
-from eomgen.mechanics.kinematics.motion import motion_of
-from eomgen.mechanics.kinematics.scene import start_values
-from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.constraints import constraints_of, degrees_of_freedom, dependent_coordinates
+from eomgen.mechanics.dynamics import System, acting, generalized_forces, powered_forces, reduced_system, system_of
+from eomgen.mechanics.kinematics import Scope, loads_of, motion_of, start_values
 from eomgen.mechanics.state import Doubles
-from eomgen.model.contacts import rough_contacts
-from eomgen.model.fields import Table
-from eomgen.model.part import altered
-from eomgen.model.values import exact_parameters, quaternions_of
-from eomgen.symbolic.exact.normal_form import readable_all, simplest
-from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import as_expression
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.model import Table, altered, exact_parameters, quaternions_of, rough_contacts
+from eomgen.symbolic.exact import readable_all, simplest
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    State,
+    as_expression,
+    depends_on,
+    depends_on_any,
+    is_zero,
+    order,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import ZERO_AT_50, NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import vanishes
 
 # -------- static equations ------------------------------------------------------------------------------------
 # System -> Static equations: the expressions that vanish at an equilibrium.
@@ -265,7 +257,7 @@ def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
 
 def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
     """Relations between positions from the constraints; constants that only the start fixes are taken from it."""
-    from eomgen.mechanics.integrals.laws import position_equations
+    from eomgen.mechanics.integrals import position_equations
 
     found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
     return tuple(x for x in found if depends_on(x, q))

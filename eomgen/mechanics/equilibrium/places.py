@@ -12,35 +12,55 @@ import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.kinematics.motion import Motion
-from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.mechanics.kinematics.scene import start_value
-from eomgen.model.units import in_own_unit
-from eomgen.model.values import first_guesses, start_values
-from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
-from eomgen.symbolic.expression.derivative import (
+from eomgen.mechanics.kinematics import Located, Motion, places_of, start_value
+from eomgen.model import first_guesses, in_own_unit, start_values
+from eomgen.symbolic.exact import readable, readable_all, simplest
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Owner,
+    Scalar,
+    ScalarRow,
+    State,
     depends_on,
     depends_on_any,
     gradient,
+    is_zero,
     jacobian,
+    order,
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.expression.node import Node, Owner, Scalar, ScalarRow, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.evaluation import FLOAT, Layers, NoValue, digits_at, evaluate, fifty_digits
-from eomgen.symbolic.numeric.isolation import isolated
-from eomgen.symbolic.numeric.roots import Descent
-from eomgen.symbolic.numeric.tolerances import COMPUTED, NEAR_ROOT, NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.linear import LinearSystem, Solution, general_solution
-from eomgen.symbolic.solve.solving import has_period, outside_of_turns, vanishes
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    FLOAT,
+    NEAR_ROOT,
+    NEARLY_SINGULAR,
+    RANK,
+    SAME_PLACE,
+    UNBALANCED,
+    Descent,
+    Layers,
+    NoValue,
+    Work,
+    digits_at,
+    evaluate,
+    fifty_digits,
+    isolated,
+    rank,
+)
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import (
+    LinearSystem,
+    Solution,
+    cramer,
+    general_solution,
+    has_period,
+    outside_of_turns,
+    vanishes,
+)
 
 # -------- rest places -----------------------------------------------------------------------------------------
 # Static equations -> the equilibria in numbers, and whether those are all.

@@ -7,21 +7,16 @@ from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.mechanics.start.exact import values_of_parameters, values_where_at_rest
-from eomgen.symbolic.exact.normal_form import readable_all, simplest
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import digits_at
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import LinearSystem, Solution, general_solution
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, named_reactions
+from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.start import values_of_parameters, values_where_at_rest
+from eomgen.symbolic.exact import readable_all, simplest
+from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
+from eomgen.symbolic.numeric import Work, digits_at
+from eomgen.symbolic.solve import LinearSystem, Solution, general_solution, vanishes
 
 # -------- resting reactions -----------------------------------------------------------------------------------
 # An equilibrium -> every reaction there, by the balance of the bodies.

@@ -13,35 +13,31 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rows import Constraints, rows_of_constraint
-from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.constraints import Constraints, generic_state, rows_of_constraint
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibrium.equations import StaticEquations, static_equations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.kinematics.motion import Lock, Motion, locks_of
-from eomgen.mechanics.kinematics.places import Located
-from eomgen.mechanics.kinematics.scene import CLOSED, start_values
-from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.start.exact import known_exactly, shown_numbers, values_of_parameters
+from eomgen.mechanics.free_bodies import Indeterminate
+from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion, locks_of, start_values
+from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.start import known_exactly, shown_numbers, values_of_parameters
 from eomgen.mechanics.state import Doubles
-from eomgen.model.contacts import contacts_of
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import depends_on_any, jacobian, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRows, State
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.model import contacts_of, exact_parameters
+from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRows, State, depends_on_any, jacobian, symbols_of
+from eomgen.symbolic.numeric import (
     ASIDE_STEP,
     CARRIED,
     COMPUTED,
     DEGENERATE,
+    FLOAT,
     SAME_PLACE,
     TINIEST,
     ZERO_AT_50,
+    NoValue,
+    evaluate,
+    rank,
 )
 
 # -------- search ----------------------------------------------------------------------------------------------

@@ -11,17 +11,13 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import rank_of_constraints
+from eomgen.mechanics.constraints import rank_of_constraints
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.symbolic.exact.normal_form import readable, simplest
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.dense import balanced, rank, without_noise
-from eomgen.symbolic.numeric.evaluation import NoValue, digits_at, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.symbolic.exact import readable, sign_of_terms, simplest
+from eomgen.symbolic.expression import Node, Scalar, gradient, is_zero, jacobian, substituted
+from eomgen.symbolic.numeric import (
     AT_A_MULTIPLE_ROOT,
     BESIDE_A_PLACE,
     COMPUTED,
@@ -30,11 +26,16 @@ from eomgen.symbolic.numeric.tolerances import (
     ROUNDING,
     TINIEST,
     ZERO_AT_50,
+    NoValue,
+    Work,
+    balanced,
+    digits_at,
+    evaluate,
+    fifty_digits,
+    rank,
+    without_noise,
 )
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.linear import LinearSystem, general_solution
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.solve import LinearSystem, cramer, general_solution, vanishes
 
 # -------- stability -------------------------------------------------------------------------------------------
 # An equilibrium -> whether it is stable: the second variation of the potential energy along the constraints.

@@ -8,9 +8,8 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rows import holds_identically, slide_power
-from eomgen.mechanics.dynamics.system import System, generalized_forces
+from eomgen.mechanics.constraints import generic_state, holds_identically, slide_power
+from eomgen.mechanics.dynamics import System, generalized_forces
 from eomgen.mechanics.free_bodies.wrenches import (
     Axes,
     Component,
@@ -20,32 +19,32 @@ from eomgen.mechanics.free_bodies.wrenches import (
     placements_of,
     seen_by_carriers,
 )
-from eomgen.mechanics.kinematics.inertia import kinetic_energy
-from eomgen.mechanics.kinematics.loads import weights
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.model.driven import driven_coordinates, driving_constraints
-from eomgen.model.forces.load import PointForce
-from eomgen.model.unknowns import in_loads
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.kinematics import GROUND, BodyLink, kinetic_energy, weights
+from eomgen.model import PointForce, driven_coordinates, driving_constraints, in_loads
+from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.expression import (
     Matrix,
+    Node,
+    Scalar,
+    SparseRow,
     Vector,
     apply,
     cross,
+    depends_on,
+    derivative,
+    gradient,
     in_turned_axes,
+    inner,
+    is_zero,
     minus,
+    operations,
     plus,
+    substituted,
     times,
     vector_of,
 )
-from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import Solution
+from eomgen.symbolic.numeric import ELIMINATED_AT_50, NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.solve import Solution
 
 # -------- balance ---------------------------------------------------------------------------------------------
 # System -> Balance: every body's own equations, its reactions and its inertia force and couple included.

@@ -9,11 +9,16 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_factors, regular_rows
-from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.dynamics.wellposed import refuse_massless
+from eomgen.mechanics.constraints import holds_identically
+from eomgen.mechanics.dynamics import (
+    EquationsOfMotion,
+    System,
+    assembled_by_recursion,
+    bordered_rows,
+    by_factors,
+    refuse_massless,
+    regular_rows,
+)
 from eomgen.mechanics.free_bodies.balance import Balance, balance_of
 from eomgen.mechanics.free_bodies.solution import (
     combined_reaction,
@@ -22,14 +27,22 @@ from eomgen.mechanics.free_bodies.solution import (
     values_at_a_state,
 )
 from eomgen.mechanics.free_bodies.wrenches import Component, joint_friction, normals_of_round, sliding_friction
-from eomgen.symbolic.expression.derivative import gradient, substituted
-from eomgen.symbolic.expression.formula import function, inner, over, selected, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.cramer import components
-from eomgen.symbolic.solve.linear import LinearSystem, Solution, ValuesAt, unique_solution
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    function,
+    gradient,
+    inner,
+    is_zero,
+    over,
+    selected,
+    sqrt,
+    substituted,
+)
+from eomgen.symbolic.numeric import ZERO_AT_50
+from eomgen.symbolic.solve import LinearSystem, Solution, ValuesAt, components, cramer, unique_solution
 
 # -------- friction --------------------------------------------------------------------------------------------
 # Equations of motion -> the same with friction: the contacts' own reactions solved together with the accelerations.

@@ -11,20 +11,26 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import Row, holds_identically
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
-from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes
-from eomgen.model.fields import Table
-from eomgen.model.forces.load import PointForce
-from eomgen.model.part import altered
-from eomgen.model.parts import Coordinate, Model
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.formula import Expression, over
-from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, times, transposed, vector_of
-from eomgen.symbolic.expression.text import as_expression
-from eomgen.symbolic.print.text import to_text
+from eomgen.mechanics.constraints import Row, holds_identically
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
+from eomgen.model import Coordinate, Model, PointForce, Table, altered
+from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.expression import (
+    ZERO,
+    Expression,
+    Vector,
+    apply,
+    as_expression,
+    dot,
+    is_zero,
+    minus,
+    over,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.print import to_text
 
 DISPLACEMENTS = {"n": "gap", "tension": "gap", "t": "slip", "s": "slip"}
 """What a body can do along a row of forces that has ended."""

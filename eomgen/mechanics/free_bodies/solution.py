@@ -8,10 +8,8 @@ from functools import cache
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rank import rank_of_constraints
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.constraints import generic_state, holds_identically, rank_of_constraints
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import (
     Balance,
     BodyEquation,
@@ -22,14 +20,11 @@ from eomgen.mechanics.free_bodies.balance import (
     with_what_is_carried,
 )
 from eomgen.mechanics.free_bodies.wrenches import Effect
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, is_zero
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, Solution, general_solution
+from eomgen.model import exact_parameters
+from eomgen.symbolic.exact import readable_all, sign_of_terms
+from eomgen.symbolic.expression import Node, Scalar, SparseRow, is_zero, substituted
+from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.solve import LinearSystem, Pivots, Solution, general_solution
 
 TRIES = 20
 SURE = 1  # the largest rank of what vanishes at no state: numbers, products of parameters that are not 0

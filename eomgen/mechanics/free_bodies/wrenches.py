@@ -9,38 +9,43 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rank import is_placed
-from eomgen.mechanics.constraints.rows import Row
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.loads import JointEffort, in_ground_axes
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion
-from eomgen.mechanics.kinematics.scene import CLOSED, friction_factor
-from eomgen.model.driven import driven_coordinates
-from eomgen.model.forces.load import Couple, PointForce
-from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression.derivative import depends_on, derivative
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, State, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.constraints import Row, generic_state, is_placed
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import (
+    CLOSED,
+    GROUND,
+    BodyLink,
+    JointEffort,
+    Motion,
+    friction_factor,
+    in_ground_axes,
+    mass_properties,
+)
+from eomgen.model import Couple, MassProperties, PointForce, driven_coordinates
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
     Matrix,
+    Node,
+    Scalar,
+    SparseRow,
+    State,
     Vector,
     apply,
     cross,
+    depends_on,
+    derivative,
     dot,
     in_turned_axes,
+    is_zero,
     minus,
+    over,
     plus,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
+from eomgen.symbolic.numeric import RANK_NEARBY, evaluate, fifty_digits, floats_of, rank
 
 # -------- unit wrenches ---------------------------------------------------------------------------------------
 # Motion -> Effects: what forces, couples, joints and constraints do to each body, in the axes of its equations.

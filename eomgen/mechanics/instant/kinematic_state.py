@@ -8,11 +8,11 @@ from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import is_particle
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.constraints import is_particle
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.instant.mechanism import FoundPoint, Mechanism, PointPair, constructed
 from eomgen.mechanics.instant.motion_kind import Kind, Kinds, instant_kind
-from eomgen.mechanics.kinematics.motion import (
+from eomgen.mechanics.kinematics import (
     BodyLink,
     Motion,
     VelocityField,
@@ -22,28 +22,29 @@ from eomgen.mechanics.kinematics.motion import (
     least_speed,
     rotation_center,
 )
-from eomgen.mechanics.start.exact import ScalarValues
-from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import Legibly
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.formula import sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.spatial import (
+from eomgen.mechanics.start import ScalarValues
+from eomgen.model import is_node
+from eomgen.symbolic.exact import Legibly
+from eomgen.symbolic.expression import (
     IDENTITY,
     Matrix,
+    Node,
+    Scalar,
+    State,
     Vector,
     apply,
     cross,
     dot,
     minus,
     plus,
+    sqrt,
+    substituted,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.numeric import COMPUTED, ZERO_AT_50, Work
+from eomgen.symbolic.print import text_size
 
 SHORT = 400  # characters of all values of a state that a reader can take
 LARGE = 4000  # characters of a value that is not made readable any more

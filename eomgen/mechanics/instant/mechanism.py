@@ -11,21 +11,28 @@ from functools import cached_property
 from itertools import combinations
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import is_particle
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.wrenches import Axes, Component, components_of
+from eomgen.mechanics.constraints import holds_identically, is_particle
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Axes, Component, components_of
 from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
-from eomgen.mechanics.kinematics.motion import field_of
-from eomgen.mechanics.start.exact import ScalarValues
-from eomgen.model.part import leaves_of
-from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import Legibly
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, minus, plus, vector_of
-from eomgen.symbolic.numeric.work import Work
+from eomgen.mechanics.kinematics import field_of
+from eomgen.mechanics.start import ScalarValues
+from eomgen.model import is_node, leaves_of
+from eomgen.symbolic.exact import Legibly
+from eomgen.symbolic.expression import (
+    ZERO,
+    Node,
+    Scalar,
+    Vector,
+    cross,
+    is_zero,
+    minus,
+    over,
+    plus,
+    substituted,
+    vector_of,
+)
+from eomgen.symbolic.numeric import Work
 
 FIXED = "0"
 """Name of the ground among the bodies."""

@@ -12,33 +12,35 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state, of_50_digits
-from eomgen.mechanics.constraints.rank import degrees_of_freedom
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.motion import VelocityField, axis_point, field_of, rotation_center
+from eomgen.mechanics.constraints import degrees_of_freedom, generic_state, of_50_digits
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import VelocityField, axis_point, field_of, rotation_center
 from eomgen.mechanics.state import Numbers
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
     ZERO,
+    Fraction,
+    Node,
+    Scalar,
+    State,
     Vector,
     apply,
     cross,
+    depends_on,
     dot,
+    is_zero,
     minus,
+    over,
     plus,
+    sqrt,
+    substituted,
+    tangent,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import Newton
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.numeric import ZERO_AT_50, Newton, NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.solve import vanishes
 
 # -------- motion kind -----------------------------------------------------------------------------------------
 # System -> Kind: what kind of motion a body makes, from its field of velocities along every possible motion.

@@ -8,37 +8,51 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import System, generalized_forces
-from eomgen.mechanics.free_bodies.balance import refuse_placeless
-from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.dynamics import System, free_rates, generalized_forces
+from eomgen.mechanics.free_bodies import Indeterminate, refuse_placeless
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
-from eomgen.mechanics.kinematics.inertia import armature_energy, body_energies, kinetic_energy, mass_properties
-from eomgen.mechanics.kinematics.loads import Applied, JointEffort, in_body_axes, in_ground_axes, joint_wrenches
-from eomgen.mechanics.kinematics.motion import (
+from eomgen.mechanics.kinematics import (
+    Applied,
+    JointEffort,
+    SystemScene,
     VelocityField,
     acceleration_pole,
+    armature_energy,
+    body_energies,
     field_of,
+    in_body_axes,
+    in_ground_axes,
+    joint_wrenches,
+    kinetic_energy,
     least_speed,
     made_of,
+    mass_properties,
     velocity_of,
 )
-from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.mechanics.mass_properties import angular_momentum, flat_bodies, principal_moments, shapeless, tensor_about
-from eomgen.mechanics.reactions.inverse import drive, multiplier
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.mechanics.statics.section_forces import SectionForces, section_forces
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import GROUND
-from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, tangent
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, dot, times, vector_of
-from eomgen.symbolic.numeric.work import Work
+from eomgen.mechanics.reactions import Reactions, drive, multiplier, reactions_of
+from eomgen.mechanics.statics import SectionForces, section_forces
+from eomgen.model import FUNCTIONS, GROUND, Couple, GeneralizedForce, Load, MassProperties, PointForce, UniformField
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
+    ZERO,
+    Call,
+    Expression,
+    Matrix,
+    Node,
+    Scalar,
+    Vector,
+    apply,
+    depends_on,
+    derivative,
+    dot,
+    substituted,
+    tangent,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.numeric import Work
 
 # -------- outputs ---------------------------------------------------------------------------------------------
 # System -> Quantities: what output functions ask of it, as graph scalars.

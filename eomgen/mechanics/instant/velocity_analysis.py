@@ -18,30 +18,35 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import fixed_by_position
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.system import System, free_system_of, reduced_system
+from eomgen.mechanics.constraints import fixed_by_position, holds_identically
+from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.instant.unassembled import freed
-from eomgen.mechanics.start.exact import values_for, values_of_parameters, values_where_at_rest
-from eomgen.mechanics.start.state import start_state
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.part import altered
-from eomgen.model.parts import Model
-from eomgen.model.trusses import is_node
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.normal_form import collected_in, legible, readable_all
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.dense import independent_rows
-from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50, RANK
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, general_solution
+from eomgen.mechanics.start import start_state, values_for, values_of_parameters, values_where_at_rest
+from eomgen.model import Model, WrittenEquation, altered, exact_parameters, freed, is_node
+from eomgen.symbolic.exact import collected_in, legible, readable_all
+from eomgen.symbolic.expression import (
+    Expression,
+    Fraction,
+    Node,
+    Scalar,
+    State,
+    depends_on,
+    is_zero,
+    parse,
+    substituted,
+)
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    ELIMINATED_AT_50,
+    RANK,
+    Work,
+    digits_at,
+    evaluate,
+    fifty_digits,
+    independent_rows,
+)
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
 
 SHORT = 80  # characters of where a coordinate is that stands for it in formulas
 LONG = 400  # characters from which a value is no easier to read than it came

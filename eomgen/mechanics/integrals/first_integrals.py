@@ -9,40 +9,55 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_norms, scattered_state
-from eomgen.mechanics.constraints.rows import hold_identically
-from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, division_of
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.dynamics.wellposed import where_conservative
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import GROUND, velocity_of
-from eomgen.mechanics.kinematics.symbols import integral_from_zero
+from eomgen.mechanics.constraints import hold_identically, of_50_digits, on_unit_norms, scattered_state
+from eomgen.mechanics.dynamics import (
+    EVERYWHERE,
+    NOWHERE,
+    EquationsOfMotion,
+    Extent,
+    System,
+    division_of,
+    where_conservative,
+)
+from eomgen.mechanics.kinematics import GROUND, integral_from_zero, mass_properties, velocity_of
 from eomgen.mechanics.mass_properties import angular_momentum, shapeless
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
-from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state, real_values
-from eomgen.symbolic.exact.normal_form import readable
-from eomgen.symbolic.expression.derivative import depends_on, gradient
-from eomgen.symbolic.expression.formula import inner, over
-from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.model import Couple, GeneralizedForce, Load, PointForce
+from eomgen.symbolic.exact import equal_at_random_states, exact_state, readable, real_values
+from eomgen.symbolic.expression import (
     ZERO,
+    Node,
+    Scalar,
     Vector,
     apply,
     cross,
+    depends_on,
     dot,
+    gradient,
+    holds_op,
+    inner,
+    is_zero,
     minus,
+    over,
     plus,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.arithmetic import follows
-from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, as_chosen
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.numeric import (
+    PIECEWISE,
+    PRIME_FIELD,
+    ZERO_AT_50,
+    Choices,
+    NoMeaning,
+    NoValue,
+    Work,
+    as_chosen,
+    dense,
+    evaluate,
+    fifty_digits,
+    follows,
+)
+from eomgen.symbolic.print import text_size
 
 # -------- integrals -------------------------------------------------------------------------------------------
 # Equations of motion -> first integrals: what stays constant along every motion.

@@ -8,21 +8,29 @@ from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion, waves
 from eomgen.mechanics.integrals.speeds import Relations, rates_of, relations_of
-from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.mechanics.kinematics.symbols import integral_from_zero, primitive
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRows, State, is_zero
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.mechanics.kinematics import Located, integral_from_zero, places_of, primitive
+from eomgen.model import exact_parameters
+from eomgen.symbolic.exact import sign_of_terms, simplest
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRows,
+    State,
+    depends_on,
+    derivative,
+    gradient,
+    is_zero,
+    over,
+    sqrt,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import vanishes
 
 # -------- laws ------------------------------------------------------------------------------------------------
 # Accelerations, start -> laws of motion: q(t) and u(t) in closed form, where there is one.

@@ -11,13 +11,23 @@ from collections.abc import Callable
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.symbols import integral_from_zero
-from eomgen.symbolic.exact.normal_form import readable
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.formula import function, over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero, linear_terms
-from eomgen.symbolic.numeric.pieces import PIECEWISE
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.mechanics.kinematics import integral_from_zero
+from eomgen.symbolic.exact import readable
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    depends_on,
+    derivative,
+    function,
+    holds_op,
+    is_zero,
+    linear_terms,
+    over,
+    sqrt,
+    substituted,
+)
+from eomgen.symbolic.numeric import PIECEWISE
+from eomgen.symbolic.solve import vanishes
 
 HIGHEST_DEGREE = 6  # of a polynomial on the right side
 

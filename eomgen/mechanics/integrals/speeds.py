@@ -7,25 +7,29 @@ from contextlib import suppress
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.dynamics.pieces import EVERYWHERE, Extent
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.constraints import generic_state
+from eomgen.mechanics.dynamics import EVERYWHERE, EquationsOfMotion, Extent, System
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals, where_momenta_hold
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
-from eomgen.mechanics.kinematics.symbols import primitive, primitive_over_bends
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.formula import function, over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero, linear_terms
-from eomgen.symbolic.expression.traversal import Symbols, order
-from eomgen.symbolic.numeric.evaluation import FLOAT, digits_at, evaluate
-from eomgen.symbolic.numeric.pieces import PIECEWISE
-from eomgen.symbolic.numeric.tolerances import COMPUTED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import LinearSystem, Solution, general_solution
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.mechanics.kinematics import primitive, primitive_over_bends
+from eomgen.model import exact_parameters
+from eomgen.symbolic.exact import sign_of_terms, simplest
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    Symbols,
+    depends_on,
+    derivative,
+    function,
+    gradient,
+    is_zero,
+    linear_terms,
+    order,
+    over,
+    substituted,
+)
+from eomgen.symbolic.numeric import COMPUTED, FLOAT, PIECEWISE, Work, digits_at, evaluate
+from eomgen.symbolic.solve import LinearSystem, Solution, general_solution, vanishes
 
 # -------- speeds ----------------------------------------------------------------------------------------------
 # First integrals, start -> every speed as a function of the coordinates, without time.

@@ -8,12 +8,27 @@ from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion, made_of, spin_between
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression.derivative import derivative, gradient, jacobian, substituted, symbols_of, tangent
-from eomgen.symbolic.expression.formula import Expression, inner
-from eomgen.symbolic.expression.node import Scalar, ScalarRow, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, dot, matrix_of
+from eomgen.model import MassProperties
+from eomgen.symbolic.expression import (
+    ZERO,
+    Expression,
+    Fraction,
+    Matrix,
+    Scalar,
+    ScalarRow,
+    Vector,
+    apply,
+    derivative,
+    dot,
+    gradient,
+    inner,
+    is_zero,
+    jacobian,
+    matrix_of,
+    substituted,
+    symbols_of,
+    tangent,
+)
 
 # -------- inertia ---------------------------------------------------------------------------------------------
 # Scope -> mass properties and energies of motion.

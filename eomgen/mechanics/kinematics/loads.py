@@ -14,12 +14,24 @@ from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
-from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, Wrench, apply, cross, dot, plus, times, transposed
+from eomgen.model import Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Node,
+    Scalar,
+    Vector,
+    Wrench,
+    apply,
+    cross,
+    depends_on,
+    dot,
+    is_zero,
+    over,
+    plus,
+    times,
+    transposed,
+)
 
 
 @dataclass(frozen=True)

@@ -10,34 +10,41 @@ from typing import Any
 from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope, shorter
-from eomgen.model.composite import Composite, PlacedPiece, composite_of
-from eomgen.model.joints.base import Z, oriented
-from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
-from eomgen.symbolic.expression.formula import cos, function, over, sin, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, collected
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.model import Composite, MassProperties, PlacedPiece, Z, composite_of, oriented
+from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.expression import (
     ZERO,
+    Fraction,
     Matrix,
+    Node,
     Pose,
+    Scalar,
     Twist,
     Vector,
     apply,
+    collected,
+    cos,
     cross,
+    depends_on,
     dot,
+    function,
+    jacobian,
     matrix_of,
     minus,
+    over,
     plus,
     product,
     rotation,
+    sin,
+    sqrt,
+    substituted,
+    symbols_of,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.solve import vanishes
 
 # -------- kinematics ------------------------------------------------------------------------------------------
 # Scope -> Motion: where every body is and how it moves, over the scalars of the graph.

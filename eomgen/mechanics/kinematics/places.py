@@ -16,17 +16,23 @@ from itertools import combinations
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
-from eomgen.symbolic.expression.formula import cos, over, sin
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.solving import has_period, roots, vanishes
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    cos,
+    depends_on,
+    derivative,
+    order,
+    over,
+    sin,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import CARRIED, FLOAT, Work, evaluate
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import has_period, roots, vanishes
 
 PAGE = 1000  # characters of a root, and of an equation of a loop that is solved for one
 SHORT = 40  # characters of a root that is put into other equations first

@@ -11,23 +11,37 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.motion import GROUND, Motion, ground_place
 from eomgen.mechanics.kinematics.symbols import Scope, parameters_of_zero, primitive
-from eomgen.model.constraints.row import ConstraintRow
-from eomgen.model.forces.load import BodyPoint
-from eomgen.model.kinds import Resistance
-from eomgen.model.part import altered
-from eomgen.model.parts import Coordinate
-from eomgen.model.values import exact_parameters, no_orientation, quaternions_of
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.formula import Call, Expression, function, over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Matrix, Vector
-from eomgen.symbolic.expression.text import as_expression
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import to_text
+from eomgen.model import (
+    BodyPoint,
+    ConstraintRow,
+    Coordinate,
+    Resistance,
+    altered,
+    exact_parameters,
+    no_orientation,
+    quaternions_of,
+)
+from eomgen.symbolic.exact import equal_at_random_states, readable_all
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Fraction,
+    Matrix,
+    Node,
+    Scalar,
+    Vector,
+    as_expression,
+    depends_on,
+    function,
+    gradient,
+    is_zero,
+    over,
+    sqrt,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate
+from eomgen.symbolic.print import to_text
 
 # -------- system scene ----------------------------------------------------------------------------------------
 # Motion -> SystemScene: what force laws and constraints ask of a system; where coordinates start.

@@ -10,24 +10,47 @@ from math import isfinite
 
 from eomgen.errors import DerivationError, EomgenError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.model.composite import Composite
-from eomgen.model.joints.ball import rate_matrix_of, spin_of_quaternion
-from eomgen.model.part import leaves_of
-from eomgen.model.parts import Coordinate, Model
-from eomgen.model.trusses import in_parts
-from eomgen.model.values import exact_parameters, quaternions_of, start_values
-from eomgen.symbolic.exact.normal_form import cancelled, readable
-from eomgen.symbolic.expression.derivative import depends_on, derivative, jacobian, substituted, symbols_of, tangent
-from eomgen.symbolic.expression.formula import Expression, combined, function, inner, over, through_samples
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector, vector_of
-from eomgen.symbolic.expression.splines import Sampled
-from eomgen.symbolic.expression.traversal import Symbols, operations, order
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.text import text_size
+from eomgen.model import (
+    Composite,
+    Coordinate,
+    Model,
+    exact_parameters,
+    in_parts,
+    leaves_of,
+    quaternions_of,
+    rate_matrix_of,
+    spin_of_quaternion,
+    start_values,
+)
+from eomgen.symbolic.exact import cancelled, readable
+from eomgen.symbolic.expression import (
+    Expression,
+    Fraction,
+    Graph,
+    Node,
+    Sampled,
+    Scalar,
+    Symbols,
+    Vector,
+    combined,
+    depends_on,
+    derivative,
+    function,
+    holds_op,
+    inner,
+    is_zero,
+    jacobian,
+    operations,
+    order,
+    over,
+    substituted,
+    symbols_of,
+    tangent,
+    through_samples,
+    vector_of,
+)
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import length_of, text_size
 from eomgen.symbolic.solve import cramer
 
 # -------- scope -----------------------------------------------------------------------------------------------
@@ -290,7 +313,7 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
     from sympy import Eq, Integral, Ne, false, true
     from sympy.integrals.manualintegrate import manualintegrate
 
-    from eomgen.symbolic.print.sympy_form import scalar_from_sympy, to_sympy
+    from eomgen.symbolic.print import scalar_from_sympy, to_sympy
 
     expression, variable = to_sympy((f, x))
     found = manualintegrate(expression, variable)

@@ -9,14 +9,14 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.inertia import mass_properties
 from eomgen.mechanics.kinematics.loads import Loads, body_wrench, in_ground_axes
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, shortened_twist
-from eomgen.model.forces.load import Couple, PointForce
-from eomgen.symbolic.expression.derivative import symbols_of, tangent
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.model import Couple, PointForce
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
+    Fraction,
     Matrix,
+    Node,
+    Scalar,
     Twist,
     Vector,
     Wrench,
@@ -25,9 +25,12 @@ from eomgen.symbolic.expression.spatial import (
     cross,
     dot,
     in_turned_axes,
+    is_zero,
     matrix_of,
     minus,
     plus,
+    symbols_of,
+    tangent,
     times,
     transposed,
     vector_of,

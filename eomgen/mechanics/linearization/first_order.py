@@ -11,18 +11,24 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.dynamics.wellposed import refuse_massless
-from eomgen.mechanics.free_bodies.friction import equations_of_motion
-from eomgen.mechanics.integrals.laws import position_equations
-from eomgen.mechanics.kinematics.scene import start_values
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, refuse_massless
+from eomgen.mechanics.free_bodies import equations_of_motion
+from eomgen.mechanics.integrals import position_equations
+from eomgen.mechanics.kinematics import start_values
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import Doubles, Numbers, Split
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRows, is_zero
-from eomgen.symbolic.numeric.evaluation import fifty_digits
-from eomgen.symbolic.numeric.tolerances import RANK, SOLVED
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRows,
+    depends_on,
+    inner,
+    is_zero,
+    jacobian,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import RANK, SOLVED, fifty_digits
 
 # -------- first order -----------------------------------------------------------------------------------------
 # System -> FirstOrder: its equations of motion with their first derivatives, and what may stay independent.

@@ -12,14 +12,11 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import fork_at
-from eomgen.mechanics.constraints.elimination import refuse_undetermined
-from eomgen.mechanics.dynamics.system import System, acting
-from eomgen.mechanics.dynamics.wellposed import valueless
-from eomgen.mechanics.equilibrium.equations import standing_system
-from eomgen.mechanics.equilibrium.stability import states_beside
-from eomgen.mechanics.free_bodies.friction import frictions
-from eomgen.mechanics.kinematics.places import Located, places_of
+from eomgen.mechanics.constraints import fork_at, refuse_undetermined
+from eomgen.mechanics.dynamics import System, acting, valueless
+from eomgen.mechanics.equilibrium import standing_system, states_beside
+from eomgen.mechanics.free_bodies import frictions
+from eomgen.mechanics.kinematics import Located, places_of
 from eomgen.mechanics.linearization.first_order import (
     Choice,
     FirstOrder,
@@ -54,14 +51,9 @@ from eomgen.mechanics.linearization.reference import (
 )
 from eomgen.mechanics.linearization.steady import family_of, steady_start
 from eomgen.mechanics.state import Exact, NumberField, Numbers
-from eomgen.model.unknowns import refuse_motion
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import depends_on_any, substituted
-from eomgen.symbolic.expression.node import Node, ScalarRow
-from eomgen.symbolic.expression.traversal import operations, order
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, REGULAR, SQUARED_SINE
+from eomgen.model import exact_parameters, refuse_motion
+from eomgen.symbolic.expression import Node, ScalarRow, depends_on_any, operations, order, substituted
+from eomgen.symbolic.numeric import COMPUTED, REGULAR, SQUARED_SINE, NoValue, dense, fifty_digits
 
 # -------- linearization ---------------------------------------------------------------------------------------
 # System -> Linearization: the equations of small motions, exact where they can be, and in numbers.

@@ -25,15 +25,11 @@ from eomgen.mechanics.linearization.polynomial import (
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
-from eomgen.mechanics.start.exact import values_of_parameters
+from eomgen.mechanics.start import values_of_parameters
 from eomgen.mechanics.state import Entries, Numbers
-from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import (
+from eomgen.symbolic.exact import book_form, simplest
+from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero
+from eomgen.symbolic.numeric import (
     COEFFICIENT_AT_50,
     COMPUTED,
     ITERATED,
@@ -45,9 +41,13 @@ from eomgen.symbolic.numeric.tolerances import (
     SOLVED,
     SUMMED,
     WIDE_SPECTRUM,
+    NoValue,
+    Work,
+    dense,
+    evaluate,
+    fifty_digits,
 )
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.print import text_size
 
 # -------- modes -----------------------------------------------------------------------------------------------
 # Small motions -> what is requested of them: frequencies in their order, exact where they are known so, and entries.

@@ -25,13 +25,10 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM, ReferenceMotion
-from eomgen.mechanics.start.exact import Seeds
+from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import NumberField, Numbers
-from eomgen.symbolic.expression.derivative import tangent
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COORDINATE_AT_50, NEARLY_SINGULAR, RANK
+from eomgen.symbolic.expression import Fraction, Node, Scalar, tangent
+from eomgen.symbolic.numeric import CARRIED, COORDINATE_AT_50, NEARLY_SINGULAR, RANK, evaluate, fifty_digits, floats_of
 
 
 @dataclass(frozen=True, eq=False)

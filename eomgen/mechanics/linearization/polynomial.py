@@ -9,19 +9,24 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.reduction import LinearEquations, is_second_order
 from eomgen.mechanics.state import Entries
-from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import simplest, simplest_sum, written_shortest
-from eomgen.symbolic.exact.polynomials import factored, square_root
-from eomgen.symbolic.exact.terms import Key, Terms, TooLarge, content, terms_plus, terms_scaled
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Owner, Scalar, is_zero
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.solving import coefficients, wave_free
+from eomgen.symbolic.exact import (
+    Expansion,
+    Key,
+    Terms,
+    TooLarge,
+    content,
+    factored,
+    simplest,
+    simplest_sum,
+    square_root,
+    terms_plus,
+    terms_scaled,
+    written_shortest,
+)
+from eomgen.symbolic.expression import Node, Number, Owner, Scalar, is_zero, over, sqrt, substituted, symbols_of
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import coefficients, cramer, wave_free
 
 # -------- polynomial ------------------------------------------------------------------------------------------
 # LinearEquations, exact -> characteristic polynomial, frequencies in closed form.

@@ -11,20 +11,16 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization.first_order import (
     Choice,
     FirstOrder,
 )
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
-from eomgen.model.joints.ball import rotation_of
-from eomgen.model.values import quaternions_of
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.spatial import Matrix, apply, vector_of
-from eomgen.symbolic.numeric.dense import without_noise
-from eomgen.symbolic.numeric.evaluation import fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
+from eomgen.model import quaternions_of, rotation_of
+from eomgen.symbolic.expression import Matrix, Node, apply, vector_of
+from eomgen.symbolic.numeric import COMPUTED, RANK, ROUNDING, SOLVED, fifty_digits, without_noise
 
 # -------- reduction -------------------------------------------------------------------------------------------
 # Reference -> LinearEquations: the equations of motion to first order, constraints and dependent speeds eliminated.

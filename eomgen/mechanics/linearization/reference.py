@@ -10,23 +10,15 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import fixed_by_position
-from eomgen.mechanics.constraints.rows import Row
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.mechanics.equilibrium.equations import StaticEquations, over_rates, static_equations
-from eomgen.mechanics.equilibrium.search import Equilibrium, nearest_equilibrium
-from eomgen.mechanics.integrals.laws import position_equations
-from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.mechanics.kinematics.scene import start_values
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.mechanics.start.state import refuse_lost, start_state
-from eomgen.model.contacts import contacts_of
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.expression.traversal import holds_many_digits
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.mechanics.constraints import Row, fixed_by_position
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_equilibrium, over_rates, static_equations
+from eomgen.mechanics.integrals import position_equations
+from eomgen.mechanics.kinematics import Located, places_of, start_values
+from eomgen.mechanics.start import refuse_lost, start_state, values_of_parameters
+from eomgen.model import contacts_of, exact_parameters
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
+from eomgen.symbolic.numeric import SOLVED, evaluate, fifty_digits
 
 # -------- reference -------------------------------------------------------------------------------------------
 # System -> Reference: the equilibrium, or the steady motion, about which small motions are sought.

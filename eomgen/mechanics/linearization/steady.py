@@ -11,24 +11,30 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import movable, nearest_root
-from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.equilibrium.places import places_of_rest
-from eomgen.mechanics.kinematics.places import Located, places_of
+from eomgen.mechanics.constraints import movable, nearest_root
+from eomgen.mechanics.equilibrium import StaticEquations, places_of_rest
+from eomgen.mechanics.kinematics import Located, places_of
 from eomgen.mechanics.linearization.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, dependent_speeds, floats, unsettled
 from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
 from eomgen.mechanics.state import Exact, Numbers, Split
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import Newton
-from eomgen.symbolic.numeric.tolerances import BEST, COMPUTED, COORDINATE_AT_50, ITERATED, RANK, SUMMED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, is_zero, operations, substituted
+from eomgen.symbolic.numeric import (
+    BEST,
+    COMPUTED,
+    COORDINATE_AT_50,
+    ITERATED,
+    RANK,
+    SUMMED,
+    Newton,
+    NoValue,
+    Work,
+    evaluate,
+    fifty_digits,
+)
+from eomgen.symbolic.print import text_size
+from eomgen.symbolic.solve import vanishes
 
 # -------- steady ----------------------------------------------------------------------------------------------
 # Reference near the start -> the speeds and places of a steady motion, by Newton's method.

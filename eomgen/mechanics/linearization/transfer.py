@@ -13,15 +13,9 @@ from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.state import Entries, Exact
-from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.quotient import reduced
-from eomgen.symbolic.exact.terms import TooLarge
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, is_zero
-from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ITERATED
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.exact import Expansion, TooLarge, reduced
+from eomgen.symbolic.expression import Node, is_zero, operations, over
+from eomgen.symbolic.numeric import ITERATED, Work, evaluate, fifty_digits
 from eomgen.symbolic.solve import cramer
 
 # -------- transfer --------------------------------------------------------------------------------------------

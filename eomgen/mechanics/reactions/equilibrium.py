@@ -20,25 +20,33 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.balance import DIRECTIONS, Balance
-from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect, joint_effects
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.loads import in_ground_axes, weights
-from eomgen.mechanics.kinematics.motion import GROUND
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import (
+    DIRECTIONS,
+    PLANE_ROWS,
+    SPACE_ROWS,
+    Axes,
+    Balance,
+    Component,
+    Effect,
+    joint_effects,
+)
+from eomgen.mechanics.kinematics import GROUND, in_ground_axes, mass_properties, weights
 from eomgen.mechanics.reactions.reactions import Reactions
-from eomgen.model.forces.load import Couple, PointForce
-from eomgen.symbolic.exact.normal_form import equal
-from eomgen.symbolic.expression.node import Scalar, State, is_zero
-from eomgen.symbolic.expression.spatial import (
+from eomgen.model import Couple, PointForce
+from eomgen.symbolic.exact import equal
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
     Matrix,
     Pose,
+    Scalar,
+    State,
     Vector,
     apply,
     cross,
     dot,
+    is_zero,
     minus,
     plus,
     product,
@@ -46,8 +54,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ELIMINATED_AT_50
+from eomgen.symbolic.numeric import COMPUTED, ELIMINATED_AT_50, NoValue, evaluate, fifty_digits, floats_of
 
 
 def imbalance(reactions: Reactions, state: State, rng: Random) -> str:

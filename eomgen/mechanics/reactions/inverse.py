@@ -18,37 +18,51 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rank import redundant_rows
-from eomgen.mechanics.constraints.rows import Constraints, Row, holds_identically
-from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
-from eomgen.mechanics.dynamics.system import (
+from eomgen.mechanics.constraints import (
+    Constraints,
+    Row,
+    dependent_coordinates,
+    generic_state,
+    holds_identically,
+    redundant_rows,
+)
+from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
+    assembled_by_recursion,
     free_system_of,
     joint_forces,
     placeless_forces,
     system_of,
 )
-from eomgen.mechanics.free_bodies.friction import frictions, has_friction
-from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, joint_row
-from eomgen.mechanics.kinematics.scene import let_go
-from eomgen.mechanics.kinematics.tree import applied_wrenches, bias_forces, branches_of
+from eomgen.mechanics.free_bodies import frictions, has_friction
+from eomgen.mechanics.kinematics import (
+    applied_wrenches,
+    armature_bias,
+    armature_mass,
+    bias_forces,
+    branches_of,
+    joint_row,
+    let_go,
+)
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.start.state import begun_state
+from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
-from eomgen.model.diagnostics import nearest
-from eomgen.model.driven import driving_constraints
-from eomgen.model.fields import Table
-from eomgen.model.part import altered
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.formula import inner
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
-from eomgen.symbolic.expression.spatial import times
-from eomgen.symbolic.numeric import dense
-from eomgen.symbolic.numeric.evaluation import transplanted
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
+from eomgen.model import Table, altered, driving_constraints, nearest
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRow,
+    State,
+    depends_on,
+    derivative,
+    gradient,
+    inner,
+    is_zero,
+    substituted,
+    times,
+)
+from eomgen.symbolic.numeric import RANK_NEARBY, dense, transplanted
 from eomgen.symbolic.solve import cramer
 
 NAME = "name the actuated coordinates or inputs, one for each degree of freedom"

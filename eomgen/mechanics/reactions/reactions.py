@@ -15,38 +15,55 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.rank import degrees_of_freedom
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.balance import (
+from eomgen.mechanics.constraints import degrees_of_freedom, generic_state, holds_identically
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import (
     DIRECTIONS,
+    SURE,
     Balance,
+    Combination,
+    Component,
+    Effect,
     balance_of,
     balances_of_nodes,
+    combined_reaction,
+    efforts_of,
     is_balanced,
+    named_reactions,
+    push_sizes,
     refuse_friction,
+    round_symbols,
+    solution_of_balance,
     still,
     unbalanced,
 )
-from eomgen.mechanics.free_bodies.friction import push_sizes, round_symbols
-from eomgen.mechanics.free_bodies.named_reactions import named_reactions
-from eomgen.mechanics.free_bodies.solution import SURE, Combination, combined_reaction, solution_of_balance
-from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import Motion
-from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
-from eomgen.mechanics.start.exact import values_where_at_rest
+from eomgen.mechanics.kinematics import Motion, mass_properties
+from eomgen.mechanics.rigidity import refuse_loose, structure_of
+from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
-from eomgen.model.driven import driven_coordinates, driving_constraints
-from eomgen.model.trusses import called, declared_at
-from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, derivative, substituted
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import Solution
+from eomgen.model import called, declared_at, driven_coordinates, driving_constraints
+from eomgen.symbolic.expression import (
+    ZERO,
+    Matrix,
+    Node,
+    Scalar,
+    Vector,
+    apply,
+    depends_on,
+    depends_on_any,
+    derivative,
+    is_zero,
+    over,
+    plus,
+    product,
+    sqrt,
+    substituted,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric import RANK_NEARBY, Work
+from eomgen.symbolic.solve import Solution
 
 
 @dataclass(frozen=True)

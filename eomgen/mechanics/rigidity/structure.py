@@ -8,25 +8,42 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rows import holds_identically
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
-from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.constraints import holds_identically
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import (
+    Axes,
+    Balance,
+    Component,
+    Effect,
+    balance_of,
+    effects_of_load,
+    joint_effects,
+    slope,
+)
 from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of
-from eomgen.mechanics.start.exact import values_for, values_where_at_rest
-from eomgen.model.constraints.base import Constraint
-from eomgen.model.forces.load import BodyPoint
-from eomgen.model.trusses import declared_at
-from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.derivative import derivative, substituted, tangent, tangents
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
-from eomgen.symbolic.expression.spatial import Vector, cross, dot, times, vector_of
-from eomgen.symbolic.numeric.dense import sparse_rank
-from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, Solution, general_solution
+from eomgen.mechanics.start import values_for, values_where_at_rest
+from eomgen.model import BodyPoint, Constraint, declared_at
+from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRow,
+    State,
+    Vector,
+    cross,
+    derivative,
+    dot,
+    is_zero,
+    over,
+    substituted,
+    tangent,
+    tangents,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, sparse_rank
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import LinearSystem, Pivots, Solution, general_solution
 
 # -------- structure -------------------------------------------------------------------------------------------
 # System, a configuration -> Structure: the reactions that hold the bodies there, and the motions left to them.

@@ -10,22 +10,29 @@ from itertools import chain
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
-from eomgen.mechanics.kinematics.loads import in_ground_axes
-from eomgen.mechanics.kinematics.motion import VelocityField, rotation_center
-from eomgen.model.constraints.link import trusses_of
-from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
-from eomgen.model.trusses import is_node
-from eomgen.symbolic.exact.normal_form import Legibly, readable_all
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, vector_of
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Axes, Effect
+from eomgen.mechanics.kinematics import VelocityField, in_ground_axes, rotation_center
+from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node, trusses_of
+from eomgen.symbolic.exact import Legibly, readable_all
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Node,
+    Scalar,
+    Vector,
+    apply,
+    cross,
+    dot,
+    is_zero,
+    minus,
+    over,
+    plus,
+    sqrt,
+    substituted,
+    vector_of,
+)
+from eomgen.symbolic.numeric import ZERO_AT_50, Work, evaluate, fifty_digits
 
 # -------- velocity plan ---------------------------------------------------------------------------------------
 # Velocities of all bodies at one configuration -> Plan: velocities of points, spins, centres of rotation, work.

@@ -10,20 +10,24 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import gaps_of, is_guess, movable
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.constraints import dependent_coordinates, gaps_of, is_guess, movable
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.state import Doubles, Split
-from eomgen.model.forces.load import PointForce
-from eomgen.model.units import in_own_unit
-from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.expression.derivative import jacobian, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.roots import Newton, all_roots
-from eomgen.symbolic.numeric.tolerances import BRANCHES_MEET, COMPUTED, GAP_CLOSED, RANK_NEARBY, SAME_PLACE, SOLVED
+from eomgen.model import PointForce, in_own_unit, numeric_parameters
+from eomgen.symbolic.expression import Node, Scalar, State, is_zero, jacobian, symbols_of
+from eomgen.symbolic.numeric import (
+    BRANCHES_MEET,
+    COMPUTED,
+    FLOAT,
+    GAP_CLOSED,
+    RANK_NEARBY,
+    SAME_PLACE,
+    SOLVED,
+    Newton,
+    all_roots,
+    evaluate,
+)
 
 # -------- assembly modes --------------------------------------------------------------------------------------
 # System, start -> Branches: in which ways the loops close while the independent coordinates stay.

@@ -12,28 +12,40 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import SEEDS, fixed_by_position
-from eomgen.mechanics.constraints.closure import gaps_of, is_guess, of_50_digits
-from eomgen.mechanics.constraints.rows import hold_identically
-from eomgen.mechanics.dynamics import formulations
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.places import Located, places_of
-from eomgen.mechanics.kinematics.scene import start_values, with_unit_quaternions
-from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.mechanics.kinematics.tree import branches_of
+from eomgen.mechanics.constraints import SEEDS, fixed_by_position, gaps_of, hold_identically, is_guess, of_50_digits
+from eomgen.mechanics.dynamics import System, mass
+from eomgen.mechanics.kinematics import Located, Scope, branches_of, places_of, start_values, with_unit_quaternions
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
 from eomgen.mechanics.state import Doubles, Numbers, Split
-from eomgen.model.arithmetic import in_order
-from eomgen.model.values import constant_parameters, exact_parameters
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of, tangent
-from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import NoValue, digits_at, evaluate, fifty_digits
-from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RANK, ZERO_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.linear import LinearSystem, general_solution, unique_solution
+from eomgen.model import constant_parameters, exact_parameters, in_order
+from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    State,
+    depends_on,
+    is_zero,
+    jacobian,
+    substituted,
+    symbols_of,
+    tangent,
+)
+from eomgen.symbolic.numeric import (
+    CARRIED,
+    COMPUTED,
+    RANK,
+    ZERO_AT_50,
+    NoValue,
+    Work,
+    digits_at,
+    evaluate,
+    fifty_digits,
+    number_of,
+    numbers_of,
+)
+from eomgen.symbolic.solve import LinearSystem, general_solution, unique_solution
 
 # -------- exact start -----------------------------------------------------------------------------------------
 # System -> ExactStart: the one start that every verb takes, in closed form where it has one, in numbers else.
@@ -261,8 +273,8 @@ class _Sought:
             ways.append(([x for x, _ in along], W))
         elif not {*moved} & {*silent}:
             given = [x for x in u if x not in silent]
-            mass = formulations.mass(self.system.motion, branches_of(self.system.motion))
-            M = [[mass[u.index(x)][u.index(y)] for y in given] for x in given]
+            masses = mass(self.system.motion, branches_of(self.system.motion))
+            M = [[masses[u.index(x)][u.index(y)] for y in given] for x in given]
             ways.append((given, [list(substituted(row, place)) for row in M]))
         return ways
 

@@ -12,12 +12,22 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.assembly import (
+from eomgen.mechanics.constraints import (
     Fork,
+    Row,
+    closed,
+    dependent_coordinates,
     fixed_by_position,
     fork_at,
+    gaps_of,
     is_at_rest,
+    is_guess,
+    is_typed,
     leads_on,
+    movable,
+    nearest_speeds,
+    norms_of,
+    of_50_digits,
     open_at,
     open_by,
     speeds_along,
@@ -25,35 +35,35 @@ from eomgen.mechanics.constraints.assembly import (
     tiers_of,
     with_gaps_closed,
 )
-from eomgen.mechanics.constraints.closure import (
-    closed,
-    gaps_of,
-    is_guess,
-    is_typed,
-    movable,
-    nearest_speeds,
-    norms_of,
-    of_50_digits,
-)
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rows import Row
-from eomgen.mechanics.dynamics.formulations import mass
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.dynamics.wellposed import reason_without_value
-from eomgen.mechanics.kinematics.tree import branches_of
+from eomgen.mechanics.dynamics import System, mass, reason_without_value
+from eomgen.mechanics.kinematics import branches_of
 from eomgen.mechanics.state import Doubles, Numbers
-from eomgen.model.begun_speeds import begun_speeds
-from eomgen.model.contacts import contacts_of
-from eomgen.model.forces.load import PointForce
-from eomgen.model.parts import Model
-from eomgen.model.units import in_own_unit
-from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State
-from eomgen.symbolic.expression.spatial import minus
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.roots import all_roots, least_left
-from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, LARGEST_AT_50, OPEN_GAP, SAME_PLACE, SUMMED
+from eomgen.model import (
+    Model,
+    PointForce,
+    begun_speeds,
+    contacts_of,
+    exact_parameters,
+    first_guesses,
+    in_own_unit,
+    numeric_parameters,
+    start_values,
+)
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, minus, substituted, symbols_of
+from eomgen.symbolic.numeric import (
+    COMPUTED,
+    COORDINATE_AT_50,
+    FLOAT,
+    LARGEST_AT_50,
+    OPEN_GAP,
+    SAME_PLACE,
+    SUMMED,
+    NoValue,
+    all_roots,
+    evaluate,
+    fifty_digits,
+    least_left,
+)
 
 # -------- initial state ---------------------------------------------------------------------------------------
 # System -> the state at the start: dependent coordinates where the constraints put them, and the constraints found to

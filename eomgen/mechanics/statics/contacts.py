@@ -10,23 +10,16 @@ from random import Random
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass, recalled
-from eomgen.mechanics.constraints.closure import of_50_digits
-from eomgen.mechanics.constraints.rows import rows_of_constraint
-from eomgen.mechanics.dynamics.accelerations import exact_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies.friction import equations_of_motion, frictions
-from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.constraints import of_50_digits, rows_of_constraint
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
+from eomgen.mechanics.free_bodies import equations_of_motion, frictions
+from eomgen.mechanics.kinematics import ContactMode, ContactModes
+from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
-from eomgen.model.contacts import Contact, contacts_of, rough_contacts
-from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.formula import function, sqrt
-from eomgen.symbolic.expression.node import Scalar, State
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+from eomgen.model import Contact, Model, contacts_of, exact_parameters, rough_contacts
+from eomgen.symbolic.expression import Scalar, State, function, sqrt, symbols_of
+from eomgen.symbolic.numeric import CARRIED, COMPUTED, NoValue, evaluate, fifty_digits
 
 # -------- contacts at start -----------------------------------------------------------------------------------
 # Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.

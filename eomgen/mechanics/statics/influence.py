@@ -16,21 +16,31 @@ from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies.named_reactions import argument_name, name_of, named_reactions
-from eomgen.mechanics.free_bodies.wrenches import Effect
-from eomgen.mechanics.rigidity.structure import Structure
-from eomgen.mechanics.rigidity.velocity_plan import VelocityPlan
+from eomgen.mechanics.free_bodies import Effect, argument_name, name_of, named_reactions
+from eomgen.mechanics.rigidity import Structure, VelocityPlan
+from eomgen.mechanics.statics.forces_in_sections import KINDS, place_of
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, sizes_of
-from eomgen.mechanics.statics.section_forces import KINDS, place_of
-from eomgen.model.diagnostics import nearest
-from eomgen.model.trusses import is_node
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.formula import Call, Reference
-from eomgen.symbolic.expression.node import Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.expression.text import parse, single_call
-from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.model import is_node, nearest
+from eomgen.symbolic.expression import (
+    ZERO,
+    Call,
+    Reference,
+    Scalar,
+    Vector,
+    apply,
+    cross,
+    dot,
+    is_zero,
+    minus,
+    parse,
+    plus,
+    single_call,
+    substituted,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import vanishes
 
 Thing = TypeVar("Thing")
 LoadPoint = tuple[str, Vector]

@@ -14,19 +14,29 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.motion import Motion
-from eomgen.mechanics.start.exact import values_of_parameters
-from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.mechanics.kinematics import Motion
+from eomgen.mechanics.start import values_of_parameters
+from eomgen.symbolic.exact import readable, readable_all, sign_of_terms, simplest
+from eomgen.symbolic.expression import (
+    ZERO,
+    Graph,
+    Node,
+    Scalar,
+    Vector,
+    cross,
+    dot,
+    is_zero,
+    minus,
+    over,
+    plus,
+    sqrt,
+    substituted,
+    symbols_of,
+    times,
+    vector_of,
+)
+from eomgen.symbolic.numeric import CERTAIN_AT_50, Work, evaluate, fifty_digits
+from eomgen.symbolic.solve import vanishes
 
 
 @dataclass(frozen=True)

@@ -13,27 +13,17 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.rank import counted
-from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, name_of, named_reactions
-from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.free_bodies.wrenches import Effect, efforts_of
-from eomgen.mechanics.kinematics.scene import SystemScene
-from eomgen.mechanics.reactions.reactions import Reactions, determinate_sums, reactions_of
-from eomgen.mechanics.rigidity.structure import Structure, refuse_loose, structure_of
-from eomgen.mechanics.rigidity.velocity_plan import VelocityPlan, turning_by_one
-from eomgen.model.diagnostics import nearest
-from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
-from eomgen.model.outputs import FUNCTIONS
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.spatial import times
-from eomgen.symbolic.expression.text import single_call
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
+from eomgen.mechanics.constraints import counted
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Effect, Indeterminate, NamedReaction, efforts_of, name_of, named_reactions
+from eomgen.mechanics.kinematics import SystemScene
+from eomgen.mechanics.reactions import Reactions, determinate_sums, reactions_of
+from eomgen.mechanics.rigidity import Structure, VelocityPlan, refuse_loose, structure_of, turning_by_one
+from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, nearest
+from eomgen.symbolic.exact import equal_at_random_states, simplest
+from eomgen.symbolic.expression import Node, Scalar, depends_on, over, single_call, substituted, times
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import text_size
 
 StaticLoad = PointForce | Couple | SpreadLoad
 

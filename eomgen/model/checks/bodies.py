@@ -15,9 +15,8 @@ from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.spatial import cross, vector_of
-from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.symbolic.expression import Expression, cross, vector_of
+from eomgen.symbolic.numeric import SOLVED
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 

@@ -17,8 +17,7 @@ from eomgen.model.fields import Leaf, NameRule
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import AXES, SIDES
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import NAMES, Call, Expression, Reference
-from eomgen.symbolic.expression.text import parse, rate_of_call
+from eomgen.symbolic.expression import NAMES, Call, Expression, Reference, parse, rate_of_call
 
 # -------- outputs ---------------------------------------------------------------------------------------------
 # Outputs: the functions of the motion that they call, and the arguments of each.

@@ -9,15 +9,14 @@ from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import in_order
-from eomgen.model.begun_speeds import begun_speeds
 from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
+from eomgen.model.declared_speeds import begun_speeds
 from eomgen.model.diagnostics import Diagnostic, article, nearest, one_of, whereabouts
 from eomgen.model.fields import EVERYTHING, AxialRule, Leaf, NameRule, VectorRule, WrittenEquation, is_mixed, mixed
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import typing_of
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.text import DEGREES, degrees, is_name, meant_name
+from eomgen.symbolic.expression import DEGREES, Expression, degrees, is_name, meant_name
 
 RESERVED = {"t": "time", "pi": "the constant", "nan": "no number", "inf": "no number", "infinity": "no number"}
 _WORD = re.compile(r"\w+")

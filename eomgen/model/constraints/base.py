@@ -16,7 +16,7 @@ from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import ReactionSymbolsField
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression import Scalar
 
 # -------- meeting ---------------------------------------------------------------------------------------------
 # What touches what in a constraint, as it is declared: fields and names alone, no formulas. Proofs look at them.

@@ -8,8 +8,7 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import Couple, LoadContext, Push
 from eomgen.model.kinds import CoordinateName, MotionOfCoordinate, Pure, TwoBodies
-from eomgen.symbolic.expression.spatial import AnyScalar, times
-from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression import AnyScalar, as_expression, times
 
 # -------- gear ------------------------------------------------------------------------------------------------
 # Gear: two bodies turn in a fixed ratio.

@@ -13,8 +13,7 @@ from eomgen.model.constraints.plane import Touch, angle_of, opposite
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, Push
 from eomgen.model.kinds import Gap, VelocityLaw
-from eomgen.symbolic.expression.formula import Call, Reference
-from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
+from eomgen.symbolic.expression import IDENTITY, ZERO, AnyScalar, Call, Reference, Vector, apply, dot, minus, times
 
 # -------- measured --------------------------------------------------------------------------------------------
 # Functions of points and bodies in an equation: the value of each, and the forces along it.

@@ -16,9 +16,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import BodyName, Direction, Flag, FrictionLaw, GroundPlace, PointName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, minus, times, vector_of
+from eomgen.symbolic.expression import IDENTITY, Scalar, Vector, apply, cross, dot, minus, over, times, vector_of
 
 # -------- clamp -----------------------------------------------------------------------------------------------
 # Clamp: a point of a body is built in.

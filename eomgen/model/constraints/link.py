@@ -14,11 +14,21 @@ from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Flag, Length, Text, TwoPoints
-from eomgen.symbolic.expression.formula import Call, Reference, over, sqrt
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times, vector_of
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import (
+    AnyScalar,
+    Call,
+    Fraction,
+    Node,
+    Reference,
+    Vector,
+    dot,
+    minus,
+    order,
+    over,
+    sqrt,
+    times,
+    vector_of,
+)
 
 
 @dataclass(frozen=True, kw_only=True)

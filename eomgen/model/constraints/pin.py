@@ -13,8 +13,7 @@ from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import AxesName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, matrix_of, minus, times, transposed
+from eomgen.symbolic.expression import IDENTITY, Scalar, Vector, apply, cross, dot, matrix_of, minus, times, transposed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from eomgen.frozen import dataclass
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
-from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, cross, times
+from eomgen.symbolic.expression import ZERO, AnyScalar, Vector, cross, times
 
 
 def left(d: Vector) -> Vector:

@@ -29,26 +29,29 @@ from eomgen.model.kinds import (
 )
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.exact.normal_form import readable
-from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.exact import readable
+from eomgen.symbolic.expression import (
     ZERO,
     AnyScalar,
+    Expression,
+    Fraction,
+    Node,
     Vector,
     apply,
+    cos,
     cross,
     dot,
     minus,
+    over,
     plus,
+    sin,
+    sqrt,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.tolerances import DEGENERATE
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.numeric import DEGENERATE, Work
+from eomgen.symbolic.print import text_size
 
 # -------- round bodies ----------------------------------------------------------------------------------------
 # Round bodies in space: the point of each that comes nearest to a plane.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from eomgen.frozen import dataclass
 from eomgen.model.forces.load import Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector
+from eomgen.symbolic.expression import AnyScalar, Vector
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,8 @@ from eomgen.model.constraints.plane import angle_of, left
 from eomgen.model.constraints.row import ConstraintRow, normals_of
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.model.joints.base import Z
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector, cross, dot, minus, plus, times
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import AnyScalar, Vector, cross, dot, minus, over, plus, sqrt, times
+from eomgen.symbolic.numeric import COMPUTED
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
 

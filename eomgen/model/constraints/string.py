@@ -16,9 +16,8 @@ from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.spatial import Vector, apply
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression import Expression, Vector, apply
+from eomgen.symbolic.numeric import COMPUTED
 
 
 @dataclass(frozen=True, kw_only=True)

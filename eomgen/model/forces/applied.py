@@ -16,7 +16,7 @@ from eomgen.model.kinds import (
     PointName,
     WorkingForce,
 )
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression import AnyScalar
 
 # -------- force -----------------------------------------------------------------------------------------------
 # Force: at a point.

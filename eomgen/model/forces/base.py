@@ -12,8 +12,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression import AnyScalar, Expression
 
 # -------- element ---------------------------------------------------------------------------------------------
 # Actions of forces, as they are declared: fields and names alone, no formulas and no loads.

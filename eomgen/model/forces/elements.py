@@ -7,10 +7,19 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Element, Force
 from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
 from eomgen.model.kinds import Direction, LinearDamping, LinearStiffness, NaturalLength, Pull, TwoPoints
-from eomgen.symbolic.expression.formula import Expression, over, sqrt
-from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times, vector_of
+from eomgen.symbolic.expression import (
+    AnyScalar,
+    Expression,
+    Fraction,
+    Vector,
+    dot,
+    is_zero,
+    minus,
+    over,
+    sqrt,
+    times,
+    vector_of,
+)
 
 # -------- reach -----------------------------------------------------------------------------------------------
 # From one point to another: distance, direction and rate, for whatever acts along a line.

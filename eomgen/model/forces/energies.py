@@ -6,8 +6,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Act, Force, GivenEnergy
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy, MotionEnergy
-from eomgen.symbolic.expression.formula import Expression
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression import AnyScalar, Expression
 
 # -------- potential -------------------------------------------------------------------------------------------
 # Potential: an energy of the coordinates.

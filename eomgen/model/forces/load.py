@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.spatial import AnyScalar, Matrix, Vector
+from eomgen.symbolic.expression import AnyScalar, Matrix, Vector
 
 BodyPoint = tuple["str | None", Vector]
 """(body, position in its axes); the body None is the ground."""

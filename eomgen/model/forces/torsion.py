@@ -7,8 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Element, Force
 from eomgen.model.forces.load import Couple, Load, LoadContext
 from eomgen.model.kinds import AngularDamping, AngularStiffness, BodyName, RestAngle, TwoBodies
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression import AnyScalar, Fraction
 
 # -------- turning ---------------------------------------------------------------------------------------------
 # Couples between two bodies, or a body and the ground: torsion springs and dampers.

@@ -7,10 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Act, Force, PushAlongLine, PushOfMass
 from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, BodyName, Flag, LineLoad, TwoLineLoads, TwoOwnPoints
-from eomgen.symbolic.expression.formula import sqrt
-from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, plus, times
+from eomgen.symbolic.expression import AnyScalar, Fraction, Vector, dot, is_zero, minus, plus, sqrt, times
 
 # -------- gravity ---------------------------------------------------------------------------------------------
 # Gravity: a weight on every body, or on some.

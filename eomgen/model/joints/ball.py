@@ -25,20 +25,22 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression, cos, sin
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     IDENTITY,
+    Expression,
+    Fraction,
     Matrix,
     Pose,
     Vector,
     apply,
+    as_expression,
+    cos,
     cross,
     product,
     rotation,
+    sin,
     transposed,
 )
-from eomgen.symbolic.expression.text import as_expression
 
 # -------- orientation -----------------------------------------------------------------------------------------
 # Orientation in space over any scalar: three angles about the body's own successive axes, or a unit quaternion.

@@ -27,8 +27,22 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
-from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
+from eomgen.symbolic.expression import (
+    IDENTITY,
+    Expression,
+    Matrix,
+    Pose,
+    Vector,
+    cos,
+    cross,
+    dot,
+    over,
+    product,
+    rotation,
+    sin,
+    sqrt,
+    vector_of,
+)
 
 # -------- moves -----------------------------------------------------------------------------------------------
 # Moves of a joint, as they are declared: one after another, each in the axes that those before left.

@@ -39,9 +39,19 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import Angle, ConstantAngle, Displacement, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression, cos, sin
-from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, apply, rotation, transposed, vector_of
-from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression import (
+    IDENTITY,
+    Expression,
+    Matrix,
+    Pose,
+    apply,
+    as_expression,
+    cos,
+    rotation,
+    sin,
+    transposed,
+    vector_of,
+)
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 

@@ -41,15 +41,17 @@ from eomgen.model.kinds import (
     Torque,
     ValueOf,
 )
-from eomgen.symbolic.expression.formula import Expression, cos, sin
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     IDENTITY,
+    Expression,
     Matrix,
     Pose,
     Vector,
     apply,
+    cos,
     product,
     rotation,
+    sin,
     times,
     transposed,
 )

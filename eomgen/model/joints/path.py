@@ -25,8 +25,7 @@ from eomgen.model.kinds import ConstantAngle, Displacement, FrictionLaw, Length,
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.model.shapes.forms import ArcForm, Form, LineForm
-from eomgen.symbolic.expression.formula import Expression, cos, function, over, selected, sin
-from eomgen.symbolic.expression.spatial import Pose, Vector, apply, plus
+from eomgen.symbolic.expression import Expression, Pose, Vector, apply, cos, function, over, plus, selected, sin
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -34,9 +34,7 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.formula import Expression, cos, sin
-from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, transposed
-from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression import Expression, Matrix, Pose, apply, as_expression, cos, rotation, sin, transposed
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -14,10 +14,18 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import Leaf
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression.formula import Call, Expression, Reference
-from eomgen.symbolic.expression.spatial import AnyScalar, Matrix, Numbers, Vector
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.expression import (
+    AnyScalar,
+    Call,
+    Expression,
+    Matrix,
+    Numbers,
+    Reference,
+    Unit,
+    Vector,
+    parse,
+    parse_unit,
+)
 
 # -------- context ---------------------------------------------------------------------------------------------
 # Interfaces for output functions: a system over the graph, and the same system in numbers for the second way.

@@ -11,11 +11,8 @@ from __future__ import annotations
 from typing import Any
 
 from eomgen.model.outputs.base import OutputFunction, Trial, name_at, names_of
-from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.formula import Call
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.spatial import dot
-from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.expression import Call, Node, depends_on, dot
+from eomgen.symbolic.numeric import NoValue
 
 
 def _of_particles(trial: Trial, call: Call) -> Any:

@@ -19,9 +19,7 @@ from eomgen.model.outputs.base import (
     name_at,
     names_of,
 )
-from eomgen.symbolic.expression.formula import Call, Expression, Reference
-from eomgen.symbolic.expression.spatial import AnyScalar
-from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.expression import AnyScalar, Call, Expression, Reference, parse
 
 # -------- reactions -------------------------------------------------------------------------------------------
 # reaction_x, reaction_n, reaction_couple, ...: of a constraint, or of the joint of a body, by the balance of the

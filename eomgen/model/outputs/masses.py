@@ -19,20 +19,21 @@ from eomgen.model.outputs.base import (
     name_at,
     number_at,
 )
-from eomgen.symbolic.expression.formula import Call, over
-from eomgen.symbolic.expression.node import is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     IDENTITY,
     AnyScalar,
+    Call,
+    Fraction,
     Matrix,
     Numbers,
     Vector,
     apply,
     cross,
     dot,
+    is_zero,
     matrix_of,
     minus,
+    over,
     vector_of,
 )
 

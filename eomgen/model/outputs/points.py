@@ -7,24 +7,27 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import GROUND, OutputContext, OutputFunction, Trial, ValueOf, along, component, names_of
-from eomgen.symbolic.expression.formula import Call, function, over, sqrt
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     AnyScalar,
+    Call,
     Matrix,
     Numbers,
     Vector,
     apply,
     cross,
     dot,
+    function,
     matrix_of,
     minus,
+    over,
     plus,
+    sqrt,
     times,
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.solve.solving import vanishes
+from eomgen.symbolic.numeric import NoValue
+from eomgen.symbolic.solve import vanishes
 
 # -------- position --------------------------------------------------------------------------------------------
 # x, y, z: the place of a point.

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, OutputContext, OutputFunction
-from eomgen.symbolic.expression.formula import Call
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression import AnyScalar, Call
 
 # -------- of a run --------------------------------------------------------------------------------------------
 # max, min, mean, rms, last, period, ...: what a formula does along a run, which no single state gives.

@@ -34,11 +34,11 @@ from eomgen.model.outputs.points import (
     seen_from,
     turned,
 )
-from eomgen.symbolic.expression.formula import Call, sqrt
-from eomgen.symbolic.expression.spatial import (
+from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
     AnyScalar,
+    Call,
     Matrix,
     Numbers,
     Vector,
@@ -49,6 +49,7 @@ from eomgen.symbolic.expression.spatial import (
     minus,
     plus,
     product,
+    sqrt,
     times,
     transposed,
     vector_of,

@@ -9,9 +9,8 @@ from eomgen.frozen import dataclass
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
-from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.numeric.tolerances import SOLVED
+from eomgen.symbolic.expression import ZERO, Matrix, Vector, matrix_of, parse
+from eomgen.symbolic.numeric import SOLVED
 
 Cell = Callable[[Sequence[Any]], Vector]
 PI = parse("pi")

@@ -9,8 +9,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.expression import ZERO, Fraction, Vector
 
 HALF_OF = Fraction(1, 2)
 TICK = Fraction(17, 20)  # of a hoop's radius, where the mark that shows its turn begins

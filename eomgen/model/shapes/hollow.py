@@ -22,9 +22,7 @@ from eomgen.model.shapes.base import (
     on_ball,
 )
 from eomgen.model.shapes.forms import HALF_OF, EllipsoidForm, Form, circle_points, cylinder_form, turned_profile
-from eomgen.symbolic.expression.formula import over, sqrt
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.expression import ZERO, Fraction, Vector, over, sqrt
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,9 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.kinds import Length, Opening, ValueOf
 from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal, more_than_a_turn, part_of_turn
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form, LineForm, hoop
-from eomgen.symbolic.expression.formula import over, sin
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.expression import ZERO, Fraction, Vector, over, sin
 
 # -------- particle --------------------------------------------------------------------------------------------
 # Particle: a mass without size.

@@ -20,9 +20,7 @@ from eomgen.model.shapes.base import (
 )
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form, LineForm, PolygonForm, box_around, round_plate
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.symbolic.expression.formula import Expression, function, over, sin
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.expression import ZERO, Expression, Fraction, Vector, function, over, sin
 
 # -------- annulus ---------------------------------------------------------------------------------------------
 # Annulus: a thin round plate with a concentric hole.

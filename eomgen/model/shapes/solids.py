@@ -19,9 +19,19 @@ from eomgen.model.shapes.forms import (
     turned_profile,
 )
 from eomgen.model.shapes.plates import Polygon, Vertices
-from eomgen.symbolic.expression.formula import Expression, function, over
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, added, cross, dot, minus, vector_of
+from eomgen.symbolic.expression import (
+    ZERO,
+    Expression,
+    Fraction,
+    Vector,
+    added,
+    cross,
+    dot,
+    function,
+    minus,
+    over,
+    vector_of,
+)
 
 # -------- box -------------------------------------------------------------------------------------------------
 # Box: a solid block.

@@ -15,13 +15,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.node import Node, Scalar, linear_terms
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order, united
-from eomgen.symbolic.numeric.evaluation import (
+from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, linear_terms, order, united
+from eomgen.symbolic.numeric import (
+    COMPUTED,
     PRIME,
     PRIME_FIELD,
+    ZERO_AT_50,
     Arithmetic,
     NoMeaning,
     NoValue,
@@ -29,7 +28,6 @@ from eomgen.symbolic.numeric.evaluation import (
     evaluate_once,
     fifty_digits,
 )
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 
 TRIES = 12  # states of the prime field to be tried for one with a value
 REAL_TRIES = 60

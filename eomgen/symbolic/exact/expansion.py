@@ -32,13 +32,8 @@ from eomgen.symbolic.exact.terms import (
     wave,
 )
 from eomgen.symbolic.exact.unit_quaternions import reduced_on
-from eomgen.symbolic.expression.node import Node, Owner, Scalar
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order, united
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
-from eomgen.symbolic.numeric.work import check_patience
+from eomgen.symbolic.expression import Fraction, Node, Number, Owner, Scalar, order, tidy, united
+from eomgen.symbolic.numeric import CERTAIN_AT_50, NoValue, check_patience, evaluate, fifty_digits
 
 LARGEST_EXPONENT = 64
 MOST_TERMS = 2_000  # of a sum: nobody reads a longer one

@@ -29,8 +29,7 @@ from eomgen.symbolic.exact.terms import (
     terms_times,
 )
 from eomgen.symbolic.exact.unit_quaternions import of_one_degree, with_square_replaced
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Fraction, Number, tidy
 
 MOST_AXES = 4  # angles, for other forms than that in cosines
 

@@ -24,9 +24,7 @@ from eomgen.symbolic.exact.terms import (
     inverse,
     monomial_product,
 )
-from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Fraction, Number, Scalar, tidy
 
 MOST_TERMS = 40  # of a sum that is looked at for powers
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought

@@ -15,8 +15,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.terms import TooLarge, common_number
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Fraction, Number, tidy
 
 LARGEST_IMAGE = 10_000_000  # product of the degrees up to which a common divisor is sought: beyond it takes seconds
 KEPT = 2_000  # polynomials of which the factors are cached, as formulas recur

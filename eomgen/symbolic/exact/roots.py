@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Container, Iterator, Mapping, 
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.exact.normal_forms import readable
 from eomgen.symbolic.exact.terms import (
     Key,
     Monomial,
@@ -24,14 +24,19 @@ from eomgen.symbolic.exact.terms import (
     terms_times,
 )
 from eomgen.symbolic.exact.writing import Writer, is_rate
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.node import ROOT_OF_SUM, SUMS, Node, Scalar, holds_op
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.layout import factors, terms
-from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.expression import (
+    ROOT_OF_SUM,
+    SUMS,
+    Fraction,
+    Node,
+    Number,
+    Scalar,
+    holds_op,
+    order,
+    substituted,
+    tidy,
+)
+from eomgen.symbolic.print import factors, length_of, terms, text_size
 
 ADDED = ("add", "sub")
 LARGEST_FACTOR = 120  # a number that is factored out of a sum, numerator and denominator

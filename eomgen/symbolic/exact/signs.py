@@ -6,9 +6,8 @@ from collections.abc import Collection
 
 from eomgen.symbolic.exact.expansion import expanded
 from eomgen.symbolic.exact.terms import TooLarge
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.expression import Node, Scalar, order
+from eomgen.symbolic.numeric import Work
 
 
 def sign_of_terms(x: Scalar, positive: Collection[Node]) -> int | None:

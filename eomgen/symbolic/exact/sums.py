@@ -23,13 +23,9 @@ from eomgen.symbolic.exact.terms import (
     terms_times,
 )
 from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import decimal_of, is_base
-from eomgen.symbolic.print.length import length_of
+from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, order, tidy
+from eomgen.symbolic.numeric import Work
+from eomgen.symbolic.print import decimal_of, is_base, length_of
 
 # -------- sum parts -------------------------------------------------------------------------------------------
 # A sum as a list of parts, each a number times powers: what they have in common, and how they are grouped.

@@ -18,9 +18,7 @@ from math import gcd, lcm
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.node import Node, Owner, Scalar
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Fraction, Node, Number, Owner, Scalar, tidy
 
 Monomial = tuple[tuple[int, int], ...]  # ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
 AngleSum = tuple[tuple[int, Number], ...]  # ((angle's index, multiple), ...) ascending; index -1 is one radian

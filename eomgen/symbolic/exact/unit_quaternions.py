@@ -13,7 +13,7 @@ from math import comb
 
 from eomgen.symbolic.exact.rational_polynomial import Exponents, PowerSum
 from eomgen.symbolic.exact.terms import Key, Terms
-from eomgen.symbolic.expression.numbers import Number, tidy
+from eomgen.symbolic.expression import Number, tidy
 
 QuaternionSymbols = tuple[int, ...]  # the symbols, by index
 

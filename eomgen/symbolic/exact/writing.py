@@ -33,10 +33,8 @@ from eomgen.symbolic.exact.terms import (
     wave,
 )
 from eomgen.symbolic.exact.unit_quaternions import shortest_on
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, tidy
+from eomgen.symbolic.print import text_size
 
 
 class Writer:

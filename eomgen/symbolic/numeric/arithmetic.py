@@ -10,9 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression import Node, Number, sampled_of
 from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, nearest
 from eomgen.symbolic.numeric.tolerances import OUTWARDS, TINIEST
 

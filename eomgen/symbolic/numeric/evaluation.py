@@ -14,14 +14,20 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.formula import NAMES, function, over
-from eomgen.symbolic.expression.graph import LARGEST_POWER, Graph
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import (
+    LARGEST_POWER,
+    NAMES,
+    Fraction,
+    Graph,
+    Node,
+    Number,
+    Scalar,
+    function,
+    order,
+    over,
+    sampled_of,
+    symbols_of,
+)
 from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS, check_patience
 
 WAYS_KEPT = 16  # of evaluations that may come again

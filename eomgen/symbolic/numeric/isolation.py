@@ -23,9 +23,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import Node, Scalar, jacobian, order
 from eomgen.symbolic.numeric.arithmetic import INTERVALS, interval_of
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import BEST, CARRIED, COMPUTED, ITERATED, NEAR_ROOT, SOLVED, TINIEST

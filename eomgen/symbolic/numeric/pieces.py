@@ -13,11 +13,20 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.derivative import gradient, substituted, symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar, State, holds_op, linear_terms
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import Sampled, sampled_of
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Sampled,
+    Scalar,
+    State,
+    gradient,
+    holds_op,
+    linear_terms,
+    order,
+    sampled_of,
+    substituted,
+    symbols_of,
+)
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, COMPUTED
 

@@ -16,8 +16,7 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.node import Node, Scalar, State
+from eomgen.symbolic.expression import Node, Scalar, State, jacobian
 from eomgen.symbolic.numeric.arithmetic import balls
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import Layers, NoValue, evaluate, fifty_digits

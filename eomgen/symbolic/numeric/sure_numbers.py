@@ -11,9 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite, nan
 from typing import Any
 
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression import Fraction, Node, Scalar, symbols_of
 from eomgen.symbolic.numeric.arithmetic import Ball, balls
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import ROUNDING

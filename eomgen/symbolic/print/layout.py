@@ -17,11 +17,8 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.node import SUMS, Node, Scalar, holds_op
-from eomgen.symbolic.expression.numbers import Number, tidy
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.expression import SUMS, Fraction, Node, Number, Scalar, holds_op, order, tidy
+from eomgen.symbolic.numeric import FLOAT, evaluate
 
 SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
 

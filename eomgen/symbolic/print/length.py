@@ -10,10 +10,7 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, sampled_of
 from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
     Factor,

@@ -14,13 +14,19 @@ from sympy.core.relational import Relational
 from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.formula import selected
-from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.node import SUMS, Node, Owner, Scalar
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction, known_to_sympy
-from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import (
+    SUMS,
+    Fraction,
+    Graph,
+    Node,
+    Number,
+    Owner,
+    Scalar,
+    known_to_sympy,
+    order,
+    sampled_of,
+    selected,
+)
 
 known_to_sympy()
 

@@ -7,9 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 
-from eomgen.symbolic.expression.node import Node, Scalar
-from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression import Node, Scalar, order, sampled_of
 from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
     Factor,

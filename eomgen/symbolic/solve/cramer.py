@@ -13,8 +13,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.formula import inner, over
-from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, is_zero
+from eomgen.symbolic.expression import Node, Scalar, SparseRow, inner, is_zero, over
 
 Minors = dict[tuple[tuple[int, ...], tuple[int, ...]], Scalar]
 LARGEST_BLOCK = 10  # unknowns in one determinant; its minors are 2^n

@@ -14,8 +14,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Scalar, is_zero
+from eomgen.symbolic.expression import Scalar, is_zero, over
 
 
 def factor_solution(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:

@@ -24,15 +24,20 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact.equality import equal_at_real_states
-from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.formula import inner, over
-from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, holds_op, is_zero
-from eomgen.symbolic.expression.numbers import Number
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.pieces import PIECEWISE
-from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK
-from eomgen.symbolic.numeric.work import check_patience
+from eomgen.symbolic.exact import equal_at_real_states
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Number,
+    Scalar,
+    SparseRow,
+    holds_op,
+    inner,
+    is_zero,
+    over,
+    symbols_of,
+)
+from eomgen.symbolic.numeric import ELIMINATED_AT_50, PIECEWISE, RANK, check_patience
 from eomgen.symbolic.solve import cramer
 
 __all__ = ["LinearSystem", "Pivots", "Solution", "general_solution", "unique_solution"]

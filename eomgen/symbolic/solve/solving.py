@@ -17,21 +17,36 @@ from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.exact.polynomials import axes_of, factored, in_powers, square_root
-from eomgen.symbolic.exact.signs import sign_of_terms
-from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, terms_plus, terms_scaled
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.formula import over
-from eomgen.symbolic.expression.node import Node, Owner, Scalar, argument, linear_terms
-from eomgen.symbolic.expression.numbers import tidy
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import NEAR_ROOT
-from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.exact import (
+    Expansion,
+    Monomial,
+    Terms,
+    axes_of,
+    common_monomial,
+    equal_at_random_states,
+    factored,
+    in_powers,
+    sign_of_terms,
+    simplest,
+    square_root,
+    terms_plus,
+    terms_scaled,
+)
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Owner,
+    Scalar,
+    argument,
+    depends_on,
+    linear_terms,
+    order,
+    over,
+    substituted,
+    symbols_of,
+    tidy,
+)
+from eomgen.symbolic.numeric import FLOAT, NEAR_ROOT, Work, evaluate
 
 MOST_SQUARINGS = 2  # and signs of magnitudes
 TRIES = 8  # random states at which a root is tried

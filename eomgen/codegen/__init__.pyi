@@ -1,0 +1,181 @@
+"""Door of the room: what other rooms may import from `eomgen.codegen`."""
+
+# Runs of a program, in the lanes of vectors
+# Runs of a program, in the lanes of vectors
+from eomgen.codegen.batching import STATUS as STATUS
+from eomgen.codegen.batching import Batch as Batch
+
+# Results of runs: states, runs x instants x n; of each run its STATUS, the instant that it reached, its steps
+from eomgen.codegen.batching import FoundRuns as FoundRuns
+
+# Options that are the same for all runs
+from eomgen.codegen.batching import Requested as Requested
+
+# Each piece of work in a thread of its own; if `check`, called now and then, raises, their event is set
+from eomgen.codegen.batching import in_threads as in_threads
+
+# (first, the one after the last) of so many parts, of one length as nearly as can be
+from eomgen.codegen.batching import pieces_of as pieces_of
+
+# Path of a compiler (the environment's, as CC, else cc, gcc, clang, or ziglang's), or None
+from eomgen.codegen.build import compiler as compiler
+
+# A function of a library
+from eomgen.codegen.build import function_of as function_of
+
+# The text, compiled and loaded
+from eomgen.codegen.build import library as library
+
+# The C compiler, with flags for the registers of this machine; every operation is rounded as without them
+from eomgen.codegen.build import of_this_machine as of_this_machine
+
+# A function of (t, x, p, inputs), its statements in the order in which they are run
+from eomgen.codegen.program import Program as Program
+from eomgen.codegen.program import QuaternionPlaces as QuaternionPlaces
+
+# A linear system in the midst of a program
+from eomgen.codegen.program import Solve as Solve
+
+# The state, or one state a row, with every quaternion over its norm; 0 stays
+from eomgen.codegen.program import at_unit_norms as at_unit_norms
+
+# Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma
+from eomgen.codegen.program import bordered as bordered
+
+# The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'
+from eomgen.codegen.program import identifier as identifier
+
+# q' = N u + nu
+from eomgen.codegen.program import kinematic_rates as kinematic_rates
+
+# Outputs that hold accelerations, those of the motion, by the way that takes the fewest operations
+from eomgen.codegen.program import program_in_motion as program_in_motion
+
+# Any outputs as a program
+from eomgen.codegen.program import program_of as program_of
+
+# The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations
+from eomgen.codegen.program import right_hand_side as right_hand_side
+
+# Stem of the names of a model's files and functions; `_rhs` and the like follow it
+from eomgen.codegen.program import stem_of as stem_of
+
+# Places of the four numbers of every quaternion among the states
+from eomgen.codegen.program import unit_quaternions_of as unit_quaternions_of
+from eomgen.codegen.programs import Blocks as Blocks
+
+# Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q
+from eomgen.codegen.programs import InverseDynamics as InverseDynamics
+
+# Slopes of the right-hand side
+from eomgen.codegen.programs import RateSlopes as RateSlopes
+
+# `reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`
+from eomgen.codegen.programs import ReactionFunction as ReactionFunction
+
+# Outputs in q, u, a, t, parameters and inputs [SI], and why the others are none
+from eomgen.codegen.programs import RequestedOutputs as RequestedOutputs
+
+# a and lam of M a = forcing + J^T lam, J a + gamma = 0, as expressions; redundant rows are left out, their lam 0
+from eomgen.codegen.programs import accelerations_and_multipliers as accelerations_and_multipliers
+
+# {name as in an output: value in q, u and the accelerations}; a reaction without a single value is left out
+from eomgen.codegen.programs import determinate as determinate
+from eomgen.codegen.programs import entries_of as entries_of
+
+# M and forcing of M a = forcing + J^T lam, and where constraints close J and gamma of J a + gamma = 0; by name
+from eomgen.codegen.programs import matrices_of as matrices_of
+
+# The outputs of the model
+from eomgen.codegen.programs import outputs_of_state as outputs_of_state
+
+# The entries as one program; the systems behind them as of `program_of`
+from eomgen.codegen.programs import program_of_blocks as program_of_blocks
+
+# (names, the program of their values), the accelerations from the same equations as in the right-hand side
+from eomgen.codegen.programs import reactions_program as reactions_program
+
+# The slopes of x' = (N u + nu, a) in x and inputs
+from eomgen.codegen.programs import slopes_of as slopes_of
+
+# (t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others
+from eomgen.codegen.rhs import RateFunction as RateFunction
+
+# A program as a function; safe to call from several threads
+from eomgen.codegen.rhs import RightHandSide as RightHandSide
+
+# The accelerations and multipliers at one state; none has a single value where branches meet
+from eomgen.codegen.rhs import closing_accelerations as closing_accelerations
+
+# The program as a function
+from eomgen.codegen.rhs import compiled as compiled
+
+# Several programs as functions, one library of them where they run in C; with the errors of `compiled`
+from eomgen.codegen.rhs import compiled_together as compiled_together
+
+# Result of a compiler; None where there is none, or it fails: that, and what is done instead, is said once
+from eomgen.codegen.rhs import in_c as in_c
+
+# p: the value of every parameter, in the model's order
+from eomgen.codegen.rhs import parameter_vector as parameter_vector
+
+# The target of this name; UsageError where there is none
+from eomgen.codegen.rhs import target_named as target_named
+
+# The program's outputs in any arithmetic
+from eomgen.codegen.right_answers import outputs_at as outputs_at
+
+# The largest error of a text in single precision against its tolerance, at all vectors
+from eomgen.codegen.right_answers import single_error as single_error
+
+# The vectors with the tolerances of single precision, measured at states that differ by rounding only
+from eomgen.codegen.right_answers import single_vectors as single_vectors
+
+# {path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json
+from eomgen.codegen.right_answers import texts_of as texts_of
+
+# Right answers near the start (else near 0), half of them with inputs given where there are any; and there
+from eomgen.codegen.right_answers import vectors as vectors
+
+# The languages
+from eomgen.codegen.targets import ALL as ALL
+from eomgen.codegen.targets.base import INVERSE as INVERSE
+from eomgen.codegen.targets.base import JACOBIAN as JACOBIAN
+from eomgen.codegen.targets.base import MATRICES as MATRICES
+from eomgen.codegen.targets.base import OUTPUTS as OUTPUTS
+from eomgen.codegen.targets.base import REACTIONS as REACTIONS
+from eomgen.codegen.targets.base import REGRESSOR as REGRESSOR
+from eomgen.codegen.targets.base import RHS as RHS
+
+# Addresses of a compiled right-hand side and its constants; `kept` keeps them alive
+from eomgen.codegen.targets.base import Address as Address
+
+# Description of a program in its emitted files
+from eomgen.codegen.targets.base import Description as Description
+from eomgen.codegen.targets.base import Emitted as Emitted
+from eomgen.codegen.targets.base import FileContent as FileContent
+
+# Role of a program, and the names in its text
+from eomgen.codegen.targets.base import Role as Role
+
+# A right answer: the result at (t, x, p), and a where it is an argument, by the model's own inputs or given ones
+from eomgen.codegen.targets.base import TestVector as TestVector
+
+# Several programs, compiled as one text
+from eomgen.codegen.targets.c import c_together as c_together
+from eomgen.codegen.targets.c_lanes import RUN_USE as RUN_USE
+
+# The files in addition to NAME_rhs.c and NAME_rhs.h
+from eomgen.codegen.targets.c_lanes import integrator_files as integrator_files
+
+# An object of the functions `constants` and `evaluate`, for scripts that are no modules
+from eomgen.codegen.targets.javascript import javascript_expression as javascript_expression
+
+# products in addition to its sums that a coefficient takes where one motion is followed: measured
+from eomgen.codegen.taylor import ALONE as ALONE
+
+# The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least
+from eomgen.codegen.taylor import order_for as order_for
+
+# First part of a program without a power series here, by its name in models; "" where all have one
+from eomgen.codegen.taylor import without_series as without_series

@@ -1,0 +1,276 @@
+"""Door of the room: what other rooms may import from `eomgen.documents`."""
+
+# The parameters without a value
+from eomgen.documents.at_rest.pictures import missing_values as missing_values
+
+# A structure at rest: every reaction by virtual work and by equilibrium
+from eomgen.documents.at_rest.result import Statics as Statics
+
+# A structure at rest; of a system that is free to move, its equilibria
+from eomgen.documents.at_rest.result import statics as statics
+
+# Message if contacts of bodies without coordinates cannot hold them at rest; "" where they do
+from eomgen.documents.at_rest.result import why_not_at_rest as why_not_at_rest
+
+# Step that derives one reaction from the virtual work of the mechanism that its release leaves
+from eomgen.documents.at_rest.steps import virtual_work_step as virtual_work_step
+
+# The derivation of the equations of motion of a system
+from eomgen.documents.derivation import derivation_of as derivation_of
+
+# The formulas that hold at any state, and the stated first integrals, as they are printed
+from eomgen.documents.derivation import printed_formulas as printed_formulas
+
+# The result of a verb
+from eomgen.documents.document import Document as Document
+
+# The document of a model, under its name, its remark and its source
+from eomgen.documents.document import document_of as document_of
+
+# Lines of text that are of no model
+from eomgen.documents.document import lines_document as lines_document
+
+# A document of one section without a head, for results that are no derivation
+from eomgen.documents.document import plain_document as plain_document
+
+# J^T lam, one entry a speed
+from eomgen.documents.equation_steps import multiplier_forces as multiplier_forces
+
+# M a + c = Q + J^T lam, row by row
+from eomgen.documents.equation_steps import sides_of as sides_of
+
+# A scene at the start of its model, with its dimensions
+from eomgen.documents.equilibrium_picture import drawing_at_rest as drawing_at_rest
+
+# The scene of a model at its start; a parameter without a value is drawn as 1
+from eomgen.documents.equilibrium_picture import rest_picture as rest_picture
+
+# of lines of one colour
+from eomgen.documents.figures import KINDS as KINDS
+
+# A picture that is drawn when it is saved, or shown in a notebook
+from eomgen.documents.figures import Picture as Picture
+
+# The coordinates of each unit
+from eomgen.documents.figures import by_unit as by_unit
+
+# {reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike
+from eomgen.documents.figures import kinds_of_lines as kinds_of_lines
+
+# The joints and constraints with the largest reactions, as many as have their lines in one panel; in their order
+from eomgen.documents.figures import largest_reactions as largest_reactions
+
+# A name as matplotlib sets it: theta1' -> \dot{\theta}_{1}, x_left -> x_{\mathrm{left}}
+from eomgen.documents.figures import mathtext as mathtext
+
+# Notation that the model of a run declares; the default where the run has no model
+from eomgen.documents.figures import notation_of_run as notation_of_run
+
+# reaction_x(B.II) -> B.II; tension(rope, 2) -> rope
+from eomgen.documents.figures import owner_of as owner_of
+
+# {unit: reactions that have a value at some instant}; units whose reactions are all 0 are left out
+from eomgen.documents.figures import reactions_by_unit as reactions_by_unit
+
+# One of the pictures of a run
+from eomgen.documents.figures import run_picture as run_picture
+
+# The expressions of the payload as texts
+from eomgen.documents.json_form import Texts as Texts
+
+# The equations of motion as plain data, ready for JSON
+from eomgen.documents.json_form import equations_payload as equations_payload
+
+# Texts of the equations of motion in the payload, the reactions left out
+from eomgen.documents.json_form import payload_texts as payload_texts
+
+# Velocities, accelerations and centres of rotation at one instant
+from eomgen.documents.kinematics.result import Kinematics as Kinematics
+from eomgen.documents.latex import PREAMBLE as PREAMBLE
+from eomgen.documents.latex import Group as Group
+
+# The formulas in aligned blocks of a few rows each
+from eomgen.documents.latex import display_blocks as display_blocks
+
+# The equations of motion in one display, for Jupyter: $$ aligned $$
+from eomgen.documents.latex import equations_latex as equations_latex
+
+# The statements, formulas in a row taken together; listings are typeset before
+from eomgen.documents.latex import grouped as grouped
+
+# Paragraphs, displays and tables; formulas that follow one another are aligned together
+from eomgen.documents.latex import latex_blocks as latex_blocks
+
+# One piece of a sentence, formulas between dollars
+from eomgen.documents.latex import piece_latex as piece_latex
+
+# One notation for the symbols of the whole document
+from eomgen.documents.latex import setter_of as setter_of
+
+# One side of a formula
+from eomgen.documents.latex import side_latex as side_latex
+
+# The document with sentences and formulas in place of listings
+from eomgen.documents.latex import with_listings_typeset as with_listings_typeset
+
+# Typesetting of the names of a model
+from eomgen.documents.latex_math import Notation as Notation
+
+# Sets graph scalars, with one notation for all of them
+from eomgen.documents.latex_math import Setter as Setter
+
+# Plain text for LaTeX outside formulas
+from eomgen.documents.latex_math import latex_escaped as latex_escaped
+
+# Notation that a model declares
+from eomgen.documents.latex_math import notation_of as notation_of
+
+# Quantities in a table, a row each: name, formula and number typeset; one longer than a line is shortened
+from eomgen.documents.markdown import listing_markdown as listing_markdown
+
+# Paragraphs, displays and tables
+from eomgen.documents.markdown import markdown_blocks as markdown_blocks
+
+# Plain text for Markdown: nothing in it is markup, and it stays on its line
+from eomgen.documents.markdown import markdown_escaped as markdown_escaped
+
+# Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes
+from eomgen.documents.mass_properties.result import inertia as inertia
+
+# First step, with the assumptions; none where nothing was assumed
+from eomgen.documents.motion_steps import assumption_steps as assumption_steps
+
+# places of a trail in a frame
+from eomgen.documents.moving_picture import FINE as FINE
+
+# of a mode as it is shown, and how long it is [s]
+from eomgen.documents.moving_picture import PERIOD as PERIOD
+
+# Frames of one scene
+from eomgen.documents.moving_picture import Movie as Movie
+from eomgen.documents.moving_picture import Progress as Progress
+
+# The path of ffmpeg: the system's, else that of the package imageio-ffmpeg
+from eomgen.documents.moving_picture import ffmpeg as ffmpeg
+
+# The instants of the frames of a motion from 0: speed / fps apart [s]
+from eomgen.documents.moving_picture import frame_times as frame_times
+
+# A GIF that runs for ever, all frames with one palette
+from eomgen.documents.moving_picture import gif as gif
+
+# The slowest modes about their reference, each over one period, all shown equally fast
+from eomgen.documents.moving_picture import mode_movies as mode_movies
+
+# A run at some instants; states between its rows are interpolated, each phase is drawn by its own system
+from eomgen.documents.moving_picture import movie_of as movie_of
+
+# An MP4 (H.264), made by ffmpeg
+from eomgen.documents.moving_picture import mp4 as mp4
+
+# Progress as one line on a terminal's stderr
+from eomgen.documents.moving_picture import on_stderr as on_stderr
+
+# Refuses frames a second, and a speed, that no moving picture has
+from eomgen.documents.moving_picture import refuse_rates as refuse_rates
+
+# The frames of a movie side by side, with their times, as a PNG
+from eomgen.documents.moving_picture import strip as strip
+
+# A virtual displacement to and fro, once
+from eomgen.documents.moving_picture import virtual_movie as virtual_movie
+
+# The document with the proof of what was found, and of its printed texts; None: none was requested
+from eomgen.documents.proven_documents import proven as proven
+
+# The document with a proof of the page that is made of it, read back, where it has one
+from eomgen.documents.proven_documents import proven_as as proven_as
+
+# The reactions of a system with their symbols, or why they cannot be derived
+from eomgen.documents.reaction_steps import letters_of as letters_of
+
+# Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}
+from eomgen.documents.reaction_values import null_space as null_space
+
+# The symbol that a joint or a constraint gives a reaction of its own; None of sums, and where it gives none
+from eomgen.documents.reaction_values import own_symbol as own_symbol
+
+# The formula of every reaction
+from eomgen.documents.reaction_values import reaction_formulas as reaction_formulas
+
+# Name of a reaction: B_x, R_stick_x, N_wall, T_rope_2, M_E
+from eomgen.documents.reaction_values import reaction_name as reaction_name
+
+# Meaning in words of a reaction that an output names
+from eomgen.documents.reaction_values import said as said
+
+# (text as in an output, unit) of sums of indeterminate reactions that have one value, as far as short
+from eomgen.documents.reaction_values import sums_of_open as sums_of_open
+from eomgen.documents.read_back import HOW as HOW
+
+# Comparison of one document with its page
+from eomgen.documents.read_back import PageComparison as PageComparison
+
+# Required content of one block of a page
+from eomgen.documents.read_back import Wanted as Wanted
+from eomgen.documents.read_back import wanted_of as wanted_of
+
+# The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x)
+from eomgen.documents.reading import without_cases as without_cases
+
+# The document in one of the formats of ALL: text, latex, markdown, json
+from eomgen.documents.rendering import rendered as rendered
+
+# Result of a verb that can be shown: a derivation, entries for JSON, and a picture where it has one
+from eomgen.documents.result import Result as Result
+
+# Small motions about an equilibrium or a steady motion
+from eomgen.documents.small_motions.result import Linearization as Linearization
+
+# The small motions of a model about an equilibrium, or about its start, a steady motion
+from eomgen.documents.small_motions.result import linearize as linearize
+from eomgen.documents.statements import Cell as Cell
+
+# Something that a user types
+from eomgen.documents.statements import Code as Code
+
+# sides joined by equality signs, on a line of their own
+from eomgen.documents.statements import Formula as Formula
+
+# A quantity by its name, and its meaning in words
+from eomgen.documents.statements import Found as Found
+
+# A table of any columns
+from eomgen.documents.statements import Grid as Grid
+
+# Text that stands as it is: paths, counts, words of a tool
+from eomgen.documents.statements import Lines as Lines
+
+# Quantities one after the other, each with its known values
+from eomgen.documents.statements import Listing as Listing
+from eomgen.documents.statements import Piece as Piece
+
+# A sentence, with formulas inside
+from eomgen.documents.statements import Prose as Prose
+
+# One result: exact, as a number, with the method; or the reason why it is missing
+from eomgen.documents.statements import Quantity as Quantity
+from eomgen.documents.statements import Statement as Statement
+
+# One step of a derivation, a section of a document; `key` names it for machines, "" where it has no head
+from eomgen.documents.statements import Step as Step
+
+# A sentence of these pieces
+from eomgen.documents.statements import prose as prose
+
+# A cell of a grid
+from eomgen.documents.text import cell_text as cell_text
+
+# A formula on one line: T = 6*M*R^2*theta'^2
+from eomgen.documents.text import formula_text as formula_text
+
+# Text without blanks; exponents as digits, raised or not
+from eomgen.documents.texts_read import flat as flat
+
+# a = b; a matrix row by row, cases one below the other
+from eomgen.documents.texts_read import formula_said as formula_said

@@ -1,0 +1,522 @@
+"""StaticReactions -> the steps to every reaction, by virtual work and by the balance.
+
+StaticReactions -> Document: structure and count, every reaction, each by virtual work, and the comparison.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from eomgen.documents.document import Document, document_of, with_symbols
+from eomgen.documents.motion_steps import count, data_step
+from eomgen.documents.reaction_values import lettered, reaction_name, said
+from eomgen.documents.statements import Cell, Formula, Grid, Law, Piece, Prose, Statement, Step, narrow_grid, prose
+from eomgen.documents.text import cell_text
+from eomgen.mechanics.kinematics import mass_properties
+from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.rigidity import (
+    RigidBlock,
+    Structure,
+    VelocityPlan,
+    blocks_of,
+    members_of,
+    motion_in_words,
+    numeral,
+    resting_blocks,
+)
+from eomgen.mechanics.statics import (
+    Acting,
+    RestCondition,
+    StaticReaction,
+    StaticReactions,
+    StaticSum,
+    WorkEquation,
+    WorkTerm,
+)
+from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
+from eomgen.proof import ReportedBlock, ReportedMotion, ReportedWork
+from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, plus, times, vector_of
+from eomgen.symbolic.print import Symbol, to_text
+
+METHOD = "statics"
+SymbolsByName = Mapping[str, Node]
+
+
+def statics_derivation(statics: StaticReactions, values: Mapping[str, float], more: Sequence[Step] = ()) -> Document:
+    """The solution, step by step.
+
+    Args:
+        values: of the reactions in numbers, as far as the parameters have values.
+        more: steps that follow: section forces, influence lines.
+    """
+    model = statics.system.scope.model
+    symbols, declared = _named(statics)
+    steps = (
+        data_step(statics.system),
+        structure_step(statics),
+        *_open(statics, symbols, values),
+        static_reactions_step(statics, symbols, values),
+        *_works(statics, symbols),
+        *agreement_step(statics),
+        *more,
+    )
+    return with_symbols(document_of(model, METHOD, steps), declared)
+
+
+def _named(statics: StaticReactions) -> tuple[dict[str, Node], dict[str, Symbol]]:
+    """(a symbol for each reaction by its name, their LaTeX symbols where declared)."""
+    letters = lettered(statics.balance, statics.system.scope.names)
+    graph, taken = statics.system.scope.graph, {*statics.system.scope.names, *letters.names}
+    found: dict[str, Node] = {}
+    declared = dict(letters.declared)
+    for reaction in statics.reactions:
+        if reaction.named is None:
+            found[reaction.name] = statics.system.symbols.unknowns[reaction.name]
+            continue
+        alone = [j for j, k in reaction.named.combination.items() if type(k) is int and k == 1]
+        if len(reaction.named.combination) == 1 and alone and is_zero(reaction.named.given):
+            found[reaction.name] = letters.symbols[alone[0]]
+        else:
+            name = _untaken(_letter(reaction.name), taken)
+            found[reaction.name] = graph.symbol(name)
+            taken.add(name)
+    return found, declared
+
+
+def _letter(name: str) -> str:
+    """reaction_x(foot) -> R_foot_x, reaction_couple_z(foot) -> M_foot_z"""
+    kind, _, rest = name.partition("(")
+    owner, *more = rest.removesuffix(")").replace(".", "_").replace(", ", "_").replace("-", "_").split("_")
+    what, *axes = kind.removeprefix("reaction_").split("_")
+    return reaction_name(what, owner, *more, *axes)
+
+
+def _untaken(name: str, taken: set[str]) -> str:
+    while name in taken:
+        name += "_r"
+    return name
+
+
+# -- the structure -----------------------------------------------------------------------------------
+
+
+def structure_step(statics: StaticReactions) -> Step:
+    """Bodies, reactions, the count, the rank."""
+    structure = statics.structure
+    links = statics.system.motion.links
+    nodes = sum(is_node(link.name) for link in links)
+    parts = [count(len(links) - nodes, "body", "bodies")] if len(links) > nodes else []
+    parts += [count(nodes, "node")] if nodes else []
+    number, formula = statics.count
+    unknowns = len(structure.unknowns)
+    besides = f" and {count(unknowns, 'unknown load')}" if unknowns else ""
+    statements: list[Statement] = [
+        prose(
+            f"{' and '.join(parts)}, held by {count(len(structure.components), 'scalar reaction')}{besides}. "
+            "The count of degrees of freedom, everything that holds taken as independent:"
+        ),
+        Formula((_law(formula), number)),
+        prose(
+            f"By rank: the bodies have {count(len(structure.columns), 'velocity', 'velocities')}, of which the "
+            f"reactions forbid {structure.rank}. {_free(structure)}"
+            + (
+                ": the structure is statically determinate."
+                if not structure.indeterminacy
+                else f"; there {'is' if structure.indeterminacy == 1 else 'are'} "
+                f"{count(structure.indeterminacy, 'reaction')} more than independent ones: the structure is "
+                f"statically indeterminate, to the degree {structure.indeterminacy}."
+            )
+        ),
+    ]
+    return Step("structure", "Structure", tuple(statements))
+
+
+def _free(structure: Structure) -> str:
+    """Sentence on what can move: nothing, straight bodies about their lines, or motions in which no load does work."""
+    idle = dict.fromkeys(body for plan in structure.loose for body in plan.moving)
+    if not idle:
+        return "Nothing can move"
+    if structure.turns_idly:
+        return f"Nothing can move but {', '.join(idle)} about its own line, on which nothing acts"
+    reported = "; ".join(motion_in_words(plan) for plan in structure.loose)
+    why = "nothing resists it, but no load does any work in it"
+    return f"{reported[0].upper()}{reported[1:]}: {why}. Else nothing can move"
+
+
+def _law(formula: str) -> Law:
+    """The count as it stands, words upright."""
+    latex = formula.replace("*", r" \cdot ")
+    for word in ("bodies", "particles", "joints", "constraints", "given motions", "unknown loads"):
+        latex = latex.replace(f"({word})", rf"\ \text{{({word})}}")
+    return Law(formula, latex)
+
+
+def _open(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str, float]) -> tuple[Step, ...]:
+    """Self-stresses of an indeterminate structure, by the names of its reactions."""
+    if not statics.structure.indeterminacy:
+        return ()
+    letters = lettered(statics.balance, statics.system.scope.names).symbols
+    letters = (*letters, *statics.structure.unknowns)
+    graph = statics.system.scope.graph
+    statements: list[Statement] = []
+    for number, stress in enumerate(statics.structure.stresses, start=1):
+        k = graph.symbol(_untaken("k" if statics.structure.indeterminacy == 1 else f"k{number}", set(symbols)))
+        statements += [
+            prose("To these at once may be added, with any number ", k, ", without a trace:"),
+            Grid(("reaction", "added"), tuple((letters[j], share * k) for j, share in stress.items())),
+        ]
+    constraints = dict.fromkeys(
+        statics.structure.components[j].owner
+        for s in statics.structure.stresses
+        for j in s
+        if j < len(statics.structure.components)
+    )
+    statements.append(
+        prose(f"One constraint too many for each of these is among: {', '.join(constraints)}. The rest is determinate.")
+    )
+    if statics.sums:
+        rows: list[tuple[Cell, ...]] = []
+        for each in statics.sums:
+            shown = sum((k * letters[j] for j, k in each.combination.items()), start=0)
+            name = sum_name(statics, each)
+            rows.append((shown, each.value, f"{values[name]:.7g}" if name in values else "", each.unit))
+        statements.append(prose("Sums in which that leaves no trace have one value:"))
+        statements.append(narrow_grid(("sum", "exact", "value", "unit"), rows))
+    return (Step("indeterminate", "Self-stresses", tuple(statements)),)
+
+
+def sum_name(statics: StaticReactions, each: StaticSum) -> str:
+    """Name of a sum as in an output: reaction_x(A) + reaction_x(B)."""
+    graph, names = statics.system.scope.graph, statics.structure.names
+    return to_text(sum((k * graph.symbol(names[j]) for j, k in each.combination.items()), start=0))
+
+
+# -- the reactions -------------------------------------------------------------------------------------
+
+
+def static_reactions_step(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str, float]) -> Step:
+    """All reactions: the meaning of each, exact and in numbers."""
+    rows: list[tuple[Cell, ...]] = []
+    for reaction in statics.reactions:
+        value = reaction.value
+        number = f"{values[reaction.name]:.7g}" if reaction.name in values else ""
+        exact: Cell = "indeterminate" if value is None else value
+        sense = _sense(statics, reaction, values.get(reaction.name))
+        words = meaning_of(statics.balance, reaction)
+        rows.append((symbols[reaction.name], words, exact, number, reaction.unit, sense))
+    if not rows:
+        return Step("reactions", "Reactions", (prose("Nothing reacts."),))
+    head = ("reaction", "meaning", "exact", "value", "unit", "sense")
+    return Step("reactions", "Reactions", (narrow_grid(head, rows),))
+
+
+SENSES = {
+    "reaction_x": ("to the right", "to the left"),
+    "reaction_y": ("up", "down"),
+    "reaction_couple": ("counter-clockwise", "clockwise"),
+    "tension": ("tension", "compression"),
+    "reaction_n": ("along the normal", "against the normal"),
+}
+"""Of a reaction in the plane that is positive, and of one that is negative."""
+
+
+def _sense(statics: StaticReactions, reaction: StaticReaction, value: float | None) -> str:
+    """Sense of a reaction in words; "" where there is none, or its sign is not known."""
+    senses = SENSES.get(reaction.name.partition("(")[0])
+    if senses is None or not value or statics.system.scope.model.space != "plane":
+        return ""
+    return senses[value < 0]
+
+
+def meaning_of(balance: Reactions, reaction: StaticReaction) -> str:
+    """Meaning of a reaction: its kind, its body, its sense."""
+    if reaction.named is None:
+        about = balance.balance.system.scope.model.unknowns[reaction.name]
+        return getattr(about, "about", None) or "to be found"
+    return said(balance.balance, reaction.named)
+
+
+def _works(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
+    return tuple(
+        virtual_work_step(reaction, symbols[reaction.name])
+        for reaction in statics.reactions
+        if reaction.work is not None
+    )
+
+
+def agreement_step(statics: StaticReactions) -> tuple[Step, ...]:
+    """Step that says whether virtual work and the balance of the bodies agree."""
+    compared = [reaction for reaction in statics.reactions if reaction.work is not None]
+    if not compared:
+        return ()
+    wrong = statics.disagreeing
+    if not wrong:
+        what = "value" if len(compared) == 1 else f"{len(compared)} values"
+        text = f"The balance of forces and moments of every body gives the same {what}, as formulas of the parameters."
+        return (Step("agreement", "Check by equilibrium", (prose(text),)),)
+    rows = [(r.name, _or_open(None if r.work is None else r.work.value), _or_open(r.balanced)) for r in wrong]
+    return (
+        Step(
+            "agreement",
+            "Check by equilibrium: FAILED",
+            (
+                prose("The two ways do not agree; do not trust this result:"),
+                Grid(("reaction", "by virtual work", "by equilibrium"), tuple(rows)),
+            ),
+        ),
+    )
+
+
+MARGINS = {"pushes": "its normal force", "pulls": "its tension", "sticks": "mu |N| less its friction"}
+
+
+def contacts_step(conditions: Sequence[RestCondition], broken: Sequence[str]) -> tuple[Step, ...]:
+    """Step with the conditions on contacts that can open or slide, and those that are violated."""
+    if not conditions:
+        return ()
+    rows = tuple((c.constraint, MARGINS[c.kind], c.margin) for c in conditions)
+    statements: list[Statement] = [
+        prose("The contacts are as they were taken while none of these is negative:"),
+        Grid(("contact", "what", "formula"), rows),
+        *(prose(f"It is not at rest like this: {words}.") for words in broken),
+    ]
+    return (Step("contacts", "Contacts: FAILED" if broken else "Contacts", tuple(statements)),)
+
+
+def _or_open(value: Scalar | None) -> Cell:
+    return "indeterminate" if value is None else value
+
+
+# -------- work steps ------------------------------------------------------------------------------------------
+# WorkEquation -> the step that finds a reaction by virtual work: mechanism, centres, displacements, equation.
+
+
+TURN, SHIFT = "δθ", "δs"
+"""The virtual displacement of the block that sets the scale: the angle by which it turns, or how far it moves."""
+
+LISTED = 8  # parts of a block by name
+
+
+def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
+    """Step that derives one reaction from the virtual work of the mechanism that its release leaves."""
+    equation = reaction.work
+    assert equation is not None, "an indeterminate reaction has no equation of work"
+    plan, blocks = equation.plan, blocks_of(equation.plan)
+    if not blocks:
+        nothing = prose("Its constraint leaves this motion free, and so bears nothing: ", symbol, " = 0.")
+        return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", (nothing,))
+    delta = _scale(blocks, symbol)
+    statements: list[Statement] = [_released(plan, blocks, symbol, delta), _mechanism(plan, blocks, delta)]
+    if equation.terms:
+        statements += [prose("The loads do the virtual works:"), _work_terms(plan, equation.terms, delta)]
+    else:
+        statements.append(prose("No load does any work in this motion."))
+    statements += [
+        prose("The principle of virtual work says", *_without(equation), ":"),
+        *_equations(equation, symbol, delta),
+    ]
+    return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", tuple(statements))
+
+
+def _scale(blocks: Sequence[RigidBlock], symbol: Node) -> Node:
+    """The angle where a block turns by 1, else a length."""
+    turns = any(not isinstance(w, Node) and w == 1 for block in blocks for w in block.spin)
+    scale: Node = symbol.graph.symbol(TURN if turns else SHIFT)
+    return scale
+
+
+def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, delta: Node) -> Prose:
+    """Sentence on the blocks that move once the reaction is released, and those that stay at rest."""
+    still = resting_blocks(plan)
+    rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
+    many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
+    return prose(
+        "Released along ",
+        symbol,
+        f", the structure is a mechanism: {many} can move{rest}. Its virtual displacements, all by ",
+        delta,
+        ":",
+    )
+
+
+def _listed(names: Sequence[str]) -> str:
+    shown = ", ".join(names[:LISTED])
+    return shown + (f" and {len(names) - LISTED} more" if len(names) > LISTED else "")
+
+
+# -- as it is reported -------------------------------------------------------------------------------
+
+
+def reported_work(name: str, step: Step, machines: Mapping[str, Any]) -> ReportedWork | None:
+    """Virtual work of a reaction in the plane, as printed and as in the JSON entries; None where nothing moves."""
+    grids = {cell_text(s.head[0]): [_by_head(s, row) for row in s.rows] for s in step.statements if isinstance(s, Grid)}
+    formulas = [s for s in step.statements if isinstance(s, Formula)]
+    if "block" not in grids:
+        return None
+    blocks = [ReportedBlock(tuple(x["parts"]), x["rotation"][2], x["shift_at_origin"]) for x in machines["mechanism"]]
+    loads = grids.get("load", [])
+    left, last = formulas[0].sides[0], formulas[1].sides[1]
+    return ReportedWork(
+        name,
+        blocks,
+        machines["along"],
+        [(term["load"], term["work"]) for term in machines["terms"]],
+        machines["value"],
+        [_reported_motion(row) for row in grids["block"]],
+        [_reported_motion(row) for row in loads if any(f"shift {k}" in row for k in "xy")],
+        [(row["load"], row["work"]) for row in loads if not isinstance(row["work"], str)],
+        left,  # type: ignore[arg-type]
+        last,  # type: ignore[arg-type]
+    )
+
+
+def _by_head(grid: Grid, row: Sequence[Cell]) -> dict[str, Any]:
+    return dict(zip(map(cell_text, grid.head), row, strict=True))
+
+
+def _reported_motion(row: Mapping[str, Any]) -> ReportedMotion:
+    """Columns in which nothing stands are left out, and a centre at infinity is a word."""
+    spin, *shift = (0 if isinstance(x := row.get(k, ""), str) else x for k in ("rotation", "shift x", "shift y"))
+    x = row.get("centre x", "")
+    return ReportedMotion(None if isinstance(x, str) else (x, row["centre y"]), spin, shift, row.get("at", ""))
+
+
+# -- the mechanism -----------------------------------------------------------------------------------
+
+
+def _mechanism(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
+    """Table of the blocks with their centres of rotation and rotations, or their displacements."""
+    if plan.system.scope.model.space != "plane":
+        return _mechanism_in_space(plan, blocks, delta)
+    rows: list[tuple[Cell, ...]] = []
+    for number, block in enumerate(blocks, start=1):
+        center = block.center(plan)
+        place: tuple[Cell, Cell] = ("at infinity", "") if center.place is None else (center.place[0], center.place[1])
+        moved = [plan.simple(x) for x in center.direction or (0, 0, 0)]
+        shift = ("", "") if center.place is not None else (moved[0] * delta, moved[1] * delta)
+        rows.append((numeral(number), _parts(plan, block, blocks), *place, block.spin[2] * delta, *shift))
+    return _narrow(("block", "moves", "centre x", "centre y", "rotation", "shift x", "shift y"), rows)
+
+
+def _mechanism_in_space(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) -> Grid:
+    """Table of the bodies with their rotations and the displacements of their mass centres; nodes are only named."""
+    rows: list[tuple[Cell, ...]] = []
+    for number, block in enumerate(blocks, start=1):
+        if not block.bodies:
+            continue
+        moved = plan.center_velocity(block.bodies[0])
+        spin = tuple(plan.simple(x) * delta for x in block.spin)
+        rows.append((numeral(number), _parts(plan, block, blocks), *spin, *(x * delta for x in moved)))
+    nodes = tuple(node for block in blocks for node in block.nodes)
+    if nodes:
+        rows.append(("nodes", _listed(nodes), *("",) * 6))
+    axes = ("x", "y", "z")
+    head = ("block", "moves", *(f"rotation {k}" for k in axes), *(f"shift {k}" for k in axes))
+    return _narrow(head, rows)
+
+
+def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) -> str:
+    """Its bodies, members and nodes; a truss as one where all of it is in the block."""
+    if len(plan.moving) == len(plan.system.motion.links) and len(blocks) == 1:
+        return "the whole structure"
+    of_truss = Counter(truss for truss, _, _ in members_of(plan.system))
+    inside = Counter(truss for truss, _ in block.members)
+    whole = [truss for truss, number in inside.items() if number == of_truss[truss]]
+    single = [f"{truss} {member}" for truss, member in block.members if truss not in whole]
+    return _listed((*block.bodies, *(f"truss {truss}" for truss in whole), *single, *block.nodes))
+
+
+# -- works -------------------------------------------------------------------------------------------
+
+
+def _work_terms(plan: VelocityPlan, terms: Sequence[WorkTerm], delta: Node) -> Grid:
+    """Table of the loads that do work, with the displacements of their points and their works."""
+    plane = plan.system.scope.model.space == "plane"
+    size = 2 if plane else 3
+    rows: list[tuple[Cell, ...]] = []
+    for term in terms:
+        *before, last = _points_of(plan, term.acting)
+        for where, moved, turned in before:
+            rows.append((term.acting.name, where, *_moved(moved, turned, size, delta), ""))
+        where, moved, turned = last
+        rows.append((term.acting.name, where, *_moved(moved, turned, size, delta), term.work * delta))
+    turning = ("rotation",) if plane else ("rotation x", "rotation y", "rotation z")
+    return _narrow(("load", "at", *(f"shift {k}" for k in "xyz"[:size]), *turning, "work"), rows)
+
+
+Displaced = tuple[str, Vector | None, Vector | None]
+"""(where a load acts, displacement of that point, rotation of the body): of what it works on."""
+
+
+def _points_of(plan: VelocityPlan, acting: Acting) -> list[Displaced]:
+    load = acting.load
+    if load is None:
+        return [(f"joint of {acting.name}", None, None)]
+    if isinstance(load, Couple):
+        return [(load.body, None, plan.spin(load.body))]
+    if isinstance(load, PointForce):
+        return [(point_name(plan, load.place), plan.velocity(load.place), None)]
+    return _along(plan, load)
+
+
+def _along(plan: VelocityPlan, load: SpreadLoad) -> list[Displaced]:
+    """Displaced points of a spread load: the middle of a uniform one, where its resultant acts; else both ends."""
+    a, b = (point_name(plan, place) for place in (load.start, load.end))
+    v, w = (plan.velocity(place) for place in (load.start, load.end))
+    if not _same(load.at_start, load.at_end):
+        return [(a, v, None), (b, w, None)]
+    middle = vector_of(map(plan.simple, times(Fraction(1, 2), plus(v, w))))
+    return [(f"middle of {a}, {b}", middle, None)]
+
+
+def _moved(moved: Vector | None, turned: Vector | None, size: int, delta: Node) -> tuple[Cell, ...]:
+    shift: tuple[Cell, ...] = ("",) * size if moved is None else tuple(x * delta for x in moved[:size])
+    if turned is None:
+        return (*shift, *("",) * (1 if size == 2 else 3))
+    return (*shift, *(x * delta for x in (turned[2:] if size == 2 else turned)))
+
+
+def point_name(plan: VelocityPlan, place: BodyPoint) -> str:
+    """A place by the name of the point of the body that is there."""
+    body, r = place
+    motion = plan.system.motion
+    if body is None:
+        return "the ground"
+    if is_node(body):
+        return body
+    named = [name for name, at in motion.points[body].items() if _same(at, r)]
+    given = [name for name in named if name not in ("origin", "center")]
+    if given:
+        return f"{body}.{given[0]}"
+    return f"mass centre of {body}" if _same(mass_properties(motion.scope, body).com, r) else body
+
+
+def _same(a: Vector, b: Vector) -> bool:
+    return all(is_zero(x - y) for x, y in zip(a, b, strict=True))
+
+
+# -- the equation --------------------------------------------------------------------------------------
+
+
+def _without(equation: WorkEquation) -> tuple[Piece, ...]:
+    return () if is_zero(equation.given) else (" (of the joint's reaction without its drive and spring)",)
+
+
+def _equations(equation: WorkEquation, symbol: Node, delta: Node) -> list[Statement]:
+    """R delta_R + sum of works = 0, and R."""
+    total: Scalar = sum((term.work for term in equation.terms), start=0)
+    own = symbol - equation.given
+    written = equation.plan.simple(total)
+    return [Formula((own * equation.along * delta + written * delta, 0)), Formula((symbol, equation.value))]
+
+
+def _narrow(head: Sequence[str], rows: Sequence[tuple[Cell, ...]]) -> Grid:
+    """The table without columns in which nothing stands, or only zeros; centres keep both coordinates."""
+    kept = [k for k in range(len(head)) if any(not _is_nothing(row[k]) for row in rows) or head[k].startswith("centre")]
+    return narrow_grid(head, rows, kept)
+
+
+def _is_nothing(cell: Cell) -> bool:
+    return cell == "" if isinstance(cell, str) else type(cell) is int and cell == 0

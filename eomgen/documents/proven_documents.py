@@ -1,0 +1,180 @@
+"""A document, the proof of its result -> the document with both, and a proof that it is printed as it was found."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import replace
+from functools import partial
+from random import Random
+from typing import Any
+
+from eomgen.documents.document import Document, quantities_of
+from eomgen.documents.read_back import page_read_back
+from eomgen.documents.rendering import drawn
+from eomgen.documents.statements import Equation, Listing, Matrix, Quantity, Statement, parts_of
+from eomgen.documents.text import cases_text, is_piecewise, side_text
+from eomgen.documents.texts_read import json_read_back, text_read_back
+from eomgen.errors import ExpressionError, NumberBeyond
+from eomgen.proof import Certificate, Check, Tally, differing
+from eomgen.symbolic.expression import LONGEST, Expression, Graph, Node, Scalar, order, parse, parse_unit, symbols_of
+from eomgen.symbolic.numeric import COMPUTED, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.print import to_text
+
+NAME = "formulas, read back as they are printed, are what they stand for"
+HOW = "50 digits"
+SHOWN = 60  # characters of a formula in a message
+TRIES = 12  # random values of the symbols of a formula, for one with a value
+CASE = re.compile(r"(?P<if_true>.*?)(?: else)? where (?P<left>.*) (?P<relation><=?) (?P<right>.*)")
+RELATION = {"<": "less", "<=": "less_equal"}
+
+
+def proven(document: Document, certificate: Certificate | None) -> Document:
+    """The document with the proof of what was found, and of its printed texts; None: none was requested."""
+    entries = document.entries
+    if certificate is not None:
+        certificate = _joined(certificate, _printed_as_found(document))
+    proof = None if certificate is None else certificate.as_dict()
+    return replace(document, certificate=certificate, entries=lambda: {**entries(), "certificate": proof})
+
+
+def proven_for_machines(document: Document) -> Document:
+    """The document with a proof of its entries too, where it has one; they are made only once."""
+    if document.certificate is None:
+        return document
+    entries, tally = document.entries(), Tally("texts for machines, read back, give their numbers", HOW)
+    for name, compared in _compared(quantities_of(entries).items(), document.parameters):
+        tally.add(name, compared)
+    bare = {name: x for name, x in entries.items() if name != "certificate"}
+    page = drawn(replace(document, certificate=None, entries=lambda: bare), "json")
+    certificate = _joined(document.certificate, (*tally.checks(), *json_read_back(document, bare, page)))
+    found = {**entries, "certificate": certificate.as_dict()}
+    return replace(document, certificate=certificate, entries=lambda: found)
+
+
+def proven_as(document: Document, form: str) -> Document:
+    """The document with a proof of the page that is made of it, read back, where it has one."""
+    if form == "json":
+        return proven_for_machines(document)
+    if document.certificate is None:
+        return document
+    bare = replace(document, certificate=None)
+    page = drawn(bare, form)
+    more = text_read_back(bare, page) if form == "text" else page_read_back(bare, page, form)
+    return replace(document, certificate=_joined(document.certificate, more))
+
+
+def _joined(certificate: Certificate, more: Iterable[Check]) -> Certificate:
+    """Certificate with further checks; where none of the result's checks could be made, only failed ones are added."""
+    return certificate + (x for x in more if certificate.ok is not None or x.status == "fails")
+
+
+def _printed_as_found(document: Document) -> Iterator[Check]:
+    """Every formula against the scalar that was printed; the text of a quantity against its number."""
+    tally = Tally(NAME, HOW)
+    statements = [statement for step in document.steps for statement in step.statements]
+    for x in dict.fromkeys(_formulas(document.equations, statements)):
+        tally.add(side_text(x)[:SHOWN], partial(_misread, x))
+    rows = (row for listing in statements if isinstance(listing, Listing) for row in listing.rows)
+    for name, compared in _compared(((row.name, row.quantity) for row in rows), document.parameters):
+        tally.add(name, compared)
+    return tally.checks()
+
+
+def _formulas(equations: Iterable[Equation], statements: Iterable[Statement]) -> Iterator[Node]:
+    """Every formula that is printed; plain numbers and symbols left out."""
+    sides = [side for equation in equations for side in (equation.left, equation.right)]
+    sides += [part for statement in statements for part in _parts(statement)]
+    return (x for x in sides if isinstance(x, Node) and x.args)
+
+
+def _parts(statement: Statement) -> list[Any]:
+    parts = parts_of(statement)
+    return [*parts, *(x for part in parts if isinstance(part, Matrix) for row in part.rows for x in row)]
+
+
+def _misread(x: Node) -> str:
+    """Message if a formula, read back as printed, is not what it stands for; else ""."""
+    try:
+        read = [(_read(text, meant), meant) for text, meant in _as_printed(x)]
+    except NumberBeyond as error:
+        raise NoValue(error.what) from error
+    except ExpressionError as error:
+        return error.what
+    return next(filter(None, (_unlike(found, meant) for found, meant in read if found is not meant)), "")
+
+
+def _as_printed(x: Scalar) -> Iterator[tuple[str, Scalar]]:
+    """(text, its formula): of a formula that has cases each of them, and both sides of its condition."""
+    if not is_piecewise(x):
+        yield side_text(x), x
+        return
+    for text in cases_text(x):
+        if not is_piecewise(x):
+            yield text.removesuffix(" otherwise"), x
+            return
+        condition, if_true, x = x.args
+        case = CASE.fullmatch(text)
+        if case is None or RELATION[case["relation"]] != condition.op:
+            raise ExpressionError(f"'{text}' is no case", 0)
+        yield case["if_true"], if_true
+        yield from zip((case["left"], case["right"]), condition.args, strict=True)
+
+
+def _read(text: str, meant: Scalar) -> Scalar:
+    """A text over the symbols of its formula; a multiplier, lam(floor, 2), is a symbol as a whole."""
+    if len(text) > LONGEST:
+        raise NoValue("too long to be read back")
+    if not isinstance(meant, Node):
+        return parse(text).evaluate({})
+    symbols = {x.name: x for x in symbols_of((meant,))}
+    symbols |= {to_text(x): x for x in order((meant,)) if x.op == "sampled"}
+    longest = max(map(len, symbols), default=0)
+    for k, name in enumerate([name for name in symbols if "(" in name]):
+        letter = f"lam{'_' * longest}{k}"
+        text, symbols[letter] = text.replace(name, letter), symbols[name]
+    return parse(text, longest=len(text)).evaluate({**symbols, "pi": meant.graph.pi})
+
+
+def _unlike(found: Scalar, meant: Scalar) -> str:
+    """Both numbers, where they differ at random values of the symbols; ""."""
+    random = Random(0)
+    symbols, arithmetic = symbols_of((found, meant)), fifty_digits()
+    for _ in range(TRIES):
+        state = {x: arithmetic.number(random.randint(1, 997)) / 499 for x in symbols}
+        try:
+            a, b = evaluate((found, meant), state, arithmetic)
+        except (NoValue, ZeroDivisionError):
+            continue
+        same = abs(a - b) <= COMPUTED * (abs(a) + abs(b)) + ZERO_AT_50
+        return "" if same else f"{float(a):.10g} against {float(b):.10g}"
+    raise NoValue("at none of the states tried it has a value")
+
+
+def _compared(
+    quantities: Iterable[tuple[str, Quantity]], values: Mapping[str, Any]
+) -> Iterator[tuple[str, Callable[[], str]]]:
+    """(name, difference between its text and its number) of those that have both, of parameters with values."""
+    for name, quantity in quantities:
+        text = quantity.exact
+        if text is None:
+            continue
+        try:
+            expression = parse(text, references=True, longest=len(text))
+        except NumberBeyond:
+            continue
+        except ExpressionError as error:
+            yield name, partial(str, f"{text[:SHOWN]}: {error.what}")
+            continue
+        if quantity.value is not None and not expression.calls and expression.names <= values.keys() | {"pi"}:
+            yield name, partial(_off, expression, quantity.unit or "1", quantity.value, values)
+
+
+def _off(expression: Expression, unit: str, right: float, values: Mapping[str, Any]) -> str:
+    """Message if the value of the text is not the number; else ""."""
+    graph, digits = Graph(), fifty_digits()
+    symbols = {name: graph.symbol(name) for name in sorted(expression.names - {"pi"})}
+    scalar = expression.evaluate({**symbols, "pi": graph.pi})
+    state = dict(zip(symbols.values(), evaluate([values[name] for name in symbols], {}, digits), strict=True))
+    found = float(evaluate((scalar,), state, digits)[0])
+    return differing(found / parse_unit(unit).size, right)

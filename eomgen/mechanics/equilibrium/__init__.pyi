@@ -1,0 +1,56 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.equilibrium`."""
+
+# The balance of a system at rest
+from eomgen.mechanics.equilibrium.equations import StaticEquations as StaticEquations
+
+# True if the constraints and drives leave degrees of freedom, and no unknown load acts along them
+from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom as has_degrees_of_freedom
+
+# The system over its rates, where a declared speed is not 0 at rest; else as it is
+from eomgen.mechanics.equilibrium.equations import over_rates as over_rates
+
+# The system of `over_rates`, with everything that moves with t held where it is at t = 0
+from eomgen.mechanics.equilibrium.equations import standing_system as standing_system
+
+# The equations of the system at rest, its drives held
+from eomgen.mechanics.equilibrium.equations import static_equations as static_equations
+
+# (the system with its driven coordinates at rest where they start, the names of those that the model moves)
+from eomgen.mechanics.equilibrium.equations import with_drives_held as with_drives_held
+
+# (the contacts that are open at the equilibrium nearest to the start, or stick there; what was assumed)
+from eomgen.mechanics.equilibrium.one_sided_contacts import contacts_at_rest as contacts_at_rest
+
+# Every equilibrium that is found
+from eomgen.mechanics.equilibrium.places import places_of_rest as places_of_rest
+from eomgen.mechanics.equilibrium.reactions import ReactionsOrWhy as ReactionsOrWhy
+
+# One reaction at an equilibrium
+from eomgen.mechanics.equilibrium.reactions import RestingReaction as RestingReaction
+
+# The unknowns of the loads for which the system is at rest where it starts
+from eomgen.mechanics.equilibrium.reactions import holding_of as holding_of
+
+# (reactions, each of them, why there are none)
+from eomgen.mechanics.equilibrium.reactions import reactions_or_why as reactions_or_why
+
+# Curve of equilibria
+from eomgen.mechanics.equilibrium.search import Curve as Curve
+
+# The equilibria of a system
+from eomgen.mechanics.equilibrium.search import Equilibria as Equilibria
+
+# One equilibrium
+from eomgen.mechanics.equilibrium.search import Equilibrium as Equilibrium
+
+# Every equilibrium that is found, the nearest to the guess first, with the statement if there may be others
+from eomgen.mechanics.equilibrium.search import all_equilibria as all_equilibria
+
+# The place at which static equations hold that is nearest to a guess (None: to the start)
+from eomgen.mechanics.equilibrium.search import nearest_equilibrium as nearest_equilibrium
+
+# Verdict on the stability of an equilibrium, with its reason
+from eomgen.mechanics.equilibrium.stability import Stability as Stability
+
+# States near a place: terms that do not vanish at it are almost the same there, and those that vanish are not 0
+from eomgen.mechanics.equilibrium.stability import states_beside as states_beside

@@ -1,0 +1,68 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.instant`."""
+
+# The motion of one body at one state, exactly
+from eomgen.mechanics.instant.kinematic_state import BodyMotion as BodyMotion
+
+# Velocities and accelerations of a system at one instant, as scalars of the parameters
+from eomgen.mechanics.instant.kinematic_state import KinematicState as KinematicState
+
+# Values at a state, in readable form; what is very long stays as it is
+from eomgen.mechanics.instant.kinematic_state import Readable as Readable
+
+# The motion of the bodies, of all of them where none is named; nodes of trusses are none
+from eomgen.mechanics.instant.kinematic_state import body_motions as body_motions
+
+# The motion of a point, seen from a body (or from the ground)
+from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
+
+# The readable values of a system at a state
+from eomgen.mechanics.instant.kinematic_state import readable_at as readable_at
+from eomgen.mechanics.instant.mechanism import FIXED as FIXED
+from eomgen.mechanics.instant.mechanism import POINT as POINT
+
+# A centre that two lines give, or two others that are at one place
+from eomgen.mechanics.instant.mechanism import FoundPoint as FoundPoint
+
+# A line on which a centre is
+from eomgen.mechanics.instant.mechanism import LineOf as LineOf
+
+# Rigid bodies in motion in the plane, at one configuration
+from eomgen.mechanics.instant.mechanism import Mechanism as Mechanism
+from eomgen.mechanics.instant.mechanism import PointPair as PointPair
+
+# The centre of rotation of a pair of blocks
+from eomgen.mechanics.instant.mechanism import RotationCenter as RotationCenter
+from eomgen.mechanics.instant.motion_kind import HELICAL as HELICAL
+
+# The centre of rotation of one body as its motion goes on
+from eomgen.mechanics.instant.motion_kind import Centrodes as Centrodes
+
+# The line on which a place runs
+from eomgen.mechanics.instant.motion_kind import Curve as Curve
+
+# The kind of motion of a body
+from eomgen.mechanics.instant.motion_kind import Kind as Kind
+
+# The kinds of motion of the bodies of a system
+from eomgen.mechanics.instant.motion_kind import Kinds as Kinds
+
+# The centrodes of all bodies that have them
+from eomgen.mechanics.instant.motion_kind import all_centrodes as all_centrodes
+
+# Values of the output functions in one system: the scene in which the functions are written
+from eomgen.mechanics.instant.quantities import Quantities as Quantities
+
+# True if a formula contains velocities or accelerations: functions of them, or rates of coordinates
+from eomgen.mechanics.instant.quantities import requests_motion as requests_motion
+
+# True if a formula calls functions that are found from this source
+from eomgen.mechanics.instant.quantities import requests_of as requests_of
+
+# A system at one configuration
+from eomgen.mechanics.instant.velocity_analysis import InstantKinematics as InstantKinematics
+
+# The model at its start, with what it gives of velocities and accelerations
+from eomgen.mechanics.instant.velocity_analysis import instant_kinematics_of as instant_kinematics_of
+
+# Number of degrees of freedom at the start by rank; bodies that only constraints hold are counted as free
+from eomgen.mechanics.instant.velocity_analysis import mobility_of as mobility_of

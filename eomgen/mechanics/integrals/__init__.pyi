@@ -1,0 +1,43 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.integrals`."""
+
+# A momentum of the whole system that stays constant, or the square of one
+from eomgen.mechanics.integrals.first_integrals import Constant as Constant
+
+# A function of the motion that stays constant
+from eomgen.mechanics.integrals.first_integrals import Integral as Integral
+
+# (T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ()
+from eomgen.mechanics.integrals.first_integrals import energy_integral as energy_integral
+
+# Components of momentum and angular momentum that stay constant and are not among those known
+from eomgen.mechanics.integrals.first_integrals import momenta_of_the_whole as momenta_of_the_whole
+
+# p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one
+from eomgen.mechanics.integrals.first_integrals import momentum_integrals as momentum_integrals
+
+# True for each function of q, u and t that is constant along every motion, in every piece
+from eomgen.mechanics.integrals.first_integrals import stay_constant as stay_constant
+
+# Extent in which all conserved momenta are constant; results that follow from them hold there
+from eomgen.mechanics.integrals.first_integrals import where_momenta_hold as where_momenta_hold
+
+# W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k
+from eomgen.mechanics.integrals.first_integrals import work_of_constant_forces as work_of_constant_forces
+
+# State at which a condition is satisfied, in closed form
+from eomgen.mechanics.integrals.laws import ClosedInstant as ClosedInstant
+
+# q(t) and u(t) of every coordinate and speed that has a law in closed form
+from eomgen.mechanics.integrals.laws import laws_of_motion as laws_of_motion
+
+# Expressions of positions that vanish: gaps of the constraints, and rates integrated from the start
+from eomgen.mechanics.integrals.laws import position_equations as position_equations
+
+# Every speed by one of them: u_j = share_j u_s + constant_j
+from eomgen.mechanics.integrals.speeds import Relations as Relations
+
+# (the same, in which pieces the integrals hold that give it)
+from eomgen.mechanics.integrals.speeds import rates_and_extent as rates_and_extent
+
+# Relations between the speeds from momenta and constraint rows, all linear in them; None if several stay free
+from eomgen.mechanics.integrals.speeds import relations_of as relations_of

@@ -1,0 +1,69 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.linearization`."""
+
+# The equations of motion of a system, and their first derivatives, as graph scalars
+from eomgen.mechanics.linearization.first_order import FirstOrder as FirstOrder
+
+# The equations of a system to first order
+from eomgen.mechanics.linearization.first_order import first_order_of as first_order_of
+
+# (d x'/d x, d x'/d w) at a state, x = (q, u)
+from eomgen.mechanics.linearization.first_order import slopes_at as slopes_at
+from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
+
+# The equations of small motions about a reference
+from eomgen.mechanics.linearization.linearization import SmallMotions as SmallMotions
+
+# The equations of small motions of a system
+from eomgen.mechanics.linearization.linearization import small_motions_of as small_motions_of
+
+# A of x' = A x, x = (q_i, u_i)
+from eomgen.mechanics.linearization.linearization import state_matrix_of as state_matrix_of
+from eomgen.mechanics.linearization.modes import MATRICES as MATRICES
+
+# speeds of matrices whose entries are written as a book does
+from eomgen.mechanics.linearization.modes import MOST_WRITTEN as MOST_WRITTEN
+
+# One frequency: the mode in numbers, and in closed form where it has one
+from eomgen.mechanics.linearization.modes import Frequency as Frequency
+
+# One mode
+from eomgen.mechanics.linearization.modes import Mode as Mode
+
+# Eigenvalues, frequencies, shapes, transfer functions and stability that follow from small motions
+from eomgen.mechanics.linearization.modes import Modes as Modes
+
+# All modes: those that oscillate first, the slowest of them first
+from eomgen.mechanics.linearization.modes import Spectrum as Spectrum
+
+# Derivatives of the reference and of the matrices with respect to a parameter
+from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes as ParameterSlopes
+
+# c0 + c1 s + c2 s^2 + ...: coefficients in that order, of the parameters, or floats
+from eomgen.mechanics.linearization.polynomial import Polynomial as Polynomial
+
+# A symbol s that neither the entries nor the coordinates have
+from eomgen.mechanics.linearization.polynomial import laplace_variable as laplace_variable
+from eomgen.mechanics.linearization.reduction import NAME as NAME
+
+# M du_i' + C du_i + K dq_i = B dw, dq_i' = F dq_i + E du_i
+from eomgen.mechanics.linearization.reduction import LinearEquations as LinearEquations
+from eomgen.mechanics.linearization.reference import EQUILIBRIUM as EQUILIBRIUM
+from eomgen.mechanics.linearization.reference import STEADY as STEADY
+
+# The steady motions that one belongs to
+from eomgen.mechanics.linearization.reference import Family as Family
+
+# The state about which the equations are linearized
+from eomgen.mechanics.linearization.reference import ReferenceMotion as ReferenceMotion
+
+# A, B, C_y, D_y as rows, of scalars of the parameters or of floats
+from eomgen.mechanics.linearization.transfer import StateMatrices as StateMatrices
+
+# q/w = above(s)/below(s), of one coordinate and one input
+from eomgen.mechanics.linearization.transfer import TransferFunction as TransferFunction
+
+# State-space matrices in scalars of the parameters; None where unknown in closed form, or too much work
+from eomgen.mechanics.linearization.transfer import exact_state_space as exact_state_space
+
+# The state space whose outputs are states, or rates of them
+from eomgen.mechanics.linearization.transfer import with_outputs as with_outputs

@@ -1,0 +1,62 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.start`."""
+
+# One way to close the loops
+from eomgen.mechanics.start.assembly_modes import AssemblyMode as AssemblyMode
+
+# The ways to close the loops of a model at its start
+from eomgen.mechanics.start.assembly_modes import Branches as Branches
+
+# The branches with the start's independent coordinates; None where none follow, or too many
+from eomgen.mechanics.start.assembly_modes import branches_of_loops as branches_of_loops
+
+# Start of a motion; each result is computed at its first use
+from eomgen.mechanics.start.exact import ExactStart as ExactStart
+
+# Values of scalars at the model's parameters
+from eomgen.mechanics.start.exact import ScalarValues as ScalarValues
+from eomgen.mechanics.start.exact import Seeds as Seeds
+
+# The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6
+from eomgen.mechanics.start.exact import known_exactly as known_exactly
+
+# The parameters that have values
+from eomgen.mechanics.start.exact import known_parameters as known_parameters
+
+# t, q and u at the start, a number where there is no closed form; None where it is not known
+from eomgen.mechanics.start.exact import known_start as known_start
+
+# Derivatives of the parameters with respect to one of them: its own, and those of parameters that depend on it
+from eomgen.mechanics.start.exact import parameter_seeds as parameter_seeds
+
+# The scalars as numbers, None where something in one has no value; nan where it has none itself
+from eomgen.mechanics.start.exact import shown_numbers as shown_numbers
+
+# Derivatives of coordinates and speeds at the start with respect to parameters, or to the start of one of them
+from eomgen.mechanics.start.exact import start_seeds as start_seeds
+
+# Values, with 50 digits, at which all scalars have one: of the parameters, and of what else stands in them
+from eomgen.mechanics.start.exact import values_for as values_for
+
+# Values of the parameters with 50 digits: the model's own, else random ones; without `rng` those with a value
+from eomgen.mechanics.start.exact import values_of_parameters as values_of_parameters
+
+# Values of t, q, u, a at rest at the start: exact scalars of the parameters
+from eomgen.mechanics.start.exact import values_where_at_rest as values_where_at_rest
+
+# Start of a motion in numbers, and the changes that the constraints made necessary
+from eomgen.mechanics.start.state import Start as Start
+
+# A value of every symbol that stands in the constraints, at the start, with 50 digits
+from eomgen.mechanics.start.state import begun_state as begun_state
+
+# Refuses coordinates of which so few digits are left that a step or a difference is lost
+from eomgen.mechanics.start.state import refuse_lost as refuse_lost
+
+# Every coordinate and independent speed at the start, at which all constraints hold
+from eomgen.mechanics.start.state import start_of_motion as start_of_motion
+
+# Every speed at the start, as functions of the parameters and of where it starts
+from eomgen.mechanics.start.state import start_speeds as start_speeds
+
+# The values of `start_of_motion`, with its arguments and errors
+from eomgen.mechanics.start.state import start_state as start_state

@@ -1,0 +1,74 @@
+"""Door of the folder: what other folders may import from `eomgen.mechanics.statics`."""
+
+# Condition for a contact to be in the assumed state
+from eomgen.mechanics.statics.contacts import RestCondition as RestCondition
+
+# Conditions of the contacts that can end or slide, where their reactions are determinate
+from eomgen.mechanics.statics.contacts import conditions_of as conditions_of
+
+# The contacts that the start values leave open, and those that push against their normals there
+from eomgen.mechanics.statics.contacts import contacts_at_start as contacts_at_start
+
+# Every contact with dry friction sticks
+from eomgen.mechanics.statics.contacts import modes_at_rest as modes_at_rest
+
+# Contacts with dry friction that touch at the start and do not slide there, by name: friction has no sign yet
+from eomgen.mechanics.statics.contacts import resting_contacts as resting_contacts
+from eomgen.mechanics.statics.forces_in_sections import KINDS as KINDS
+
+# Extreme of the bending moment within a piece, where V = 0
+from eomgen.mechanics.statics.forces_in_sections import Extreme as Extreme
+
+# Everything that acts on one body, in its own axes, with the values of the reactions
+from eomgen.mechanics.statics.forces_in_sections import MemberLoads as MemberLoads
+
+# N, V and M along one body
+from eomgen.mechanics.statics.forces_in_sections import SectionForces as SectionForces
+
+# The section forces between two stations, polynomials in s = x - start
+from eomgen.mechanics.statics.forces_in_sections import SectionPiece as SectionPiece
+
+# Place of a reaction, body axes: of a couple that of the forces of the same constraint, None where it has none
+from eomgen.mechanics.statics.forces_in_sections import place_of as place_of
+
+# N, V and M along a body in the plane
+from eomgen.mechanics.statics.forces_in_sections import section_forces as section_forces
+
+# X for a unit load that travels along the spans
+from eomgen.mechanics.statics.influence import InfluenceLine as InfluenceLine
+
+# A straight part of the way of the load, on which the influence line is straight
+from eomgen.mechanics.statics.influence import InfluenceSpan as InfluenceSpan
+
+# The influence line of a reaction, a member force or a section force
+from eomgen.mechanics.statics.influence import influence_line as influence_line
+
+# The axis of a body
+from eomgen.mechanics.statics.member_axis import MemberAxis as MemberAxis
+
+# One load of the structure
+from eomgen.mechanics.statics.virtual_work import Acting as Acting
+
+# One reaction, or one unknown of the loads
+from eomgen.mechanics.statics.virtual_work import StaticReaction as StaticReaction
+
+# A structure at rest
+from eomgen.mechanics.statics.virtual_work import StaticReactions as StaticReactions
+
+# A sum of indeterminate reactions that is determinate
+from eomgen.mechanics.statics.virtual_work import StaticSum as StaticSum
+
+# along * R + sum of works = 0
+from eomgen.mechanics.statics.virtual_work import WorkEquation as WorkEquation
+
+# The virtual work of one load, not 0
+from eomgen.mechanics.statics.virtual_work import WorkTerm as WorkTerm
+
+# Every load: forces, couples, line loads, weights at the mass centres, drives and springs of joints
+from eomgen.mechanics.statics.virtual_work import loads_at_rest as loads_at_rest
+
+# One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest
+from eomgen.mechanics.statics.virtual_work import released_in as released_in
+
+# Every reaction of a structure at a configuration
+from eomgen.mechanics.statics.virtual_work import static_reactions_of as static_reactions_of

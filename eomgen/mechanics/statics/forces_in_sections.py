@@ -1,0 +1,452 @@
+"""Reactions, body -> SectionForces: normal force, shear force and bending moment along a body that is a beam.
+
+The forces before the section at x have the resultant R and the moment T about the section, counter-clockwise; t is
+along the axis, n to its left:
+
+    N = -R . t,   V = R . n,   M = -T;        dN/dx = -q_t,   dV/dx = q_n,   dM/dx = V
+
+N is positive as tension, V where it turns the piece on which it acts clockwise, M where it stretches the right-hand
+fibre: of a beam drawn from left to right the lower one. The weight of a rod, and its inertia, is spread along it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
+from functools import cached_property
+from itertools import pairwise
+
+from eomgen.errors import DerivationError
+from eomgen.frozen import dataclass
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.free_bodies import Axes, Component, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.kinematics import field_of, mass_properties
+from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
+from eomgen.model import Couple, PointForce
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Scalar,
+    Vector,
+    apply,
+    dot,
+    is_zero,
+    minus,
+    over,
+    plus,
+    sqrt,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.print import to_text
+from eomgen.symbolic.solve import vanishes
+
+KINDS = ("axial_force", "shear_force", "bending_moment")
+HALF, SIXTH = Fraction(1, 2), Fraction(1, 6)
+
+
+@dataclass(frozen=True)
+class Action:
+    """A force and a couple at one place of the axis, body axes."""
+
+    x: Scalar
+    force: Vector
+    couple: Scalar
+
+
+@dataclass(frozen=True)
+class Spread:
+    """A load per length from x = start to x = end, body axes: q = at_start + (x - start) slope."""
+
+    start: Scalar
+    end: Scalar
+    at_start: Vector
+    slope: Vector
+
+    def at(self, x: Scalar) -> Vector:
+        return plus(self.at_start, times(x - self.start, self.slope))
+
+
+@dataclass(frozen=True)
+class SectionPiece:
+    """The section forces between two stations, polynomials in s = x - start.
+
+    Args:
+        start, end: along the axis [m].
+        leg: on which it lies.
+        N, V, M: coefficients of 1, s, s^2, ...
+    """
+
+    start: Scalar
+    end: Scalar
+    leg: Leg
+    N: tuple[Scalar, ...]
+    V: tuple[Scalar, ...]
+    M: tuple[Scalar, ...]
+
+    def value(self, kind: str, x: Scalar) -> Scalar:
+        """One of KINDS at x."""
+        total: Scalar = 0
+        for c in reversed(self.coefficients(kind)):
+            total = total * (x - self.start) + c
+        return total
+
+    def coefficients(self, kind: str) -> tuple[Scalar, ...]:
+        return {"axial_force": self.N, "shear_force": self.V, "bending_moment": self.M}[kind]
+
+
+@dataclass(frozen=True)
+class Extreme:
+    """Extreme of the bending moment within a piece, where V = 0."""
+
+    x: Scalar
+    M: Scalar
+
+
+@dataclass(frozen=True)
+class SectionForces:
+    """N, V and M along one body.
+
+    Args:
+        axis: of the body.
+        pieces: from station to station.
+    """
+
+    axis: MemberAxis
+    pieces: tuple[SectionPiece, ...]
+
+    @property
+    def sizes(self) -> Sizes:
+        return self.axis.sizes
+
+    def value(self, kind: str, x: Scalar, side: str = "") -> Scalar:
+        """One of KINDS at a distance from the start.
+
+        Args:
+            side: "before" or "after", where it jumps.
+        Raises:
+            DerivationError: x is beyond the ends, or a place where it jumps and no side is given.
+        """
+        before = [p for p in self.pieces if self.sizes.sign(x - p.start) > 0 and self.sizes.sign(p.end - x) >= 0]
+        after = [p for p in self.pieces if self.sizes.sign(x - p.start) >= 0 and self.sizes.sign(p.end - x) > 0]
+        found = {
+            name: self.sizes.shortest(pieces[0].value(kind, x))
+            for name, pieces in (("before", before), ("after", after))
+            if pieces
+        }
+        if not found:
+            ends = " to ".join(to_text(x) for x in self.axis.ends)
+            raise DerivationError(
+                f"{kind}({self.axis.body}, {to_text(x)}): the body goes from x = {ends}",
+                fix="ask at a place of the body",
+            )
+        if side and side not in found:
+            raise DerivationError(
+                f"{kind}({self.axis.body}, {to_text(x)}, {side}): there is nothing {side} its end",
+                fix="ask at a place of the body",
+            )
+        values = [found[side]] if side else list(found.values())
+        if len(values) == 2 and not vanishes(values[0] - values[1]):
+            requested, jump = f"{kind}({self.axis.body}, {to_text(x)}", " to ".join(map(to_text, values))
+            raise DerivationError(
+                f"{requested}) jumps there from {jump}", fix=f"write {requested}, before) or {requested}, after)"
+            )
+        return values[0]
+
+    @cached_property
+    def extremes(self) -> tuple[Extreme, ...]:
+        """The zeros of V within the pieces, those that have a closed form and whose place is known."""
+        return tuple(e for piece in self.pieces for e in self._zeros(piece))
+
+    def _zeros(self, piece: SectionPiece) -> Iterable[Extreme]:
+        for root in _roots(piece.V, self.sizes):
+            try:
+                inside = self.sizes.sign(root) > 0 and self.sizes.sign(piece.end - piece.start - root) > 0
+            except DerivationError:
+                continue
+            if inside:
+                x = self.sizes.shortest(piece.start + root)
+                yield Extreme(x, self.sizes.shortest(piece.value("bending_moment", x)))
+
+
+def section_forces(reactions: Reactions, body: str) -> SectionForces:
+    """N, V and M along a body in the plane.
+
+    Raises:
+        DerivationError: something acts off its axis, or at no place; its mass is no rod's; a reaction is indeterminate.
+    """
+    system = reactions.balance.system
+    motion = system.motion
+    if motion.scope.model.space != "plane":
+        raise DerivationError(
+            "section forces are found in the plane", f"bodies.{body}", fix="fix the beam in a model of the plane"
+        )
+    sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
+    loads = MemberLoads(reactions, body, sizes)
+    actions, spreads = loads.actions, loads.spreads
+    axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
+    placed = [Action(_on_axis(axis, place), force, couple) for place, force, couple in actions]
+    spread = [part for line in spreads for part in _spread(axis, line)]
+    return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
+
+
+# -- along the axis ----------------------------------------------------------------------------------
+
+
+def _on_axis(axis: MemberAxis, place: Vector) -> Scalar:
+    x = axis.distance(place)
+    if x is None:
+        where = ", ".join(to_text(component) for component in place[:2])
+        raise DerivationError(
+            f"something acts on '{axis.body}' at ({where}), off the line along which it is a beam",
+            f"bodies.{axis.body}",
+            "let its points, or its `line`, follow the bar",
+        )
+    return x
+
+
+def _spread(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
+    """A line load as a function of x, from its first place to its last along the axis."""
+    a, b = _on_axis(axis, line[0]), _on_axis(axis, line[1])
+    length = axis.sizes.simple(b - a)
+    if axis.sizes.sign(length) < 0:
+        a, b, length, line = b, a, -length, (line[1], line[0], line[3], line[2])
+    r = minus(line[1], line[0])
+    if not vanishes(axis.sizes.simple(dot(r, r) - length * length)):
+        raise DerivationError(
+            f"a line load on '{axis.body}' cuts a corner of its axis",
+            f"bodies.{axis.body}",
+            "give a load for each straight part",
+        )
+    slope = vector_of(axis.sizes.simple(over(y - x, length)) for x, y in zip(line[2], line[3], strict=True))
+    yield Spread(a, b, line[2], slope)
+
+
+def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> Iterable[SectionPiece]:
+    """Pieces from station to station; all forces before a piece are summed to one force and one moment."""
+    sizes = axis.sizes
+    stations = _stations(axis, actions, spreads)
+    R: Vector = ZERO
+    T: Scalar = 0
+    for start, end in pairwise(stations):
+        leg = _leg(axis, start, end)
+        for action in actions:
+            if sizes.sign(action.x - start) == 0:
+                R, T = plus(R, action.force), T + action.couple
+        over_it = [s for s in spreads if sizes.sign(start - s.start) >= 0 and sizes.sign(s.end - end) >= 0]
+        q, slope = ZERO, ZERO
+        for s in over_it:
+            q, slope = plus(q, s.at(start)), plus(slope, s.slope)
+        piece = _piece(sizes, (start, end), leg, (R, T, q, slope))
+        yield piece
+        length = end - start
+        R = vector_of(
+            sizes.simple(r + length * a + HALF * length * length * b) for r, a, b in zip(R, q, slope, strict=True)
+        )
+        T = sizes.simple(-piece.value("bending_moment", end))
+
+
+def _piece(
+    sizes: Sizes, ends: tuple[Scalar, Scalar], leg: Leg, acting: tuple[Vector, Scalar, Vector, Vector]
+) -> SectionPiece:
+    """N, V, M from the resultant R and moment T before, and the load q + slope s."""
+    R, T, q, slope = acting
+    t, n = leg.along, leg.left
+    N = (-dot(R, t), -dot(q, t), -HALF * dot(slope, t))
+    V = (dot(R, n), dot(q, n), HALF * dot(slope, n))
+    M = (-T, dot(R, n), HALF * dot(q, n), SIXTH * dot(slope, n))
+    return SectionPiece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
+
+
+def _stations(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Spread]) -> list[Scalar]:
+    """Distances at which a force, a load or a leg begins or ends, in order."""
+    sizes = axis.sizes
+    places = [*axis.ends, *(leg.x for leg in axis.legs), *(a.x for a in actions)]
+    places += [x for s in spreads for x in (s.start, s.end)]
+    found: list[Scalar] = []
+    for x in places:
+        k = 0
+        while k < len(found) and sizes.sign(x - found[k]) > 0:
+            k += 1
+        if k == len(found) or sizes.sign(found[k] - x) > 0:
+            found.insert(k, x)
+    return found
+
+
+def _leg(axis: MemberAxis, start: Scalar, end: Scalar) -> Leg:
+    """The leg on which a piece lies."""
+    before = [leg for leg in axis.legs if axis.sizes.sign(start - leg.x) >= 0]
+    return before[-1] if before else axis.legs[0]
+
+
+def _roots(V: tuple[Scalar, ...], sizes: Sizes) -> list[Scalar]:
+    """Zeros of c0 + c1 s + c2 s^2, as far as its coefficients are not 0 at the model's values."""
+    c0, c1, c2 = V
+    if _is_nothing(c2, sizes):
+        return [] if _is_nothing(c1, sizes) else [sizes.simple(over(-c0, c1))]
+    square = sizes.simple(c1 * c1 - 4 * c0 * c2)
+    try:
+        if sizes.sign(square) < 0:
+            return []
+    except DerivationError:
+        return []
+    return [sizes.simple(over(-c1 + k * sqrt(square), 2 * c2)) for k in (1, -1)]
+
+
+def _is_nothing(x: Scalar, sizes: Sizes) -> bool:
+    """True if a scalar vanishes, identically or at the model's values."""
+    try:
+        return vanishes(x) or sizes.sign(x) == 0
+    except DerivationError:  # it has no value
+        return False
+
+
+# -------- member loads ----------------------------------------------------------------------------------------
+# Reactions, body -> MemberLoads: what acts along a beam, forces and couples at places, loads per length.
+#
+# Reactions with their values, loads, drives and springs of joints; the weight and inertia of a rod, m/L (g - a),
+# which is a linear function of the place. All in the axes of the body.
+
+
+def place_of(components: Sequence[Component], effect: Effect, owner: str) -> Vector | None:
+    """Place of a reaction, body axes: of a couple that of the forces of the same constraint, None where it has none."""
+    if effect.place is not None:
+        return effect.place
+    mine = (e for c in components if c.owner == owner for e in c.effects if e.link == effect.link)
+    return next((e.place for e in mine if e.place is not None), None)
+
+
+_At = tuple[Vector, Vector, Scalar]
+"""(place, force, couple), body axes."""
+MemberLoad = tuple[Vector, Vector, Vector, Vector]
+"""(start, end, load per length at the start, at the end), body axes."""
+
+
+@dataclass(frozen=True)
+class MemberLoads:
+    """Everything that acts on one body, in its own axes, with the values of the reactions."""
+
+    reactions: Reactions
+    body: str
+    sizes: Sizes
+
+    @cached_property
+    def actions(self) -> list[_At]:
+        """Forces and couples at places; those at one place together."""
+        found: list[_At] = []
+        for place, force, couple in (self._at(effect) for effect in self._effects()):
+            same = next((k for k, (p, _, _) in enumerate(found) if self._is_zero(minus(p, place))), None)
+            if same is None:
+                found.append((place, force, couple))
+            else:
+                _, f, c = found[same]
+                found[same] = (place, plus(f, force), c + couple)
+        return [(place, self._simple(f), self.sizes.simple(c)) for place, f, c in found]
+
+    @cached_property
+    def spreads(self) -> list[MemberLoad]:
+        """Distributed loads, and the weight and inertia of a rod."""
+        found = []
+        for applied in self._system.loads.applied:
+            for line in applied.spread:
+                if line.start[0] == self.body:
+                    found.append((line.start[1], line.end[1], self._turned(line.at_start), self._turned(line.at_end)))
+        return found + self._of_mass()
+
+    # -- forces and couples ------------------------------------------------------------------------
+
+    def _effects(self) -> Iterable[Effect]:
+        """Reactions with their values, loads, drives and springs: what acts at places of the body."""
+        system, axes = self._system, Axes(self._system.motion)
+        link = system.motion.index[self.body]
+        for j, component in enumerate(self.reactions.components):
+            for effect in (*component.effects, *component.friction_effects):
+                if effect.link == link and not (effect.place is None and effect.beyond is not None):
+                    place = self._place_of(effect, component.owner)
+                    place = place if effect.beyond is None else plus(place, effect.beyond)
+                    yield replace(effect, place=place).times(self.reactions.value(j))
+        for force in system.loads.applied:
+            if not force.spread and not system.scope.model.forces[force.name].by_mass:
+                placed = [load for load in force.loads if isinstance(load, (PointForce, Couple))]
+                effects = [e for load in placed for e in effects_of_load(axes, load) if e.link == link]
+                yield from (self._placed(effect, f"the force '{force.name}'") for effect in effects)
+        yield from (effect for effect in joint_effects(system) if effect.link == link)
+
+    def _place_of(self, effect: Effect, owner: str) -> Vector:
+        """Place of a reaction: of a couple that of the forces of the same constraint."""
+        place = place_of(self.reactions.components, effect, owner)
+        return self._placed(replace(effect, place=place), f"the couple of '{owner}'").place or ZERO
+
+    def _placed(self, effect: Effect, what: str) -> Effect:
+        if effect.place is None:
+            raise DerivationError(
+                f"{what} acts on '{self.body}' at no point: its section forces depend on where",
+                f"bodies.{self.body}",
+                "give the couple its `point`",
+            )
+        return effect
+
+    def _at(self, effect: Effect) -> _At:
+        assert effect.place is not None, "placed before"
+        return effect.place, self._turned(effect.force), effect.couple[2]
+
+    # -- mass --------------------------------------------------------------------------------------
+
+    def _of_mass(self) -> list[MemberLoad]:
+        """m/L (g - a) along a rod; a linear function of the place."""
+        system = self._system
+        mass = mass_properties(system.scope, self.body)
+        if is_zero(mass.m):
+            return []
+        ends = self._ends_of_rod()
+        field, motion = field_of(system.motion, self.body), system.motion
+        if ends is None:
+            inertia = field.acceleration(motion.position((self.body, mass.com)))
+            if self._is_zero((*minus(self._weight(), inertia), field.e[2])):
+                return []
+            what = f"how the mass of '{self.body}' is spread along it is not known"
+            raise DerivationError(
+                what, f"bodies.{self.body}", 'give it the shape "rod", or no mass and a distributed load'
+            )
+        first, last = ends
+        r = minus(last, first)
+        per_length = over(mass.m, sqrt(self.sizes.simple(dot(r, r))))
+        felt = [minus(self._weight(), field.acceleration(motion.position((self.body, p)))) for p in ends]
+        at_first, at_last = (self._turned(times(per_length, g)) for g in felt)
+        return [] if self._is_zero((*at_first, *at_last)) else [(first, last, at_first, at_last)]
+
+    def _ends_of_rod(self) -> tuple[Vector, Vector] | None:
+        points = self._system.motion.points[self.body]
+        shape = self._system.scope.model.bodies[self.body].shape
+        names = () if shape is None else shape.point_names
+        return (points["start"], points["end"]) if {"start", "end"} <= set(names) else None
+
+    def _weight(self) -> Vector:
+        """The acceleration fields that act on the body's mass, ground axes."""
+        system = self._system
+        total = system.loads.fields
+        m = mass_properties(system.scope, self.body).m
+        for force in system.loads.applied:
+            if system.scope.model.forces[force.name].by_mass:
+                for load in force.loads:
+                    if isinstance(load, PointForce) and load.place[0] == self.body:
+                        total = plus(total, vector_of(over(x, m) for x in load.force))
+        return total
+
+    # -- axes --------------------------------------------------------------------------------------
+
+    @property
+    def _system(self) -> System:
+        return self.reactions.balance.system
+
+    def _turned(self, vector: Vector) -> Vector:
+        """Vector in body axes of one in ground axes."""
+        return self._simple(apply(transposed(self._system.motion.link(self.body).pose.R), vector))
+
+    def _simple(self, vector: Vector) -> Vector:
+        return vector_of(self.sizes.simple(x) for x in vector)
+
+    def _is_zero(self, scalars: Sequence[Scalar]) -> bool:
+        return all(vanishes(self.sizes.simple(x)) for x in scalars)

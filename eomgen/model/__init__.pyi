@@ -1,0 +1,464 @@
+"""Door of the room: what other rooms may import from `eomgen.model`."""
+
+# The parameters, each after those in its expression; and the rings of those that need one another
+from eomgen.model.arithmetic import in_order as in_order
+
+# The value of an expression at these values (`pi` among them); None with other names, or without a value
+from eomgen.model.arithmetic import value_of as value_of
+
+# A model in the making. Parts that could not be read are None; what reading found is in `found`
+from eomgen.model.catalog import Catalog as Catalog
+
+# True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors)
+from eomgen.model.checks.bodies import possible as possible
+
+# A body made of pieces: its mass, mass centre and inertia about it, body axes
+from eomgen.model.composite import Composite as Composite
+
+# One piece where it is in the body
+from eomgen.model.composite import PlacedPiece as PlacedPiece
+
+# Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre
+from eomgen.model.composite import about as about
+
+# The whole body
+from eomgen.model.composite import composite_of as composite_of
+
+# k A
+from eomgen.model.composite import matrix_times as matrix_times
+
+# Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`
+from eomgen.model.composite import pose_of as pose_of
+
+# The line of a body, on which a point stays
+from eomgen.model.constraints.base import BodyLine as BodyLine
+
+# A constraint between bodies, or between coordinates
+from eomgen.model.constraints.base import Constraint as Constraint
+
+# A line of the plane, or a plane: through `at`, in the axes of `on`; at None: where the point stands first
+from eomgen.model.constraints.base import FlatSurface as FlatSurface
+
+# The groove that a skate's edge cuts along `along` of the body `on`, in ice of a normal (ground axes; None: z)
+from eomgen.model.constraints.base import Groove as Groove
+
+# Two things that touch; `sticks`: they do not slide on one another
+from eomgen.model.constraints.base import Meeting as Meeting
+
+# A circle or ball about `at`, in the axes of `on`; radius None: that of the shape of `on`, about its origin
+from eomgen.model.constraints.base import RoundSurface as RoundSurface
+
+# A thread, straight from stop to stop: a string or a link
+from eomgen.model.constraints.base import Thread as Thread
+
+# A point of a body: "rod.end"
+from eomgen.model.constraints.base import TouchingPoint as TouchingPoint
+
+# A ball, in the plane a disc; with an axis a thin wheel, with a tube the tyre about its rim; an ellipsoid
+from eomgen.model.constraints.base import TouchingRound as TouchingRound
+
+# Equilibrium of a node without mass: nobody declares it, and its multiplier is 0
+from eomgen.model.constraints.equation import NodeBalance as NodeBalance
+
+# The two nodes of tension(T, n1-n2) or tension(T, n1, n2); None where it names no two
+from eomgen.model.constraints.link import ends_requested as ends_requested
+
+# The trusses of a model in parts, by name
+from eomgen.model.constraints.link import trusses_of as trusses_of
+from eomgen.model.constraints.row import AXIS_NAMES as AXIS_NAMES
+
+# One scalar row of a constraint
+from eomgen.model.constraints.row import ConstraintRow as ConstraintRow
+
+# A function of the configuration, positive until a motion ends where it vanishes; what is so there, in words
+from eomgen.model.constraints.row import Edge as Edge
+
+# A point of the string's path, or a round thing that it lies on
+from eomgen.model.constraints.strand import Stop as Stop
+
+# The straight string between two stops
+from eomgen.model.constraints.strand import Strand as Strand
+
+# A constraint, or the joint of a body on a path
+from eomgen.model.contacts import Contact as Contact
+
+# Every constraint that can end or has friction, and every body with friction on its path
+from eomgen.model.contacts import contacts_of as contacts_of
+
+# The pieces of the path on which a body is; () where it is on none
+from eomgen.model.contacts import pieces_of as pieces_of
+
+# Every constraint with dry friction, and every body on a path of which a piece has it
+from eomgen.model.contacts import rough_contacts as rough_contacts
+
+# {speed: the rates that go with it} of those that have a `start`, or share rates with one that has
+from eomgen.model.declared_speeds import begun_speeds as begun_speeds
+
+# "did you mean 'forearm'?", or "" where nothing is near
+from eomgen.model.diagnostics import nearest as nearest
+
+# A part in words: "the joint of body 'hand'", "parameter 'm'"
+from eomgen.model.diagnostics import whereabouts as whereabouts
+
+# The dimensions that follow from every expression of the model, each examined once
+from eomgen.model.dimensions import inferred as inferred
+
+# {name: unit} of what has none in the file, where the expressions say what it must be
+from eomgen.model.dimensions import inferred_units as inferred_units
+
+# The names of all coordinates that move as given functions of time
+from eomgen.model.driven import driven_coordinates as driven_coordinates
+
+# {coordinate: the constraints that give it as a function of time}, of those that have one
+from eomgen.model.driven import driving_constraints as driving_constraints
+
+# A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
+from eomgen.model.driven import law_of as law_of
+
+# event of a run
+from eomgen.model.fields import EVERY as EVERY
+
+# The place at which all forces balance, instead of an instant
+from eomgen.model.fields import AtRest as AtRest
+
+# A value that a rule reads at once (an expression, a vector, a name), and where it stands
+from eomgen.model.fields import Leaf as Leaf
+
+# A read-only mapping that keeps its order; two in another order are not equal (the order of q is a fact)
+from eomgen.model.fields import Table as Table
+
+# left = right, as it was written
+from eomgen.model.fields import WrittenEquation as WrittenEquation
+
+# Any action of a force, as it is declared
+from eomgen.model.forces.base import Act as Act
+
+# A couple on a body, in the axes of the ground or of the body that `axes` names; one entry: about z [N m]
+from eomgen.model.forces.base import CoupleOn as CoupleOn
+
+# Action between two points, or a couple that turns two bodies relative to one another
+from eomgen.model.forces.base import Element as Element
+
+# A potential energy, or a kinetic one, without a point of application [J]
+from eomgen.model.forces.base import GivenEnergy as GivenEnergy
+
+# A force per length on a body from one of its points to another, linear between, ground axes [N/m]
+from eomgen.model.forces.base import PushAlongLine as PushAlongLine
+
+# A force at a point, in the axes of the ground or of the body that `axes` names [N]
+from eomgen.model.forces.base import PushAt as PushAt
+
+# An acceleration of the ground's axes that every mass of the bodies feels; None: of all bodies [m/s^2]
+from eomgen.model.forces.base import PushOfMass as PushOfMass
+
+# A generalized force on a coordinate, without a point of application [N or N m]
+from eomgen.model.forces.base import PushOnCoordinate as PushOnCoordinate
+
+# (body or None for the ground, place in its axes)
+from eomgen.model.forces.load import BodyPoint as BodyPoint
+
+# A couple on a body; `axes` names the body in whose axes it is written, None the ground's [N m]
+from eomgen.model.forces.load import Couple as Couple
+
+# A generalized force along a coordinate
+from eomgen.model.forces.load import GeneralizedForce as GeneralizedForce
+
+# Any load
+from eomgen.model.forces.load import Load as Load
+
+# A force on a body at a place of it; `axes` names the body in whose axes it is written, None the ground's [N]
+from eomgen.model.forces.load import PointForce as PointForce
+
+# A load at a place: a force or a couple
+from eomgen.model.forces.load import Push as Push
+
+# A force per length on a body along the straight line between two places of it, linear, ground axes [N/m]
+from eomgen.model.forces.load import SpreadLoad as SpreadLoad
+
+# An acceleration field that acts on every mass of the model: a weight m g at every mass centre [m/s^2]
+from eomgen.model.forces.load import UniformField as UniformField
+
+# The rows of e' = G w: half the quaternion's products with the units i, j, k
+from eomgen.model.joints.ball import rate_matrix_of as rate_matrix_of
+
+# R at the angles of a sequence, or at a quaternion of norm 1
+from eomgen.model.joints.ball import rotation_of as rotation_of
+
+# w = 2 Im(e* o e'), child's axes
+from eomgen.model.joints.ball import spin_of_quaternion as spin_of_quaternion
+
+# Connection of a body to its parent
+from eomgen.model.joints.base import Joint as Joint
+
+# Any motion of a joint, as it is declared
+from eomgen.model.joints.base import Move as Move
+
+# Action along a displacement or an angle of a joint, on the child and opposite on the parent; None: nothing
+from eomgen.model.joints.base import PushAlong as PushAlong
+
+# A turn by a quaternion of norm 1, scalar first
+from eomgen.model.joints.base import QuaternionTurn as QuaternionTurn
+
+# A displacement [m] along an axis that need not have unit length
+from eomgen.model.joints.base import SlideAlong as SlideAlong
+
+# A turn by an angle [rad] about an axis that need not have unit length; None: z
+from eomgen.model.joints.base import TurnAbout as TurnAbout
+
+# A displacement along lines and arcs, end to end, the first and the last of which go on; the axes do not turn
+from eomgen.model.joints.base import WayAlongPieces as WayAlongPieces
+from eomgen.model.joints.base import Z as Z
+
+# The rotation that turns one after the other make, each about the axes that the one before left
+from eomgen.model.joints.base import oriented as oriented
+
+# The axis over its length, exactly
+from eomgen.model.joints.base import unit as unit
+
+# Symbols of the reactions of a joint or a constraint
+from eomgen.model.kinds import ReactionSymbols as ReactionSymbols
+
+# `friction = mu`: mu |N| against the sliding velocity; `{ viscous = c }`: -c N v
+from eomgen.model.kinds import Resistance as Resistance
+
+# (where, kind) of every joint, constraint, force and table that waits for a later version, in the model's order
+from eomgen.model.likely_mistakes import unbuilt as unbuilt
+
+# (where, kind) of the constraints that wait for a later version: they cannot be counted
+from eomgen.model.likely_mistakes import unbuilt_constraints as unbuilt_constraints
+
+# Warnings: what a user should look at again
+from eomgen.model.likely_mistakes import warnings_of as warnings_of
+
+# The functions of the motion, by name
+from eomgen.model.outputs import FUNCTIONS as FUNCTIONS
+
+# Sources of output functions: what each needs beside the motion
+from eomgen.model.outputs.base import BALANCE as BALANCE
+from eomgen.model.outputs.base import GROUND as GROUND
+from eomgen.model.outputs.base import MASSES as MASSES
+from eomgen.model.outputs.base import OF_A_RUN as OF_A_RUN
+from eomgen.model.outputs.base import SMALL_MOTIONS as SMALL_MOTIONS
+
+# The argument k of a call, a formula; a lone name or member reads like a reference
+from eomgen.model.outputs.base import formula_at as formula_at
+
+# The argument k of a call, a name
+from eomgen.model.outputs.base import name_at as name_at
+
+# The arguments of a call, all of them names
+from eomgen.model.outputs.base import names_of as names_of
+
+# The second argument: L-c reads like a member
+from eomgen.model.outputs.forces import distance_of as distance_of
+
+# d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length
+from eomgen.model.outputs.masses import about_axis as about_axis
+
+# Moment about the point itself: the integral of r.r dm = tr(I) / 2
+from eomgen.model.outputs.masses import polar as polar
+
+# P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus
+from eomgen.model.outputs.masses import second_moments as second_moments
+
+# The part with some fields changed to values that were read already
+from eomgen.model.part import altered as altered
+
+# Every value of a part and of the parts in it, with its path and its rule
+from eomgen.model.part import leaves_of as leaves_of
+
+# A part from values that were read already
+from eomgen.model.part import part_of_values as part_of_values
+
+# The fields of a part's class, in order
+from eomgen.model.part import slots_of as slots_of
+
+# A rigid body: its mass (`shape`; or `mass`, `center`, `inertia`; or `mass` and `parts`), its points, its joint
+from eomgen.model.parts import Body as Body
+
+# A generalized coordinate q
+from eomgen.model.parts import Coordinate as Coordinate
+
+# Kinematics at one instant: known velocities and accelerations as equations
+from eomgen.model.parts import Given as Given
+
+# A known function of time that a caller may replace
+from eomgen.model.parts import Input as Input
+
+# A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order
+from eomgen.model.parts import Model as Model
+
+# A requested result, by name
+from eomgen.model.parts import Output as Output
+
+# A constant of the system
+from eomgen.model.parts import Parameter as Parameter
+
+# Massless two-force members between hinges: nodes and members `n1-n2`
+from eomgen.model.parts import Truss as Truss
+
+# A model, or the path of its file
+from eomgen.model.reader import ModelOrPath as ModelOrPath
+
+# The content of a file (- is stdin), up to the length that a model may have
+from eomgen.model.reader import bytes_at as bytes_at
+
+# The model that a file declares
+from eomgen.model.reader import load as load
+
+# The model that a text declares
+from eomgen.model.reader import loads as loads
+
+# A problem that names a part of the model by its path ("bodies.arm.joint"), at that part's place in the text
+from eomgen.model.reader import located as located
+
+# A model, or the one in the file at a path; with other values of parameters and starts
+from eomgen.model.reader import model_at as model_at
+
+# The warnings of a model, each at its place in the text that the model was read from
+from eomgen.model.reader import warned as warned
+
+# Examples of ranges, for messages
+from eomgen.model.replaced import LIKE as LIKE
+
+# Values that a parameter or start takes one after the other
+from eomgen.model.replaced import Range as Range
+
+# The interpretation of something that was typed
+from eomgen.model.replaced import Taken as Taken
+
+# Numbers as a person types them for one name: "45", "45 deg", "pi/4 rad"
+from eomgen.model.replaced import TypedNumbers as TypedNumbers
+
+# A model with what was typed in it
+from eomgen.model.replaced import Valued as Valued
+from eomgen.model.replaced import Values as Values
+
+# True if values given in Python are several, perhaps an array with a unit, and not one value
+from eomgen.model.replaced import are_several as are_several
+
+# An equation that a person typed, in SI, and what was taken of it
+from eomgen.model.replaced import equation_typed as equation_typed
+
+# The values that a text means
+from eomgen.model.replaced import range_of as range_of
+
+# Refuses a name of what takes no values
+from eomgen.model.replaced import refuse_what_is_not_set as refuse_what_is_not_set
+
+# A function of time that is given in Python: a number in SI or with a unit, an expression, samples [SI]
+from eomgen.model.replaced import time_law as time_law
+
+# The values of what is given in Python: one, several, an array with its unit, an array of pint's
+from eomgen.model.replaced import typed_values as typed_values
+
+# The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters
+from eomgen.model.replaced import with_inputs as with_inputs
+
+# The model with other values of parameters and starts
+from eomgen.model.replaced import with_values as with_values
+
+# The same of what a model gives as a function of time
+from eomgen.model.sampled_laws import given_samples as given_samples
+
+# Warnings of samples that a run from 0 goes beyond: there a cubic goes straight on, which is hardly intended
+from eomgen.model.sampled_laws import left_tables as left_tables
+
+# A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
+from eomgen.model.sampled_laws import samples as samples
+
+# The JSON Schema of a model file, for editors: what `check` finds beyond it needs the whole model
+from eomgen.model.schema import json_schema as json_schema
+
+# A map from numbers to the points of a shape
+from eomgen.model.shapes.base import Cell as Cell
+
+# Mass m [kg], mass centre com (3, body axes) [m], inertia I about it (3 x 3, body axes) [kg m^2]
+from eomgen.model.shapes.base import MassProperties as MassProperties
+
+# A homogeneous body
+from eomgen.model.shapes.base import Shape as Shape
+
+# An arc of an ellipse in the plane z = 0 of its axes
+from eomgen.model.shapes.forms import ArcForm as ArcForm
+
+# A box of edges `size` about its middle
+from eomgen.model.shapes.forms import BoxForm as BoxForm
+
+# An ellipsoid, `size` its half-axes; of a ball they are equal
+from eomgen.model.shapes.forms import EllipsoidForm as EllipsoidForm
+
+# One thing that can be drawn
+from eomgen.model.shapes.forms import Form as Form
+
+# A line from point to point; `fine`: a mark on something, thinner than an edge
+from eomgen.model.shapes.forms import LineForm as LineForm
+
+# A filled polygon; a hole shows what is behind
+from eomgen.model.shapes.forms import PolygonForm as PolygonForm
+
+# Plane faces, each by the numbers of its corners among the points; the first is the base
+from eomgen.model.shapes.forms import PolyhedronForm as PolyhedronForm
+
+# A polygon, raised along z from `low` to `high`
+from eomgen.model.shapes.forms import PrismForm as PrismForm
+
+# A body of revolution: the profile (r, z) swept about the axis z
+from eomgen.model.shapes.forms import RevolutionForm as RevolutionForm
+
+# The name in messages of a body of a model in parts: body 'bar', node 'T.n1'
+from eomgen.model.trusses import called as called
+
+# The path of its declaration: bodies.bar, trusses.T.nodes.n1
+from eomgen.model.trusses import declared_at as declared_at
+
+# The model with its trusses replaced by bodies and constraints; the model itself where it has none
+from eomgen.model.trusses import in_parts as in_parts
+
+# True if a body of a model in parts is a node of a truss
+from eomgen.model.trusses import is_node as is_node
+
+# The model in which what only constraints can hold has displacements; the other bodies keep their joints
+from eomgen.model.unassembled import freed as freed
+
+# after the name of an output's column, where another column has that name
+from eomgen.model.units import OUTPUT as OUTPUT
+
+# The value with its unit, where the coordinate has one that is not of SI; a number alone elsewhere
+from eomgen.model.units import in_own_unit as in_own_unit
+
+# The unit of each name or function of the motion that has one: as the file declares it, else that of SI
+from eomgen.model.units import units_of as units_of
+
+# The unit of every name, of the equation of motion along each speed, and of every output; "?" is not known
+from eomgen.model.units import units_of_model as units_of_model
+
+# The unit of each output: the one that is declared, else that of SI, where the model says which that is
+from eomgen.model.units import units_of_outputs as units_of_outputs
+
+# The unknowns that stand in loads, in the model's order
+from eomgen.model.unknowns import in_loads as in_loads
+
+# Refuse equations of motion in which a force is unknown
+from eomgen.model.unknowns import refuse_motion as refuse_motion
+
+# The parameters that have values, each as an exact constant: 1/3, pi/6, sqrt(2); nothing is rounded
+from eomgen.model.values import constant_parameters as constant_parameters
+
+# The parameters that have values: exact where they can be, a float where pi or a root comes in
+from eomgen.model.values import exact_parameters as exact_parameters
+
+# Start of the search for each dependent coordinate that gives one by `near`
+from eomgen.model.values import first_guesses as first_guesses
+
+# The error of a quaternion that is 0 at the start
+from eomgen.model.values import no_orientation as no_orientation
+
+# The value of each parameter, in the model's order, as floats
+from eomgen.model.values import numeric_parameters as numeric_parameters
+
+# The quaternions of the joints that have one, in the model's order
+from eomgen.model.values import quaternions_of as quaternions_of
+
+# Coordinates, rates and declared speeds at the start; what is not given is 0
+from eomgen.model.values import start_values as start_values

@@ -1,0 +1,149 @@
+"""Model -> Model in which every body that only constraints can hold is free to move.
+
+A body without joint, or `placed` by constants, stands still by declaration. For velocities the constraints alone say
+how it can move. So it gets displacements from where it stands, 0 at the start: x, y and a turn in the plane; x, y, z
+and three turns about its own successive axes in space. Then the constraints are rows in their rates.
+"""
+
+from typing import Annotated, Any, ClassVar
+
+from eomgen.frozen import dataclass
+from eomgen.model.fields import Table
+from eomgen.model.joints.ball import rotation_by, turning_columns
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Move,
+    Scalars,
+    SlideAlong,
+    TurnAbout,
+    X,
+    Y,
+    Z,
+    angular,
+    linear,
+)
+from eomgen.model.joints.placed import Placed
+from eomgen.model.kinds import Coordinates, ValueOf
+from eomgen.model.part import PartRule, altered, part_of_values
+from eomgen.model.parts import Body, Coordinate, Model
+from eomgen.model.trusses import in_parts
+from eomgen.symbolic.expression import (
+    Expression,
+    Matrix,
+    Pose,
+    apply,
+    cos,
+    plus,
+    product,
+    rotation,
+    sin,
+    transposed,
+    vector_of,
+)
+
+SMALL = "xyz"  # the sequence of the three turns
+
+
+@dataclass(frozen=True, kw_only=True)
+class DisplacedJoint(Joint):
+    """A body displaced from where it is placed; no file can name this joint, and it carries no reaction.
+
+    s = (d, turns):  p = p_0 + d,  R = R_0 R(turns).
+
+    Args:
+        placed: where it stands.
+        along: the names of the displacements, 2 or 3.
+        about: the names of the turns: none of a particle, 1 in the plane, 3 in space.
+    """
+
+    kind: ClassVar[str] = "displaced"
+    carries_reaction: ClassVar[bool] = False
+    seated: ClassVar[bool] = False
+    placed: Annotated[Placed, PartRule(Placed)]
+    along: Coordinates
+    about: Coordinates
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return tuple(Expression(name, (("name", name),), (-1,)) for name in (*self.along, *self.about))
+
+    def moves(self) -> tuple[Move, ...]:
+        names, places = self.variables(""), len(self.along)
+        about = (Z,) if len(self.about) == 1 else (X, Y, Z)
+        slides = map(SlideAlong, (X, Y, Z), names[:places])
+        return (*slides, *self.placed.moves(), *map(TurnAbout, about, names[places:]))
+
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
+        return self._standing(value)[2] + (s[2] if self.about else 0)
+
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
+        places = len(self.along)
+        still = self.placed.pose(self._standing(value), value)
+        R = product(still.R, self._rotation(s[places:])) if self.about else still.R
+        return Pose(R, plus(still.p, vector_of((*s[:places], *[0] * (3 - places)))))
+
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        R_CP = transposed(self.pose(s, value).R)
+        along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[: len(self.along)])
+        if len(self.about) == 1:
+            return (*along, angular(Z))
+        return (*along, *turning_columns(SMALL, s[3:])) if self.about else along
+
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        return ()
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return ()
+
+    def _standing(self, value: ValueOf) -> Scalars:
+        """The joint variables of the place where a body stands."""
+        return tuple(value(e) for e in self.placed.variables("plane" if len(self.along) == 2 else "space"))
+
+    def _rotation(self, turns: Scalars) -> Matrix:
+        return rotation(Z, cos(turns[0]), sin(turns[0])) if len(turns) == 1 else rotation_by(SMALL, turns)
+
+
+def freed(model: Model) -> Model:
+    """The model in which what only constraints can hold has displacements; the other bodies keep their joints.
+
+    Trusses are taken apart. Everything that names a body means the same body; the new coordinates have names that no
+    file can write.
+    """
+    model = in_parts(model)
+    bodies: dict[str, Body] = dict(model.bodies)
+    coordinates: dict[str, Coordinate] = dict(model.coordinates)
+    for name in loose_bodies(model):
+        along, about = _displacements(model, name)
+        bodies[name] = altered(model.bodies[name], joint=_displaced(model.bodies[name].joint, along, about))
+        coordinates |= {each: part_of_values(Coordinate, {"start": Expression.number(0)}) for each in (*along, *about)}
+    return altered(model, bodies=Table(bodies), coordinates=Table(coordinates))
+
+
+def loose_bodies(model: Model) -> tuple[str, ...]:
+    """The bodies that stand still by declaration: without joint, or placed by constants."""
+    return tuple(name for name, body in model.bodies.items() if _stands(model, body.joint))
+
+
+def _displacements(model: Model, body: str) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """The names of the displacements and of the turns of a loose body; a point does not turn."""
+    axes = "xy" if model.space == "plane" else "xyz"
+    part = model.bodies[body]
+    point = part.shape is not None and part.shape.is_point and not part.points
+    turns = () if point else ("turn",) if axes == "xy" else tuple(f"turn_{axis}" for axis in axes)
+    return tuple(f"({body}.{axis})" for axis in axes), tuple(f"({body}.{turn})" for turn in turns)
+
+
+def _stands(model: Model, joint: Any) -> bool:
+    if joint is None:
+        return True
+    if joint.carries_reaction or not joint.works_in(model.space):
+        return False
+    constants = {"pi", *model.parameters}
+    return all(e.names <= constants for e in joint.variables(model.space))
+
+
+def _displaced(joint: Joint | None, along: tuple[str, ...], about: tuple[str, ...]) -> DisplacedJoint:
+    placed: Joint = part_of_values(Placed, {}) if joint is None else joint
+    kept = {"on": placed.on, "point": placed.point, "turned": placed.turned}
+    return part_of_values(DisplacedJoint, {**kept, "placed": placed, "along": along, "about": about})

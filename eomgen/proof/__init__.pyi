@@ -1,0 +1,330 @@
+"""Door of the room: what other rooms may import from `eomgen.proof`."""
+
+# A system in one phase, at a state
+from eomgen.proof.at_a_state import NumericState as NumericState
+
+# The first state of each supply where the motion has accelerations
+from eomgen.proof.at_a_state import moving_states as moving_states
+
+# Message if a number is wrong by more than its change between nearby states; ""
+from eomgen.proof.at_a_state import off_by as off_by
+
+# Time and first coordinates of a state, in words
+from eomgen.proof.at_a_state import place_of as place_of
+
+# A printed formula as a scalar of the system
+from eomgen.proof.at_a_state import read_back as read_back
+from eomgen.proof.check import SIGNS as SIGNS
+
+# The proof that comes with a result
+from eomgen.proof.check import Certificate as Certificate
+
+# One thing that was checked
+from eomgen.proof.check import Check as Check
+from eomgen.proof.check import Status as Status
+
+# Count of comparisons made so far, with their outcomes
+from eomgen.proof.check import Tally as Tally
+
+# A check that could not be made where its quantities have no value
+from eomgen.proof.check import attempted as attempted
+
+# A check that holds where nothing is wrong; `wrong` says what differs, or is ""
+from eomgen.proof.check import checked as checked
+
+# Difference of two numbers in words, where it is more than a share of the larger; ""
+from eomgen.proof.check import differing as differing
+
+# The first thing that is wrong, or ""
+from eomgen.proof.check import first_wrong as first_wrong
+
+# A check for which there is no state, no value or no time
+from eomgen.proof.check import unchecked as unchecked
+
+# Check that bodies stand in every phase where the whole model has them, and where their joints say
+from eomgen.proof.contact_phases import bodies_stand_as_reported as bodies_stand_as_reported
+
+# Check that only constraints, and contacts that touch, change the momentum between phases; none with one phase
+from eomgen.proof.contact_phases import changes_follow_impulses as changes_follow_impulses
+
+# Check that each contact presses, grips, slides or is open as its phase assumes; none without contacts
+from eomgen.proof.contact_phases import contacts_do_as_assumed as contacts_do_as_assumed
+
+# Message that names a number which differs between the file and the model; "" where all agree
+from eomgen.proof.declared_numbers import numbers_otherwise as numbers_otherwise
+
+# Message if the count of degrees of freedom is another by differences; "" too where nothing was counted
+from eomgen.proof.degrees_of_freedom import counted_otherwise as counted_otherwise
+
+# Message if a count is printed, or reported to machines, otherwise than it was found; ""
+from eomgen.proof.degrees_of_freedom import lines_otherwise as lines_otherwise
+
+# Rows of constraints that keep a value of the start, with their gaps
+from eomgen.proof.degrees_of_freedom import rows_that_stay as rows_that_stay
+
+# Message if the rank of a structure is another in doubles; ""
+from eomgen.proof.degrees_of_freedom import standing_otherwise as standing_otherwise
+
+# Check that the values set in each run are of their ranges and laws
+from eomgen.proof.drawn_values import drawn_otherwise as drawn_otherwise
+
+# Check of count, least, mean and largest value of each column, and of the columns reported the same in all runs
+from eomgen.proof.drawn_values import reported_of_all as reported_of_all
+
+# Reference values by which a function of generated code is checked
+from eomgen.proof.emitted_code import Judged as Judged
+
+# The equations of one phase
+from eomgen.proof.emitted_code import PhaseMotion as PhaseMotion
+
+# A state at which code is tried
+from eomgen.proof.emitted_code import TriedState as TriedState
+
+# One function of generated code
+from eomgen.proof.emitted_code import Written as Written
+
+# The description of variables
+from eomgen.proof.emitted_code import fmu_reported as fmu_reported
+
+# The model's own start; () where a value is missing
+from eomgen.proof.emitted_code import start_state_tried as start_state_tried
+
+# A failing check where a number of the test vectors is missing in the self-test of a language; else none
+from eomgen.proof.emitted_code import unwritten as unwritten
+
+# Checks of all identities of equations of motion
+from eomgen.proof.identities import identity_checks as identity_checks
+
+# Message that names a body which differs from the file; "" where all that have the same name in both agree
+from eomgen.proof.imported import imported_otherwise as imported_otherwise
+
+# Message that names a body which differs from the SDF file; "" too for what is not read
+from eomgen.proof.imported import sdf_otherwise as sdf_otherwise
+
+# Message for a declared part of a model that its URDF neither contains nor reports as left out; ""
+from eomgen.proof.imported import unsaid_otherwise as unsaid_otherwise
+
+# Message that names a parameter of the weight, or a coordinate of a joint's spring, without a unit; ""
+from eomgen.proof.imported import without_units as without_units
+
+# Message that names a body which differs from MuJoCo's; "" where all that have the same name in both agree
+from eomgen.proof.imported_mjcf import mjcf_otherwise as mjcf_otherwise
+
+# Checks of a printed kinematic state
+from eomgen.proof.instant import instant_checks as instant_checks
+
+# Message if the value of a function of the motion differs from that of its second definition; ""
+from eomgen.proof.instant import second_definition as second_definition
+
+# Every symbol at the instant, with 50 digits; parameters and rates that have no value are something
+from eomgen.proof.instant import values_of as values_of
+
+# Stated mass properties of bodies about a point
+from eomgen.proof.masses import Stated as Stated
+
+# Checks of every shape, of the parts of bodies, and of all stated mass properties
+from eomgen.proof.masses import mass_checks as mass_checks
+
+# Values of parameters without one, and of coordinates: mass properties hold at any orientation
+from eomgen.proof.masses import tried as tried
+
+# One phase of a run
+from eomgen.proof.motion import Leg as Leg
+
+# Accuracy that a run promises: an error of at most 10 (rtol size + atol) for each step
+from eomgen.proof.motion import Promise as Promise
+
+# Checks that the code that ran is that of the equations, and that its steps are repeated by another method
+from eomgen.proof.motion import run_checks as run_checks
+
+# Checks that every run makes: energy against power, constraints, and norms of quaternions
+from eomgen.proof.motion import watched_checks as watched_checks
+from eomgen.proof.pages_read import GREEK_LETTERS as GREEK_LETTERS
+from eomgen.proof.pages_read import PAGES as PAGES
+
+# One block of a page
+from eomgen.proof.pages_read import PageBlock as PageBlock
+from eomgen.proof.pages_read import PageLine as PageLine
+
+# Typesetting of symbols
+from eomgen.proof.pages_read import SetLetters as SetLetters
+from eomgen.proof.pages_read import Tokens as Tokens
+
+# (operation, *parts); ("number", c), ("symbol", name)
+from eomgen.proof.pages_read import Tree as Tree
+
+# Sides between the equality signs that are not inside brackets or braces
+from eomgen.proof.pages_read import between_equals as between_equals
+
+# Index at which the brace that opens at k closes
+from eomgen.proof.pages_read import closing_brace as closing_brace
+
+# The names of the symbols of a tree
+from eomgen.proof.pages_read import names_of_tree as names_of_tree
+
+# Character that a formula stands for in a sentence: $\cdot$, $^{2}$; "" for any other formula
+from eomgen.proof.pages_read import said_by as said_by
+
+# Words as they are compared: without blanks and brackets, exponents as digits, a dot for a product
+from eomgen.proof.pages_read import spoken as spoken
+
+# The commands, numbers and letters of a formula; an index in braces always, L_{x} for L_x
+from eomgen.proof.pages_read import tokens_of as tokens_of
+
+# A tree in numbers
+from eomgen.proof.pages_read import tree_value as tree_value
+
+# A formula of LaTeX as a tree
+from eomgen.proof.pages_read import typeset as typeset
+
+# Number of parts that say these words; None where they say others
+from eomgen.proof.pages_read import unlike_words as unlike_words
+
+# A failing check of parameters or masses that are not those of the file; the check of sampled functions
+from eomgen.proof.parameters import other_data as other_data
+
+# A failing check where the numbers used by all other checks are not those of the file; else none
+from eomgen.proof.parameters import other_parameters as other_parameters
+
+# Formulas as they are printed
+from eomgen.proof.printed import Printed as Printed
+
+# An arrow
+from eomgen.proof.reported_pictures import ReportedArrow as ReportedArrow
+
+# Content of a picture at one state, places in ground axes, d = 2 or 3 coordinates each
+from eomgen.proof.reported_pictures import ReportedPicture as ReportedPicture
+
+# Picture that a page draws by its scene, with the numbers of a frame in its slots
+from eomgen.proof.reported_pictures import picture_of_page as picture_of_page
+
+# Check of the pictures of some states
+from eomgen.proof.reported_pictures import pictures_reported as pictures_reported
+
+# (frame, state) of the first, the middle and the last frame, where it is a row of the run
+from eomgen.proof.reported_pictures import states_shown as states_shown
+
+# Reported texts of a run
+from eomgen.proof.reported_run import ReportedRun as ReportedRun
+
+# Compiled programs over all rows, against the formulas with 50 digits and the second definitions at single rows
+from eomgen.proof.reported_run import output_columns_hold as output_columns_hold
+
+# A(q) rho = b solved by rank in doubles, against its solution in symbols with 50 digits; () where none reacts
+from eomgen.proof.reported_run import reaction_columns_hold as reaction_columns_hold
+
+# A failing check where a requested instant, which the run passed, has no row, or rows do not ascend; else none
+from eomgen.proof.reported_run import rows_left_out as rows_left_out
+
+# Checks of all reported texts of a run against its states
+from eomgen.proof.reported_run import run_reported as run_reported
+
+# A block that moves
+from eomgen.proof.reported_sections import ReportedBlock as ReportedBlock
+
+# A row of the table of blocks, by its heads; the row of a load, where it has a place
+from eomgen.proof.reported_sections import ReportedMotion as ReportedMotion
+
+# Reported section forces of one body
+from eomgen.proof.reported_sections import ReportedSections as ReportedSections
+
+# Reported derivation of one reaction by virtual work
+from eomgen.proof.reported_sections import ReportedWork as ReportedWork
+
+# Checks of the reported section forces of each body, of every report of it
+from eomgen.proof.reported_sections import sections_reported as sections_reported
+
+# Checks of reported reactions by virtual work, of structures in the plane
+from eomgen.proof.reported_sections import works_reported as works_reported
+
+# Printed texts of small motions
+from eomgen.proof.reported_small_motions import PrintedModes as PrintedModes
+
+# None where the parameters have no values
+from eomgen.proof.reported_small_motions import linear_entries as linear_entries
+
+# Check of the headings above each mode, and of the bars of those that are not animated
+from eomgen.proof.reported_small_motions import modes_drawn as modes_drawn
+
+# Bode's diagrams: |W| and the phase of W at every frequency that is drawn
+from eomgen.proof.reported_small_motions import responses_drawn as responses_drawn
+
+# Check of the roots over a parameter: each is drawn at the value of its colour, and there are no others
+from eomgen.proof.reported_small_motions import roots_drawn as roots_drawn
+
+# Whatever has numbers
+from eomgen.proof.reported_small_motions import small_motions_reported as small_motions_reported
+
+# Content of one panel of a diagram
+from eomgen.proof.reports_read import DrawnPanel as DrawnPanel
+
+# The curves of a drawing with its axes
+from eomgen.proof.reports_read import ReadCurves as ReadCurves
+
+# Content of a report as it is read back
+from eomgen.proof.reports_read import ReadReport as ReadReport
+
+# Columns of a table that a page carries: a line that names them, then their differences
+from eomgen.proof.reports_read import columns_reported as columns_reported
+
+# Columns that are named
+from eomgen.proof.reports_read import columns_unpacked as columns_unpacked
+
+# A report as a page of HTML
+from eomgen.proof.reports_read import html_report as html_report
+
+# A report as LaTeX: texts under pictures and in its proof are words
+from eomgen.proof.reports_read import latex_report as latex_report
+
+# A report as Markdown; of a picture the words under it
+from eomgen.proof.reports_read import markdown_report as markdown_report
+
+# The words of a notebook, without its cells of code
+from eomgen.proof.reports_read import notebook_report as notebook_report
+
+# Its panels, bars of colours left out
+from eomgen.proof.reports_read import panels_of as panels_of
+
+# Bytes that a page carries packed: gzip, then base64
+from eomgen.proof.reports_read import unpacked as unpacked
+from eomgen.proof.resting import BY_MOTION as BY_MOTION
+from eomgen.proof.resting import NOTHING_ACCELERATED as NOTHING_ACCELERATED
+
+# Check that Q + J^T lam = 0 and phi = 0 hold at each equilibrium
+from eomgen.proof.resting import balance_check as balance_check
+
+# Check that the free bodies are in equilibrium: weights, loads and constraint forces add up to nothing
+from eomgen.proof.resting import pushes_check as pushes_check
+
+# Checks of the equilibria of a system by its equations of motion
+from eomgen.proof.resting import resting_checks as resting_checks
+
+# Checks of the reference state, the matrices, and the modes
+from eomgen.proof.small_motions import small_motion_checks as small_motion_checks
+
+# States in motion at which every constraint holds, positions and speeds, by where dependent coordinates are free
+from eomgen.proof.states import consistent_states as consistent_states
+
+# Check of every panel titled N, V or M of a body, or influence line
+from eomgen.proof.structure import diagrams_drawn as diagrams_drawn
+
+# Every symbol with 50 digits; parameters without a value are random, unknown loads have their solution
+from eomgen.proof.structure import state_of as state_of
+
+# Checks of every reaction, of the section forces by body, and of an influence line
+from eomgen.proof.structure import structure_checks as structure_checks
+
+# Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved
+from eomgen.proof.texts_of_reactions import reaction_numbers as reaction_numbers
+
+# Check of each text at the start, in pieces and at random, by the bodies' equations solved there in doubles
+from eomgen.proof.texts_of_reactions import reaction_texts as reaction_texts
+
+# The equations of a system, to be tried at states
+from eomgen.proof.trials import Trials as Trials
+
+# An equation with its verdict
+from eomgen.proof.verdicts import JudgedEquation as JudgedEquation
+
+# Checks of all verdicts; those that numbers cannot decide are unchecked
+from eomgen.proof.verdicts import verdicts_again as verdicts_again

@@ -1,0 +1,129 @@
+"""Door of the folder: what other folders may import from `eomgen.symbolic.exact`."""
+
+# x as the author of a textbook prints it; x itself where that takes more than `limit` products of terms
+from eomgen.symbolic.exact.book_forms import book_form as book_form
+
+# Result of a comparison of pairs of expressions
+from eomgen.symbolic.exact.equality import Equality as Equality
+
+# Decides if the two of each pair are the same function of the symbols
+from eomgen.symbolic.exact.equality import equal_at_random_states as equal_at_random_states
+
+# The same at real states with 50 digits
+from eomgen.symbolic.exact.equality import equal_at_real_states as equal_at_real_states
+
+# Equality of each group's pairs, decided in a prime field; None for a group that the field cannot decide
+from eomgen.symbolic.exact.equality import equal_in_field as equal_in_field
+
+# A random state for the outputs in an exact arithmetic
+from eomgen.symbolic.exact.equality import exact_state as exact_state
+
+# Values at a random real state
+from eomgen.symbolic.exact.equality import real_values as real_values
+
+# True if scalars change at a state 1e-30 away, as with 0/0 or 1/0: their values here are only rounding errors
+from eomgen.symbolic.exact.equality import rounding_decides as rounding_decides
+
+# The expanded forms of the nodes of one graph
+from eomgen.symbolic.exact.expansion import Expansion as Expansion
+
+# Scalars as a person writes them, each made so once
+from eomgen.symbolic.exact.normal_forms import Legibly as Legibly
+
+# x as one readable quotient without common factors; x itself where that takes too much work
+from eomgen.symbolic.exact.normal_forms import cancelled as cancelled
+
+# x = sum of coefficient * symbol + rest, as {symbol: coefficient, None: rest}, readable; zeros are left out
+from eomgen.symbolic.exact.normal_forms import collected_in as collected_in
+
+# (number, product): the rational number and the powers of parameters and coordinates that every term holds
+from eomgen.symbolic.exact.normal_forms import common_factor as common_factor
+
+# True if a and b are the same function
+from eomgen.symbolic.exact.normal_forms import equal as equal
+
+# x at its simplest; as it came where that is more than `long` characters, and longer than it came
+from eomgen.symbolic.exact.normal_forms import legible as legible
+
+# The normal form of x
+from eomgen.symbolic.exact.normal_forms import normal_form as normal_form
+
+# x multiplied out and written shortly: 27/2*M*R^2*cos(theta)^2*theta'^2, cos(theta1 - theta2)
+from eomgen.symbolic.exact.normal_forms import readable as readable
+
+# `readable` of several expressions that share their parts; those beyond the limit stay as they are
+from eomgen.symbolic.exact.normal_forms import readable_all as readable_all
+
+# All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2
+from eomgen.symbolic.exact.normal_forms import simple_constants as simple_constants
+
+# The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside
+from eomgen.symbolic.exact.normal_forms import simplest as simplest
+
+# The same of a sum of terms, by as much work as the expansion may take
+from eomgen.symbolic.exact.normal_forms import simplest_sum as simplest_sum
+
+# The same of a sum of terms
+from eomgen.symbolic.exact.normal_forms import written_shortest as written_shortest
+
+# Angles of which those of all waves are whole combinations
+from eomgen.symbolic.exact.polynomials import axes_of as axes_of
+
+# The factors of f that hold more than one term, and their multiplicities; f itself where it is too large
+from eomgen.symbolic.exact.polynomials import factored as factored
+
+# (monomial, exponents of cosine and sine of each axis, coefficient) of each term, s^2 eliminated
+from eomgen.symbolic.exact.polynomials import in_powers as in_powers
+
+# g with g^2 = f, its first coefficient positive; None where f is no square
+from eomgen.symbolic.exact.polynomials import square_root as square_root
+
+# (numerator, denominator) without common factor as polynomials in cosines and sines, in each of their forms
+from eomgen.symbolic.exact.quotient import reduced as reduced
+
+# Expressions with a symbol for each square root of a sum
+from eomgen.symbolic.exact.roots import Rooted as Rooted
+
+# True for sqrt(a + b), not for sqrt(2) and sqrt(x^2)
+from eomgen.symbolic.exact.roots import is_root_of_sum as is_root_of_sum
+
+# x multiplied out but for what is divided by the symbols `roots`: k*(1 - l0/r)*(x2 - x1)
+from eomgen.symbolic.exact.roots import readable_over as readable_over
+
+# The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r
+from eomgen.symbolic.exact.roots import rooted as rooted
+
+# True if x is positive, or negative, wherever it has a value, for positive constants: M + m*sin(alpha)^2
+from eomgen.symbolic.exact.signs import never_vanishes as never_vanishes
+
+# 1 or -1 where all terms of x are positive or all negative, 0 where there are none; None where that is unknown
+from eomgen.symbolic.exact.signs import sign_of_terms as sign_of_terms
+
+# marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
+from eomgen.symbolic.exact.sums import BRACKETS as BRACKETS
+
+# x with the parts that are squares of sums, of one product of parameters each, as squares
+from eomgen.symbolic.exact.sums import with_squares as with_squares
+from eomgen.symbolic.exact.terms import Key as Key
+
+# ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
+from eomgen.symbolic.exact.terms import Monomial as Monomial
+from eomgen.symbolic.exact.terms import Terms as Terms
+
+# The work or size needed is beyond its limit
+from eomgen.symbolic.exact.terms import TooLarge as TooLarge
+
+# The product of the lowest powers of every atom, over all terms (an atom missing in a term has power 0)
+from eomgen.symbolic.exact.terms import common_monomial as common_monomial
+
+# The common number of the coefficients
+from eomgen.symbolic.exact.terms import content as content
+
+# a + factor b
+from eomgen.symbolic.exact.terms import terms_plus as terms_plus
+
+# c a
+from eomgen.symbolic.exact.terms import terms_scaled as terms_scaled
+
+# Writes the terms of one expansion as nodes of its graph
+from eomgen.symbolic.exact.writing import Writer as Writer

@@ -1,0 +1,306 @@
+"""Door of the folder: what other folders may import from `eomgen.symbolic.expression`."""
+
+# True where one of the symbols (or nodes) occurs in x
+from eomgen.symbolic.expression.derivatives import depends_on as depends_on
+
+# True where one of the symbols (or nodes) occurs in one of them: what they share is looked through once
+from eomgen.symbolic.expression.derivatives import depends_on_any as depends_on_any
+
+# dx/dsymbol
+from eomgen.symbolic.expression.derivatives import derivative as derivative
+
+# (dx/dsymbol for each symbol), in one sweep from the result back to the symbols
+from eomgen.symbolic.expression.derivatives import gradient as gradient
+
+# The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer, or meet far fewer nodes
+from eomgen.symbolic.expression.derivatives import jacobian as jacobian
+
+# (sum over the outputs of weight d output/dsymbol, for each symbol), in one sweep: A^T w of the Jacobian A
+from eomgen.symbolic.expression.derivatives import pullback as pullback
+
+# The outputs with nodes replaced by scalars of the same graph, all at once; other outputs are unchanged
+from eomgen.symbolic.expression.derivatives import substituted as substituted
+
+# The symbols that the outputs hold, in the order of their making
+from eomgen.symbolic.expression.derivatives import symbols_of as symbols_of
+
+# The derivative of the outputs along a direction: sum over x of (d output / dx) seeds[x]
+from eomgen.symbolic.expression.derivatives import tangent as tangent
+
+# The derivatives of the outputs by each symbol, in a sweep for each, through what depends on it alone
+from eomgen.symbolic.expression.derivatives import tangents as tangents
+from eomgen.symbolic.expression.dimensions import NUMBER as NUMBER
+from eomgen.symbolic.expression.dimensions import SECOND as SECOND
+from eomgen.symbolic.expression.dimensions import TIME as TIME
+
+# Two terms that ought to have one dimension and have not
+from eomgen.symbolic.expression.dimensions import Clash as Clash
+
+# The exponents of m, kg, s and of unknowns; none is 0
+from eomgen.symbolic.expression.dimensions import Dimension as Dimension
+
+# Equations between dimensions, solved for the unknown ones; grows by every equation
+from eomgen.symbolic.expression.dimensions import Inference as Inference
+
+# One pass over an expression
+from eomgen.symbolic.expression.dimensions import Walk as Walk
+
+# Dimension of a declared unit
+from eomgen.symbolic.expression.dimensions import dimension_of_unit as dimension_of_unit
+
+# "in N*m", "a number"
+from eomgen.symbolic.expression.dimensions import in_words as in_words
+from eomgen.symbolic.expression.dimensions import quoted as quoted
+from eomgen.symbolic.expression.formula import NAMES as NAMES
+
+# A function of the outputs at its arguments: `speed(bar.end)`, `frequency(1)`
+from eomgen.symbolic.expression.formula import Call as Call
+
+# A formula of the model file, as a tree of our own that any scalar can evaluate
+from eomgen.symbolic.expression.formula import Expression as Expression
+from eomgen.symbolic.expression.formula import Instruction as Instruction
+
+# A name as an argument: of a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate
+from eomgen.symbolic.expression.formula import Reference as Reference
+
+# The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row
+from eomgen.symbolic.expression.formula import combined as combined
+from eomgen.symbolic.expression.formula import cos as cos
+from eomgen.symbolic.expression.formula import function as function
+from eomgen.symbolic.expression.formula import inner as inner
+
+# True for whole numbers and fractions
+from eomgen.symbolic.expression.formula import is_exact as is_exact
+from eomgen.symbolic.expression.formula import over as over
+
+# if_below where a <= bound, else if_above: a piecewise law over any scalar
+from eomgen.symbolic.expression.formula import selected as selected
+from eomgen.symbolic.expression.formula import sin as sin
+from eomgen.symbolic.expression.formula import sqrt as sqrt
+from eomgen.symbolic.expression.formula import through_samples as through_samples
+
+# of a node, when it stays a whole power
+from eomgen.symbolic.expression.graph import LARGEST_POWER as LARGEST_POWER
+
+# The owner of a set of expressions, each held once
+from eomgen.symbolic.expression.graph import Graph as Graph
+
+# an operation of its own: most roots are of numbers
+from eomgen.symbolic.expression.node import ROOT_OF_SUM as ROOT_OF_SUM
+from eomgen.symbolic.expression.node import SUMS as SUMS
+
+# One expression of a graph: an operation on nodes and exact numbers
+from eomgen.symbolic.expression.node import Node as Node
+
+# Interface of the graph that owns a node, as the node uses it
+from eomgen.symbolic.expression.node import Owner as Owner
+from eomgen.symbolic.expression.node import Scalar as Scalar
+from eomgen.symbolic.expression.node import ScalarRow as ScalarRow
+from eomgen.symbolic.expression.node import ScalarRows as ScalarRows
+from eomgen.symbolic.expression.node import SparseRow as SparseRow
+from eomgen.symbolic.expression.node import State as State
+
+# Argument number k of x
+from eomgen.symbolic.expression.node import argument as argument
+
+# a with its like terms collected: (theta1 - pi/2) + (theta2 - theta1) -> theta2 - pi/2
+from eomgen.symbolic.expression.node import collected as collected
+
+# True if one of the operations occurs in x
+from eomgen.symbolic.expression.node import holds_op as holds_op
+
+# True where a is the number 0 (a node never is: what folds to 0 folds on construction)
+from eomgen.symbolic.expression.node import is_zero as is_zero
+
+# a as a sum of numbers times nodes that are no sums: {node: coefficient}, None for the number
+from eomgen.symbolic.expression.node import linear_terms as linear_terms
+
+# A bit for each operation, the same in all of this process
+from eomgen.symbolic.expression.node import op_bits as op_bits
+from eomgen.symbolic.expression.numbers import Number as Number
+
+# a as an exact number, a whole one as int
+from eomgen.symbolic.expression.numbers import exact as exact
+
+# a, a whole one as int
+from eomgen.symbolic.expression.numbers import tidy as tidy
+
+# what is taken as an exact number; what is made is an int or a Fraction
+from eomgen.symbolic.expression.rational import EXACT as EXACT
+from eomgen.symbolic.expression.rational import Fraction as Fraction
+
+# The number that a text spells ("3", "0.1", "1e-6", "1/180")
+from eomgen.symbolic.expression.rational import fraction_of as fraction_of
+
+# Has sympy take the compiled rationals as the exact numbers that they are: it would make floats of them
+from eomgen.symbolic.expression.rational import known_to_sympy as known_to_sympy
+from eomgen.symbolic.expression.spatial import IDENTITY as IDENTITY
+from eomgen.symbolic.expression.spatial import ZERO as ZERO
+from eomgen.symbolic.expression.spatial import AnyScalar as AnyScalar
+from eomgen.symbolic.expression.spatial import Matrix as Matrix
+
+# a vector at one state: floats, or numbers of fifty digits
+from eomgen.symbolic.expression.spatial import Numbers as Numbers
+
+# Position and orientation of frame B in frame A
+from eomgen.symbolic.expression.spatial import Pose as Pose
+
+# Mass properties of a rigid body about its frame's origin, in its axes
+from eomgen.symbolic.expression.spatial import SpatialInertia as SpatialInertia
+
+# Velocity of a rigid body, at one of its points
+from eomgen.symbolic.expression.spatial import Twist as Twist
+from eomgen.symbolic.expression.spatial import Vector as Vector
+
+# Force and couple on a rigid body, at one of its points
+from eomgen.symbolic.expression.spatial import Wrench as Wrench
+
+# A + B
+from eomgen.symbolic.expression.spatial import added as added
+
+# R a
+from eomgen.symbolic.expression.spatial import apply as apply
+
+# a x b
+from eomgen.symbolic.expression.spatial import cross as cross
+
+# a . b; what is multiplied by the number 0 is not looked at
+from eomgen.symbolic.expression.spatial import dot as dot
+
+# R a; a itself where nothing is turned
+from eomgen.symbolic.expression.spatial import in_turned_axes as in_turned_axes
+
+# The matrix with these three rows of three
+from eomgen.symbolic.expression.spatial import matrix_of as matrix_of
+
+# a - b
+from eomgen.symbolic.expression.spatial import minus as minus
+
+# a + b
+from eomgen.symbolic.expression.spatial import plus as plus
+
+# A B
+from eomgen.symbolic.expression.spatial import product as product
+
+# Rotation about a unit axis n (Rodrigues): R = c 1 + s n~ + (1 - c) n n^T
+from eomgen.symbolic.expression.spatial import rotation as rotation
+
+# k a
+from eomgen.symbolic.expression.spatial import times as times
+
+# R^T, the inverse of a rotation
+from eomgen.symbolic.expression.spatial import transposed as transposed
+
+# The vector with these three components
+from eomgen.symbolic.expression.spatial import vector_of as vector_of
+from eomgen.symbolic.expression.splines import ENDS as ENDS
+
+# f is differentiated twice; of pchip f'' jumps at samples
+from eomgen.symbolic.expression.splines import SMOOTH as SMOOTH
+from eomgen.symbolic.expression.splines import WAYS as WAYS
+
+# Samples as they were given, and the way between them: what proofs look at
+from eomgen.symbolic.expression.splines import DeclaredSamples as DeclaredSamples
+
+# A function through samples, which the graph holds as one operation on t
+from eomgen.symbolic.expression.splines import Sampled as Sampled
+
+# The function of this number
+from eomgen.symbolic.expression.splines import sampled_of as sampled_of
+
+# The function through samples: "cubic" (f'' continuous), "pchip" (cubics, monotone between samples), "linear"
+from eomgen.symbolic.expression.splines import spline_of as spline_of
+from eomgen.symbolic.expression.text import DEGREES as DEGREES
+
+# of ten, in a decimal: what a double can hold
+from eomgen.symbolic.expression.text import LARGEST_EXPONENT as LARGEST_EXPONENT
+
+# characters
+from eomgen.symbolic.expression.text import LONGEST as LONGEST
+
+# of a text in which parts have names, each of at most LONGEST
+from eomgen.symbolic.expression.text import LONGEST_WITH_PARTS as LONGEST_WITH_PARTS
+from eomgen.symbolic.expression.text import MOST_DIGITS as MOST_DIGITS
+
+# functions and ends of names that stand for dots: how many
+from eomgen.symbolic.expression.text import RATES as RATES
+
+# what dT/dq' is read as: slope_of(T, q'), of an energy by a coordinate or its rate
+from eomgen.symbolic.expression.text import SLOPE as SLOPE
+
+# The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10)
+from eomgen.symbolic.expression.text import as_expression as as_expression
+
+# (phi, how many dots, where it ends) of diff(phi, t), ddot(phi); None of others
+from eomgen.symbolic.expression.text import called_rate as called_rate
+
+# The fix of an angle in degrees: "angles are in rad here: write pi/2", or ""
+from eomgen.symbolic.expression.text import degrees as degrees
+
+# The fix of a character that looks like a blank, or like nothing; "" of a visible one
+from eomgen.symbolic.expression.text import invisible as invisible
+
+# True where text can name a parameter or a coordinate: letters (Greek too), digits, `_`; no prime
+from eomgen.symbolic.expression.text import is_name as is_name
+
+# The correct spelling of phi_dot (phi'), π (pi), θ (theta) among the allowed names; "" if none is recognized
+from eomgen.symbolic.expression.text import meant_name as meant_name
+
+# The names here, among the known ones, of what other programs call `word`
+from eomgen.symbolic.expression.text import other_words as other_words
+
+# The expression that a text writes
+from eomgen.symbolic.expression.text import parse as parse
+
+# Both sides of `left = right`
+from eomgen.symbolic.expression.text import parse_equation as parse_equation
+
+# The fix of diff(phi, t), ddot(phi), phi(t) or pow(phi, 2), or ""
+from eomgen.symbolic.expression.text import rate_of_call as rate_of_call
+
+# The function of the outputs that a text calls; None where it is another expression
+from eomgen.symbolic.expression.text import single_call as single_call
+
+# A Greek letter by its name ("theta"), "" of others
+from eomgen.symbolic.expression.text import spelled as spelled
+from eomgen.symbolic.expression.traversal import FREE as FREE
+
+# Number of operations that an evaluation takes
+from eomgen.symbolic.expression.traversal import Count as Count
+
+# The symbols of one derivation
+from eomgen.symbolic.expression.traversal import Symbols as Symbols
+
+# True if a number with all its digits, as of a double, occurs in a scalar: that is a number and no formula
+from eomgen.symbolic.expression.traversal import holds_many_digits as holds_many_digits
+
+# The operations in the outputs, each sub-expression once
+from eomgen.symbolic.expression.traversal import operations as operations
+
+# Every node that the outputs need, arguments before results; what is `given` is not looked into
+from eomgen.symbolic.expression.traversal import order as order
+
+# (graph, outputs) with the constants that have no graph of their own taken into that of the others
+from eomgen.symbolic.expression.traversal import united as united
+from eomgen.symbolic.expression.units import Typed as Typed
+
+# factor * pi^pi_power, in units of SI
+from eomgen.symbolic.expression.units import Unit as Unit
+
+# True if it is a number: no names but pi, and no function of an output
+from eomgen.symbolic.expression.units import is_plain as is_plain
+
+# Both sides of `left = right`, each with its unit
+from eomgen.symbolic.expression.units import parse_typed_equation as parse_typed_equation
+
+# The unit that a text writes: `kg*m^2`, `m/s^2`, `kg m^2`, `N/(m*s)`; `1` is the plain number
+from eomgen.symbolic.expression.units import parse_unit as parse_unit
+
+# (the expression, its own unit or None) of a number, a text, (number, unit), a quantity of pint
+from eomgen.symbolic.expression.units import read_typed as read_typed
+
+# A time [s]: a number, "500 ms", (500, "ms"), a quantity of pint; a plain number is in seconds
+from eomgen.symbolic.expression.units import seconds as seconds
+
+# The fix of `5*m` or `45*deg` where the name was meant as a unit, "write 5 m"; "" where the name is no unit
+from eomgen.symbolic.expression.units import unit_for_name as unit_for_name

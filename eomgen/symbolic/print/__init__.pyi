@@ -1,0 +1,95 @@
+"""Door of the folder: what other folders may import from `eomgen.symbolic.print`."""
+
+from eomgen.symbolic.print.layout import TRIGONOMETRIC as TRIGONOMETRIC
+from eomgen.symbolic.print.layout import Factor as Factor
+
+# coefficient * (product of base ^ exponent) / (product of base ^ exponent), exponents whole and positive
+from eomgen.symbolic.print.layout import Product as Product
+
+# (digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better
+from eomgen.symbolic.print.layout import decimal_of as decimal_of
+
+# x as powers over powers: constants, symbols, sums, functions, then rates (27/2*M*R^2*cos(theta)^2*theta'^2)
+from eomgen.symbolic.print.layout import factors as factors
+
+# True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into
+from eomgen.symbolic.print.layout import has_nested_quotient as has_nested_quotient
+
+# True if x stands behind the function without parentheses: sin x, and of an angle cos 2 x and sin omega t
+from eomgen.symbolic.print.layout import is_bare_argument as is_bare_argument
+
+# True for what is no sum, product or whole power: a symbol, pi, a function, a broken power
+from eomgen.symbolic.print.layout import is_base as is_base
+
+# True for F/3 and 2*M/3, which are set as one fraction; of rates and accelerations a number stands before them
+from eomgen.symbolic.print.layout import is_part_of_letter as is_part_of_letter
+
+# True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4
+from eomgen.symbolic.print.layout import is_part_of_turn as is_part_of_turn
+
+# True for t, which stands after what it is multiplied by: m*g*sin(alpha)/(2*M)*t^2
+from eomgen.symbolic.print.layout import is_time as is_time
+
+# c as text that is read back as c: 4, -27/2, 0.0825, 8.464e-7
+from eomgen.symbolic.print.layout import number_text as number_text
+
+# x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)
+from eomgen.symbolic.print.layout import products_of as products_of
+
+# x made anew as it is printed: sin(theta)^2/sin(theta), which is printed as sin(theta), is sin(theta)
+from eomgen.symbolic.print.layout import rebuilt_as_written as rebuilt_as_written
+
+# x as a sum of products for print, in the order of `terms`
+from eomgen.symbolic.print.layout import summands as summands
+
+# x as a sum of number * term, the term None for a plain number
+from eomgen.symbolic.print.layout import terms as terms
+
+# The number of visible marks that the scalars have when they are typeset, names by their letters
+from eomgen.symbolic.print.length import length_of as length_of
+from eomgen.symbolic.print.names import LETTERS as LETTERS
+
+# characters
+from eomgen.symbolic.print.names import LONGEST as LONGEST
+
+# A symbol as it is set: \theta with the index A, and what is over it
+from eomgen.symbolic.print.names import Symbol as Symbol
+
+# Words in an index, one style for all: letters slanted, words upright, max -> \mathrm{max}
+from eomgen.symbolic.print.names import index_latex as index_latex
+
+# The symbol that a text declares
+from eomgen.symbolic.print.names import parse_symbol as parse_symbol
+
+# The symbol of a name without primes, by its own letters
+from eomgen.symbolic.print.names import symbol_of as symbol_of
+
+# A word in roman type inside a formula
+from eomgen.symbolic.print.names import upright as upright
+
+# A sympy expression as a scalar of the symbols' graph
+from eomgen.symbolic.print.sympy_form import scalar_from_sympy as scalar_from_sympy
+
+# The real sympy symbol of a name; a Rate where the name has a prime
+from eomgen.symbolic.print.sympy_form import symbol as symbol
+
+# The outputs as sympy expressions over real symbols, their common parts made once
+from eomgen.symbolic.print.sympy_form import to_sympy as to_sympy
+
+# characters of an exact result
+from eomgen.symbolic.print.text import LONGEST_RESULT as LONGEST_RESULT
+
+# The sub-expressions to be named so that no text is much longer than `limit`, in evaluation order
+from eomgen.symbolic.print.text import named_parts as named_parts
+
+# The text of a result; None where it would be longer than anybody reads: a shared graph is far smaller
+from eomgen.symbolic.print.text import readable_text as readable_text
+
+# A lower bound of the length of to_text(x), at the cost of the graph: nothing is printed
+from eomgen.symbolic.print.text import text_size as text_size
+
+# x as text; nodes with a name of their own are printed by it
+from eomgen.symbolic.print.text import to_text as to_text
+
+# (definitions, texts): the expressions as text, long and repeated parts named z1, z2, ... before use
+from eomgen.symbolic.print.text import with_definitions as with_definitions
