@@ -23,7 +23,7 @@ from eomgen.simulation.contacts import Configuration, bounds_of, has_phases, on_
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import COMPUTED, SHARE, SOON
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,24 @@ def next_start(
         return PhaseStart(crossing.t, values, phase.configuration, failure=what)
     if bound.kind == "stops" and phase.watch.contact(bound.owner).surface:
         values = _at_rest_on_surface(models, phase, bound.owner, crossing.t, values)
-    return _decided(models, crossing.t, values, pieces, before=phase.configuration, ended=ended)
+    together = _ending_together(phase, crossing)
+    return _decided(models, crossing.t, values, pieces, before=phase.configuration, ended=ended, together=together)
+
+
+def _ending_together(phase: PhaseModel, crossing: Crossing) -> frozenset[str]:
+    """The contacts that end with the one that ended the phase: N = 0 in them too, and falls; () where it ends alone."""
+    bounds, t, x = phase.bounds, crossing.t, crossing.x
+    if bounds[crossing.index].kind != "ends" or sum(bound.kind == "ends" for bound in bounds) < 2:
+        return frozenset()
+    later = np.array([t, t + SOON])
+    margins = phase.signals.watched(later, np.vstack([x, x + SOON * phase.rate(t, x)]))
+    at_zero, falls = margins[0] <= phase.signals.floors(t, x), margins[0] - margins[1]
+    found = [
+        bound.owner
+        for bound, ends, fall in zip(bounds, at_zero, falls, strict=True)
+        if bound.kind == "ends" and ends and 0 < SHARE * falls[crossing.index] < fall
+    ]
+    return frozenset(found if len(found) > 1 else ())
 
 
 def _at_rest_on_surface(
@@ -189,11 +206,12 @@ def _decided(
     *,
     before: Configuration,
     ended: frozenset[Configuration],
+    together: frozenset[str] = frozenset(),
 ) -> PhaseStart:
     """Velocities after an impact where there is one, and the configuration that then holds."""
     values, apart, hit = _contact(models, t, values, before) if before.open else (values, frozenset(), False)
     try:
-        found = settled(models, t, values, pieces=pieces, apart=apart, ended=ended, before=before)
+        found = settled(models, t, values, pieces=pieces, apart=apart, ended=ended, before=before, together=together)
     except DerivationError as error:  # a contact ends that nothing can leave
         return PhaseStart(t, values, before, hit, error.what)
     if found is not None:
@@ -244,6 +262,7 @@ def settled(
     apart: frozenset[str],
     ended: frozenset[Configuration] = frozenset(),
     before: Configuration | None = None,
+    together: frozenset[str] = frozenset(),
 ) -> Configuration | None:
     """The configuration from here on; None where no forces agree with any.
 
@@ -252,12 +271,14 @@ def settled(
         apart: contacts that are open for certain: they do not touch, or move apart.
         ended: configurations that have just ended: taken only where there is no other.
         before: the configuration so far; contacts keep their modes where possible.
+        together: contacts that end at this instant together: all of them open, where forces agree with that.
     Raises:
         Indeterminate: something moves, and the balance does not determine how the contacts share the load.
     """
     contacts = contacts_of(on_pieces(phase_models.model, pieces))
     sliding = _sliding(phase_models, contacts, t, values, pieces=pieces, apart=apart)
     last: Configuration | None = None
+    apart_one_by_one: Configuration | None = None
     refused: list[DerivationError] = []
     for modes in islice(_choices(contacts, apart, sliding, before), MOST_TRIED):
         tried = Configuration(Table(modes), Table(pieces))
@@ -270,12 +291,13 @@ def settled(
             tried = Configuration(Table({**modes, **held}), Table(pieces))
             if not phase_models.of(tried).rests(t, values):
                 raise undetermined
-        if tried not in ended:
+        if tried not in ended and not any(modes[name].closed for name in together):
             return tried
         last = last or tried
+        apart_one_by_one = apart_one_by_one or (None if tried in ended else tried)
     if last is None and refused:
         raise _indeterminate(refused) or refused[0]
-    return last
+    return apart_one_by_one or last
 
 
 def _closed(contact: Contact) -> ContactMode:

@@ -621,3 +621,59 @@ def test_a_string_that_hangs_loose_is_taut_again_when_its_slack_is_used_up():
     assert result.phases[0].end == pytest.approx(6 / G, abs=1e-9)
     assert result["y"][-1] == pytest.approx(-2, abs=1e-9) and result["y'"][-1] == pytest.approx(0, abs=1e-9)
     assert result.reactions["tension(rope)"][-1] == pytest.approx(2 * G)
+
+
+def test_two_cables_that_lose_their_tension_together_go_slack_together():
+    """A level bar on two cables: T = 3 M g sin(theta) in either, and 0 in both where it comes back to the horizontal.
+
+    There it flies, for as long as nothing is stretched, and swings on with all of its energy:
+
+        theta'^2 = 2 g sin(theta)/l
+    """
+    with pytest.warns(RuntimeWarning, match="No single value in singular positions"):
+        result = eomgen.simulate(eomgen.load("models/seeds/ch17_p6.toml"), time=12)
+    assert result.ok
+    first, second, *_ = ends(result)
+    assert first == "the link 'left' goes slack, the link 'right' goes slack"
+    assert second == "the link 'left' is taut again, the link 'right' is taut again"
+    assert len(result.phases) == 3
+    assert np.max(np.abs(result["theta'"] ** 2 - 2 * G * np.sin(result["theta"]))) < 1e-5
+    turn = result.phases[2].start - result.phases[1].start
+    swung = np.interp(2.0, result.t, result["theta"])
+    assert np.interp(result.phases[1].start + 2.0, result.t, result["theta"]) == pytest.approx(swung, abs=1e-3)
+    assert turn < 0.01
+
+
+LIFTED = """
+[parameters]
+m = 2
+g = 9.81
+[coordinates]
+x = 0
+y = 0
+a = 0
+[inputs]
+F = { value = "10*t", unit = "N" }
+[bodies.plate]
+shape = { kind = "rectangle", mass = "m", width = 1, height = 1 }
+points = { left = [-0.5, -0.5], right = [0.5, -0.5] }
+joint = { kind = "free", x = "x", y = "y", angle = "a" }
+[forces.crane]
+kind = "force"
+point = "plate.center"
+force = [0, "F"]
+"""
+FEET = "".join(
+    f'[constraints.{foot}]\nkind = "support"\npoint = "plate.{foot}"\nnormal = [0, 1]\nunilateral = true\n'
+    for foot in ("left", "right")
+)
+
+
+def test_two_feet_that_a_crane_lifts_leave_the_floor_together():
+    """N = (m g - 10 t)/2 in each: at t = m g/10 both open, in one event, and y = (t - m g/10)^3 10/(6 m) then."""
+    leaves = 2 * G / 10
+    result = eomgen.simulate(eomgen.loads(HEAD + LIFTED + FEET), time=4)
+    assert ends(result)[:-1] == ["the support 'left' opens, the support 'right' opens"]
+    assert result.phases[0].end == pytest.approx(leaves, abs=1e-9)
+    assert result["y"][-1] == pytest.approx(10 * (4 - leaves) ** 3 / 12, rel=1e-6)
+    assert abs(result["a"][-1]) < 1e-9
