@@ -96,3 +96,16 @@ def test_small_motions_about_what_does_not_slide_name_its_friction(how, reported
     with pytest.raises(eomgen.EomgenError, match=reported) as refused:
         eomgen.linearize(eomgen.loads(ROUGH.format(**how)), about="start")
     assert "the friction of 'floor'" in str(refused.value)
+
+
+@pytest.mark.parametrize(("length", "told"), [("z", True), ("2*z", True), ("k", False)])
+def test_a_spring_whose_natural_length_is_a_parameter_of_0_is_told_what_to_write(length, told):
+    """k (l - l0) d/l is 0/0 where the ends meet; `length = 0` is k d, and has a value there."""
+    text = BLOCK.replace("k = 2", "k = 2\nz = 0").format(
+        start=0, joint="", more=SPRING.format("spring", f'stiffness = 3\nlength = "{length}"')
+    )
+    run = eomgen.simulate(eomgen.loads(text), time=1, samples=2, target="numpy")
+    assert "force 'pull' is 0/0 at x = 0" in run.message
+    assert ("write length = 0" in run.message) == told
+    written = eomgen.simulate(eomgen.loads(text.replace(f'"{length}"', "0")), time=1, samples=2, target="numpy")
+    assert written.ok

@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, from_pot
 from eomgen.mechanics.kinematics import BodyLink, mass_properties
 from eomgen.mechanics.state import Doubles
 from eomgen.symbolic.exact import equal_at_random_states
-from eomgen.symbolic.expression import Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
+from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
 from eomgen.symbolic.numeric import (
     FLOAT,
     LARGEST_SQUARED,
@@ -241,8 +241,25 @@ def valueless(system: System, values: Mapping[Node, float]) -> Valueless | None:
         for scalar in _scalars(part):
             reason = reason_without_value(scalar, values)
             if reason:
-                return Valueless(where, f"{name} {reason}")
+                return Valueless(where, f"{name} {reason}{_slack_at_zero(system, where, values)}")
     return None
+
+
+def _slack_at_zero(system: System, where: str, values: Mapping[Node, float]) -> str:
+    """Remark on a spring whose natural length is a parameter that is 0; "" of anything else.
+
+    Its law k (l - l0) d/l keeps the length l as a divisor, since the parameter may be changed; that of a 0 that is
+    written is k d, d the vector from end to end.
+    """
+    table, _, name = where.partition(".")
+    element = system.scope.model.forces[name].element if table == "forces" else None
+    if element is None or not isinstance(element.slack, Expression) or element.along is not None or element.bodies:
+        return ""
+    length = system.scope.value(element.slack)
+    if type(length) is not Node or not all(x in values for x in symbols_of((length,))):
+        return ""
+    zero = evaluate((length,), values, FLOAT)[0] == 0
+    return " (its natural length is a parameter that is 0: write length = 0, and it has a value there)" if zero else ""
 
 
 def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
