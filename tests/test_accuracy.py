@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from closed_motions import DRAGGED, STEP, TOLERANCE, off
 from scipy.special import ellipj, ellipk
 
 import eomgen
@@ -84,3 +85,24 @@ def test_a_run_that_ends_at_an_event_keeps_its_digits():
     run = eomgen.simulate(MODELS / "simple_pendulum.toml", time=5, until="theta = 0", target="numpy")
     found = run.accuracy
     assert run.t[-1] < 5 and found.until is None and found.digits >= 8
+
+
+BETWEEN = {"time": 0.2, "samples": 1001, "method": "DOP853", "rtol": TOLERANCE, "atol": TOLERANCE}
+
+
+@pytest.mark.parametrize("target", [pytest.param("c", marks=pytest.mark.slow), "numpy"])
+def test_states_between_the_steps_are_as_accurate_as_the_steps(target):
+    """A damper holds the steps short by stability alone: their polynomials miss it by thousands of tolerances."""
+    run = eomgen.simulate(eomgen.loads(DRAGGED), target=target, **BETWEEN)
+    assert len(run.t) > 10 * run.steps and off(run.x, run.t) < STEP
+
+
+@pytest.mark.slow
+def test_states_between_the_steps_of_many_runs_are_as_accurate():
+    """In lanes; each run is the same among others as alone, to the bit."""
+    model, stiffnesses = eomgen.loads(DRAGGED), (2000.0, 1000.0, 8000.0, 1.0, 4000.0)
+    many = eomgen.simulate_many(model, parameters={"k": stiffnesses}, **BETWEEN)
+    for states, k in zip(many.x, stiffnesses, strict=True):
+        assert off(states, many.t, k) < STEP
+        alone = eomgen.simulate_many(model, parameters={"k": [k]}, **BETWEEN)
+        assert np.array_equal(alone.x[0], states)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from closed_motions import DRAGGED, STEP, off
 from hand_made import symbols
 from slow_run import usual
 
@@ -25,6 +26,25 @@ MODELS = Path(__file__).parent.parent / "models"
 CC = shutil.which("gcc") or shutil.which("cc") or shutil.which("clang")
 STRICT = ["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-O1"]
 needs_compiler = pytest.mark.skipif(CC is None, reason="no C compiler")
+
+
+ANY_ORDER = """
+#include <stdio.h>
+#include "dragged_run.h"
+int main(void)
+{
+    const double start[] = {0.03, 0, 0, 0.8}, p[] = {1, 0.001, 2000, 1.44}, parts[] = {0.9, 0.1, 0.5, 0.55, 0.3, 0.999};
+    static dragged_run run;
+    dragged_begin(&run, 0, start, p, 1e-8, 1e-8);
+    while (run.t < 0.2 && dragged_step(&run, 0.2))
+        for (int i = 0; i < 6; i++) {
+            double t = run.t_old + parts[i]*(run.t - run.t_old), x[4];
+            dragged_at(&run, t, x);
+            printf("%.17g %.17g %.17g %.17g %.17g\\n", t, x[0], x[1], x[2], x[3]);
+        }
+    return 0;
+}
+"""
 
 
 def program(tmp_path: Path, name: str, **how) -> Path:
@@ -52,6 +72,20 @@ def test_it_moves_as_simulate_does(name, tmp_path):
     assert head == ["t", *run.coordinates, *run.speeds[: len(head) - 1 - len(run.coordinates)]]
     expected = np.column_stack([run.t, *(run[column] for column in head[1:])])
     assert rows == pytest.approx(expected, abs=2e-7 * (1 + np.max(np.abs(expected))))
+
+
+@needs_compiler
+def test_its_states_between_the_steps_are_as_accurate_as_the_steps(tmp_path):
+    """In any order of the instants: see the same law of runs."""
+    (tmp_path / "dragged.toml").write_text(DRAGGED)
+    eomgen.generate(tmp_path / "dragged.toml", name="dragged", integrator=True).write(tmp_path)
+    (tmp_path / "any_order.c").write_text(ANY_ORDER)
+    files = ["any_order.c", "dragged_run.c", "dragged_rhs.c"]
+    made = subprocess.run([CC, *STRICT, *files, "-lm", "-o", "run"], cwd=tmp_path, capture_output=True, text=True)
+    assert made.returncode == 0, made.stderr
+    printed = subprocess.run([tmp_path / "run"], capture_output=True, text=True, check=True).stdout
+    rows = np.array([line.split() for line in printed.splitlines()], dtype=float)
+    assert len(rows) > 300 and off(rows[:, 1:], rows[:, 0]) < STEP
 
 
 @pytest.mark.slow

@@ -35,33 +35,55 @@ static void begin_lanes(struct batch *b, const struct lanes *v, const struct rat
         while (b->sample[l] < b->samples && b->instants[b->sample[l]] <= b->start)
             lane_gives(b, l, b->sample[l]++, v->x);
     }
-}
-
-/* the samples in the step of the lanes that have accepted it */
-static void give_samples(struct batch *b, const struct lanes *v, const struct rate *f, const int *accepted)
+}/* the samples of lanes that lie in piece j of their step, by its polynomial from x on; of a lane with one piece, or more */
+static void give_between(struct batch *b, const struct lanes *v, const int *accepted, const size_t *pieces, size_t j,
+                         const REAL *x, const REAL *F, REAL *y)
 {
-    size_t n = b->n;
-    REAL part = {0};
-    REAL *y = v->y + 2*n;
-    for (int is_dense = 0;;) {
-        int any = 0;
+    for (;;) {
+        int any = 0, is_here[LANES];
+        REAL part = {0};
         EACH_LANE {
-            double t = LANE(*v->t, l), h = LANE(*v->h, l);
-            int has = accepted[l] && has_sample(b, v, l);
-            any |= has;
-            LANE(part, l) = has ? (b->instants[b->sample[l]] - t)/h : 0;
+            double at = 0;
+            is_here[l] = accepted[l] && j < pieces[l] && (pieces[l] > 1) == (x != v->x) && has_sample(b, v, l);
+            if (is_here[l])
+                at = (b->instants[b->sample[l]] - LANE(*v->t, l))/LANE(*v->h, l)*(double)pieces[l] - (double)j;
+            is_here[l] &= at <= 1 || j + 1 == pieces[l];
+            LANE(part, l) = is_here[l] ? at : 0;
+            any |= is_here[l];
         }
         if (!any)
             return;
-        if (!is_dense)
-            dop853_dense(f, n, *v->t, *v->h, v->x, v->y, y, v->room, v->room + 16*n);
-        is_dense = 1;
-        dop853_between(n, part, v->x, v->room + 16*n, y);
+        dop853_between(b->n, part, x, F, y);
         lanes_on_spheres(b, y);
-        EACH_LANE {
-            if (accepted[l] && has_sample(b, v, l))
-                lane_gives(b, l, b->sample[l]++, y);
-        }
+        EACH_LANE if (is_here[l])
+            lane_gives(b, l, b->sample[l]++, y);
+    }
+}
+
+/* the samples in the step of the lanes that have accepted it: by its polynomial, or by shorter ones where a lane needs
+   them; what a lane gives does not depend on the pieces of others */
+static void give_samples(struct batch *b, const struct lanes *v, const struct rate *f, const int *accepted)
+{
+    size_t n = b->n, any = 0, most = 1, pieces[LANES];
+    REAL rtol, atol, t = *v->t, h = *v->h, *y = v->y + 2*n, *F = v->room + 16*n;
+    REAL *x = v->room + 23*n, *x_new = x + n, *K = x_new + n; /* of a piece */
+    EACH_LANE LANE(rtol, l) = b->rtol, LANE(atol, l) = b->atol, any |= accepted[l] && has_sample(b, v, l);
+    if (!any)
+        return;
+    dop853_dense(f, n, t, h, v->x, v->y, y, v->room, F);
+    REAL missed = dop853_missed(f, n, t, h, v->x, v->y, F, rtol, atol, y, x);
+    EACH_LANE {
+        pieces[l] = accepted[l] && has_sample(b, v, l) ? dop853_pieces(LANE(missed, l)) : 1;
+        most = pieces[l] > most ? pieces[l] : most;
+        LANE(h, l) /= (double)pieces[l];
+    }
+    give_between(b, v, accepted, pieces, 0, v->x, F, y);
+    memcpy(x, v->x, n*sizeof *x);
+    memcpy(K, v->room, n*sizeof *x);
+    for (size_t j = 0; most > 1 && j < most; j++, t += h) {
+        dop853_piece(f, n, t, h, x, x_new, y, K, F);
+        give_between(b, v, accepted, pieces, j, x, F, y);
+        memcpy(x, x_new, n*sizeof *x);
     }
 }
 

@@ -135,7 +135,8 @@ class Batch:
         reported = [f"#define {name} {value!r}" for name, value in {**defined, "LOOKED_AT": LOOKED_AT}.items()]
         n = len(program.states)
         if order is None:
-            self._room, steps = 23 * n, [text_of("dop853.c"), text_of("batch.c"), text_of("batch_dop853.c")]
+            self._room = 48 * n
+            steps = [text_of(name) for name in ("dop853.c", "dop853_pieces.c", "batch.c", "batch_dop853.c")]
         else:
             series, size = series_text(program, LANES if self.lanes > 1 else C, order)
             self._room, steps = (order + 1) * n + size, [series, text_of("batch.c"), text_of("batch_series.c")]

@@ -64,9 +64,28 @@ void NAME_at(NAME_run *run, double t, double *x)
         EACH x[k] = run->x[k];
         return;
     }
-    if (!run->is_dense)
+    if (!run->is_dense) {
+        double rate[NAME_STATES];
         dop853_dense(&f, n, run->t_old, h, run->x_old, run->x_new, x, run->K, run->F);
-    run->is_dense = 1;
-    dop853_between(n, (t - run->t_old)/h, run->x_old, run->F, x);
+        run->pieces = dop853_pieces(dop853_missed(&f, n, run->t_old, h, run->x_old, run->x_new, run->F, run->rtol,
+                                                  run->atol, x, rate));
+        run->piece = 0, run->is_dense = 1;
+        EACH run->x_piece[k] = run->x_old[k];
+    }
+    double pieces = (double)run->pieces, part = (t - run->t_old)/h*pieces;
+    if (run->pieces > 1) {
+        size_t piece = part > 0 ? (size_t)part : 0;
+        piece = 1 + (piece < run->pieces ? piece : run->pieces - 1);
+        if (piece < run->piece)
+            run->piece = 0;
+        for (; run->piece < piece; run->piece++) {
+            double *from = run->piece ? run->x_next : run->x_old, *rates = run->piece ? run->K : run->f_old;
+            EACH run->x_piece[k] = from[k], run->K[k] = rates[k];
+            dop853_piece(&f, n, run->t_old + (double)run->piece*(h/pieces), h/pieces, run->x_piece, run->x_next, x,
+                         run->K, run->F);
+        }
+        part -= (double)(piece - 1);
+    }
+    dop853_between(n, part, run->x_piece, run->F, x);
     NAME_hold(x);
 }

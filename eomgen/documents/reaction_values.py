@@ -354,12 +354,15 @@ def _owner(balance: Balance, component: Component) -> str:
 
 
 def _more(balance: Balance, component: Component) -> tuple[str, ...]:
-    """Parts of the name after its owner: the side of a hinge, the ends of a member, a number."""
+    """Parts of the name after its owner: the side of a hinge, the ends of a member, the driven coordinate, a number."""
     if component.label in AXES:
         return (component.side,) if component.side else ()
     kind, _, number = component.label.partition(" ")
     if kind == "tension" and component.side:
         return tuple(component.side.split("-"))
+    if kind == "drive":
+        drives = [c for c in balance.components if c.kind == "drive" and c.owner == component.owner]
+        return (component.side,) if len(drives) > 1 else ()
     number = number or _strand(balance, component) or _couple(balance, component)
     return (number,) if number else ()
 

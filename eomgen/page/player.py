@@ -524,7 +524,8 @@ def _compared(played: PlayedRun, reported: Mapping[str, Any]) -> Iterator[tuple[
 def _otherwise_moved(played: PlayedRun, reported: Mapping[str, Any]) -> str:
     """Message if a page says that contacts change where none is declared, or moves by itself where they do; else ""."""
     model, requested = played.model, played.options.moves
-    could = bool(contacts_of(model)) or any(len(pieces_of(body)) > 1 for body in model.bodies.values())
+    paths = [name for name in played.phase.configuration.pieces if pieces_of(model.bodies[name])]
+    could = bool(contacts_of(model) or paths)  # the model of a phase has the one piece on which a body is
     if requested and "contacts" in reported["rests"] and not could:
         return "it says that contacts change, and none is declared"
     alone = len(played.run.phases) == 1

@@ -14,6 +14,7 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from functools import partial
 from itertools import accumulate
 from types import ModuleType
 from typing import Any, Protocol
@@ -41,6 +42,7 @@ from eomgen.symbolic.expression import Node, order
 from eomgen.symbolic.numeric import FLOAT, SOLVED, Arithmetic
 
 COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
+MOST_PIECES = 8  # of a step, as dop853_pieces.c
 FEW = 8  # steps in the first call
 A_CALL = 0.03  # [s] of a call: after it Python looks whether somebody has lost patience
 BY_SERIES = 2  # what dense_of returns
@@ -105,6 +107,7 @@ class CompiledSteps:
         self._kept: list[Any] = [f]
         sizes = {"x": n, "x_old": n, "f": n, "F": 7 * n, "K": 16 * n, "room": 3 * n}
         sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n, "pivots": 2 * n}
+        sizes |= {"piece": MOST_PIECES * 8 * n, "along_pieces": 18 * n}
         self._instants = np.zeros(0) if instants is None else np.ascontiguousarray(instants)
         self._instants = self._instants[self._instants.searchsorted(span[0], "right") :]
         sizes |= {"rows": n * len(self._instants)}
@@ -121,6 +124,7 @@ class CompiledSteps:
         self._x, self._x_old, self._f, self._track_t = (parts[name] for name in ("x", "x_old", "f", "track_t"))
         self._x[:] = self._x_old[:] = x0
         self._F, self._track_x = parts["F"].reshape(7, n), parts["track_x"].reshape(MOST_AT_ONCE, n)
+        self._piece = parts["piece"].reshape(MOST_PIECES, 8, n)
         self._rows, self._given = parts["rows"].reshape(-1, n), 0
         m.stops, m.n_stops = self._put(np.array(how.breakpoints, dtype=float)), len(how.breakpoints)
         m.instants, m.n_instants = self._put(self._instants), len(self._instants)
@@ -368,19 +372,12 @@ class CompiledSteps:
         if self._m.dense_of == BY_SERIES:
             begun, X = self.t_old, self._X[int(self._m.X_old != self._X.ctypes.data)].copy()
             return lambda t: polyval(np.asarray(t) - begun, X)
-        implicit = bool(self._m.dense_of)
         t_old, h, x_old, F = self.t_old, self.t - self.t_old, self._x_old.copy(), self._F.copy()
-
-        def between(t: Any) -> np.ndarray:
-            part = np.asarray((np.asarray(t) - t_old) / h)[..., None]
-            x = np.zeros_like(x_old)
-            if implicit:
-                return np.asarray((x_old + part * (F[0] + part * (F[1] + part * F[2]))).T)
-            for row, factor in zip(F[::-1], (part, 1 - part) * 4, strict=False):
-                x = (x + row) * factor
-            return np.asarray((x + x_old).T)
-
-        return between
+        if self._m.dense_of:
+            return partial(_implicit_between, t_old, h, x_old, F)
+        pieces = int(self._m.pieces)
+        rows = self._piece[:pieces].copy() if pieces > 1 else np.vstack([x_old, F])[None]
+        return partial(_between, t_old, h, rows)
 
     def _put(self, array: np.ndarray) -> int:
         """Address of an array, which is kept alive; 0 of an empty one."""
@@ -388,6 +385,22 @@ class CompiledSteps:
             return 0
         self._kept.append(array)
         return int(array.__array_interface__["data"][0])
+
+
+def _implicit_between(t_old: float, h: float, x_old: np.ndarray, F: np.ndarray, t: Any) -> np.ndarray:
+    part = np.asarray((np.asarray(t) - t_old) / h)[..., None]
+    return np.asarray((x_old + part * (F[0] + part * (F[1] + part * F[2]))).T)
+
+
+def _between(t_old: float, h: float, rows: np.ndarray, t: Any) -> np.ndarray:
+    """States x instants in a step of pieces, of each the rows x and F."""
+    at = np.asarray(np.asarray(t) - t_old) * (len(rows) / h)
+    k = np.clip(np.floor(at).astype(int), 0, len(rows) - 1)
+    part, row = (at - k)[..., None], rows[k]
+    x = np.zeros_like(row[..., 0, :])
+    for i, factor in zip(range(7, 0, -1), (part, 1 - part) * 4, strict=False):
+        x = (x + row[..., i, :]) * factor
+    return np.asarray((x + row[..., 0, :]).T)
 
 
 def _aligned(size: int) -> np.ndarray:

@@ -133,7 +133,8 @@ class March(ctypes.Structure):
         *_fields(_REAL, "energy most_kinetic"),
         ("order", SIZE),
         *_fields(_AT, "series along X X_old W"),
-        ("has_series", SIZE),
+        *_fields(SIZE, "has_series pieces"),
+        *_fields(_AT, "piece along_pieces"),
     )
 
 
@@ -142,7 +143,8 @@ def library_of_march() -> tuple[Any, Any, Any, Any, Any]:
     """(begin, march, dense, look, runs) of march.c, compiled."""
     defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
     here = resources.files("eomgen.simulation")
-    texts = [resources.files("eomgen.codegen") / "dop853.c", here / "march.c", here / "radau.c"]
+    there = resources.files("eomgen.codegen")
+    texts = [there / "dop853.c", there / "dop853_pieces.c", here / "march.c", here / "radau.c"]
     text = "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
     made = library(text, by=of_this_machine())
     begin, march, dense, look, runs = (

@@ -61,6 +61,8 @@ struct march {
     void (*along)(const double *X, double h, double *x, double *slope);
     double *X, *X_old, *W; /* order + 1 rows of n, from t and from t_old on; work */
     size_t has_series;     /* whether X is that of x */
+    size_t pieces;         /* of the last step, each with a polynomial of its own */
+    double *piece, *along_pieces; /* DOP853_PIECES x (x and F, 8 n); K and two states of one on its way, 18 n */
 };
 
 static int stepped_implicitly(struct march *m);
@@ -492,12 +494,33 @@ static int stepped_by_series(struct march *m)
     return 0;
 }
 
+/* the last step once more, in pieces, which change nothing of it: x and F of each */
+static void in_pieces(struct march *m)
+{
+    size_t n = m->n;
+    double h = m->h_old/(double)m->pieces, *K = m->along_pieces, *x_new = K + 16*n, *room = x_new + n;
+    memcpy(K, m->K, n*sizeof *K);
+    memcpy(m->piece, m->x_old, n*sizeof *K);
+    for (size_t j = 0; j < m->pieces; j++) {
+        double *x = m->piece + 8*j*n;
+        dop853_piece(&m->rate, n, m->t_old + (double)j*h, h, x, x_new, room, K, x + n);
+        if (j + 1 < m->pieces)
+            memcpy(x + 8*n, x_new, n*sizeof *K);
+    }
+    m->evaluations += 15*m->pieces;
+}
+
 /* F, of the last step */
 void march_dense(struct march *m)
 {
     if (!m->is_dense) {
-        dop853_dense(&m->rate, m->n, m->t_old, m->h_old, m->x_old, m->x, m->room, m->K, m->F);
-        m->evaluations += 3, m->is_dense = 1;
+        size_t n = m->n;
+        dop853_dense(&m->rate, n, m->t_old, m->h_old, m->x_old, m->x, m->room, m->K, m->F);
+        m->evaluations += 4, m->is_dense = 1;
+        m->pieces = dop853_pieces(dop853_missed(&m->rate, n, m->t_old, m->h_old, m->x_old, m->x, m->F, m->rtol, m->atol,
+                                                m->room, m->room + 2*n));
+        if (m->pieces > 1)
+            in_pieces(m);
     }
 }
 
@@ -510,7 +533,11 @@ static void between(struct march *m, double t, double *x)
         m->along(m->X_old, t - m->t_old, x, NULL);
     else if (m->dense_of == BY_COLLOCATION)
         EACH x[k] = m->x_old[k] + part*(m->F[k] + part*(m->F[n + k] + part*m->F[2*n + k]));
-    else
+    else if (m->pieces > 1) {
+        double at = part*(double)m->pieces, first = fmin(fmax(floor(at), 0), (double)m->pieces - 1);
+        const double *piece = m->piece + 8*n*(size_t)first;
+        dop853_between(n, at - first, piece, piece + n, x);
+    } else
         dop853_between(n, part, m->x_old, m->F, x);
 }
 

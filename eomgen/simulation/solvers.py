@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -120,7 +121,10 @@ def solver_of(
     explicit = method in EXPLICIT  # these shrink the step where a trial has no value
     options = {"rtol": rtol, "atol": atol} | ({} if explicit or slope is None else {"jac": slope})
     with np.errstate(all="ignore"):
-        return getattr(scipy.integrate, method)(f if explicit else finite, span[0], x0, span[1], **options)
+        solver = getattr(scipy.integrate, method)(f if explicit else finite, span[0], x0, span[1], **options)
+    if method == EXPLICIT[0]:
+        solver.dense_output = partial(_accurate_between, solver, solver.dense_output)
+    return solver
 
 
 def put_state(solver: Any, x: np.ndarray) -> None:
@@ -137,6 +141,58 @@ def put_state(solver: Any, x: np.ndarray) -> None:
         solver._lsoda_solver._integrator.rwork[20 : 20 + len(x)] = x
     else:  # BDF
         solver.D[0] = x
+
+
+MISSED, PIECES = 10.0, 8  # as dop853_pieces.c has them
+
+
+def _accurate_between(solver: Any, dense_output: Callable[[], Any]) -> Callable[[Any], np.ndarray]:
+    """t -> x in the last step of DOP853, as accurate as the ends of its steps.
+
+    Where stability alone holds a step short, its end is far more accurate than its polynomial. The rate of that shows
+    it, and the step is followed once more in shorter pieces, as dop853_pieces.c does.
+    """
+    from scipy.integrate import DOP853
+
+    whole = dense_output()
+    h, pieces = solver.t - solver.t_old, 1
+    with np.errstate(all="ignore"):
+        missed = _missed(solver, whole, 0.3)
+        while missed > MISSED and pieces < PIECES:
+            missed, pieces = missed / 256, 2 * pieces
+        if pieces == 1:
+            return whole  # type: ignore[no-any-return]
+        length = h / pieces
+        shorter = DOP853(
+            solver.fun, solver.t_old, whole.y_old, solver.t, first_step=length, max_step=length, rtol=1.0, atol=np.inf
+        )
+        found: list[Any] = []
+        while len(found) < pieces and shorter.status == "running":
+            shorter.step()
+            found.append(shorter.dense_output())
+
+    begun = solver.t_old
+
+    def between(t: Any) -> np.ndarray:
+        k = np.clip(np.floor((np.asarray(t) - begun) / length).astype(int), 0, len(found) - 1)
+        if np.ndim(t) == 0:
+            return np.asarray(found[int(k)](t))
+        return np.column_stack([found[j](each) for j, each in zip(k, t, strict=True)])
+
+    return between
+
+
+def _missed(solver: Any, whole: Any, part: float) -> float:
+    """Tolerances by which the rate of a step's polynomial, times its length, misses that of the equations."""
+    value, slope = np.zeros_like(whole.y_old), np.zeros_like(whole.y_old)
+    for i, row in enumerate(reversed(whole.F)):
+        value = value + row
+        factor, sign = (part, 1) if i % 2 == 0 else (1 - part, -1)
+        value, slope = value * factor, slope * factor + sign * value
+    h = solver.t - solver.t_old
+    rate = solver.fun(solver.t_old + part * h, value + whole.y_old)
+    size = solver.atol + solver.rtol * np.maximum(np.abs(whole.y_old), np.abs(solver.y))
+    return float(np.max(np.abs(h * rate - slope) / size, initial=0.0))
 
 
 class ScipySteps:

@@ -90,8 +90,9 @@ _HEADER = """\
 typedef struct {{
     double t, h, rtol, atol, t_old;
     double x[{n}], f[{n}], x_old[{n}], f_old[{n}], x_new[{n}], K[16*{n}], F[7*{n}], c[{constants}];
+    double x_piece[{n}], x_next[{n}]; /* the ends of a piece of the last step */
     const double *p;
-    size_t steps;
+    size_t steps, pieces, piece;
     int is_dense;
 }} {stem}_run;
 
@@ -142,6 +143,7 @@ def integrator_files(
         f'#include <float.h>\n#include <math.h>\n#include "{stem}_run.h"',
         "\n".join(f"#define {name} {value}" for name, value in defined.items()),
         text_of("dop853.c"),
+        text_of("dop853_pieces.c"),
         _hold(stem, program),
         _named(text_of("integrator.c"), stem),
         _named("\n".join(main) + text_of("integrator_main.c"), stem),
