@@ -24,7 +24,7 @@ from eomgen.judge.implied import (
     implied_by_rest,
     simplest_explanation,
 )
-from eomgen.judge.reading import HandEquation, of_free_coordinates
+from eomgen.judge.reading import HandEquation, along_ground_axes, of_free_coordinates
 from eomgen.judge.renaming import Renaming, renamings
 from eomgen.judge.truth import (
     CONSTANT,
@@ -103,6 +103,7 @@ CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
 
 
 BEGUN = ("the first piece of the path", "contacts that slide as they do at the start")
+GROUND = "the joint's forces along the ground's axes"
 FREE = "energies over all coordinates, as if none followed from others"
 SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong that hold whatever the system does
 
@@ -125,6 +126,14 @@ class Judge:
             raise UsageError(f"there is no kind '{kind}' of equations", fix=f"one of {', '.join(KINDS)}")
         written = self.case.reading.read(equation)
         known = kind or kind_of_equation(written, self.case.model)
+        found, along_ground = self._of_axes(written, known, at), along_ground_axes(written)
+        if found or along_ground is written:
+            return found
+        other = self._of_axes(along_ground, known, at)
+        return replace(other, up_to=" and ".join(filter(None, (GROUND, other.up_to)))) if other else found
+
+    def _of_axes(self, written: HandEquation, known: str, at: Any) -> Verdict:
+        """Verdict on an equation whose reactions are along known axes."""
         if self.case.system.free is None or not any(call.name == SLOPE for call in written.calls):
             return self._of_reading(written, known, at)
         free = of_free_coordinates(written)
@@ -150,6 +159,8 @@ class Judge:
         if equations is None:
             return None
         written = self.case.reading.read(verdict.given)
+        if GROUND in verdict.up_to:
+            written = along_ground_axes(written)
         if equations.system.free is not None and (verdict.verdict == WRONG or FREE in verdict.up_to):
             written = of_free_coordinates(written)
         names = [name for name in self.case.unknown_names(written) if name not in verdict.substitution]

@@ -93,6 +93,24 @@ def of_free_coordinates(written: HandEquation) -> HandEquation:
     return replace(written, left=left, right=right, letters=letters)
 
 
+def along_ground_axes(written: HandEquation) -> HandEquation:
+    """The same, letters of a joint's forces in space along the ground's axes; itself where it has none of these."""
+    letters = dict(written.letters)
+
+    def along(call: Call) -> Call:
+        if str(call) not in letters or not call.name.startswith("reaction_") or len(set(call.args)) == len(call.args):
+            return call
+        other = replace(call, args=call.args[:1])
+        letters[str(other)] = letters[str(call)]
+        return other
+
+    left, right = (
+        replace(side, code=tuple((kind, along(x) if kind == "call" else x) for kind, x in side.code))
+        for side in (written.left, written.right)
+    )
+    return replace(written, left=left, right=right, letters=letters) if len(letters) > len(written.letters) else written
+
+
 def side_value(
     side: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar], rate: Callable[[Scalar], Scalar]
 ) -> Scalar:
@@ -172,13 +190,20 @@ class Reading:
             if symbol is not None:
                 yield plain_name(symbol), call
 
+    def _as_derived(self, call: Call, owner: str) -> Call:
+        """A component in the axes in which derivations have it: in space a joint's along those of its body."""
+        model = self.system.scope.model
+        of_joint = model.space == "space" and owner in model.bodies and call.args == (Reference(owner),)
+        forces = ("reaction_x", "reaction_y", "reaction_z")
+        return replace(call, args=(*call.args, Reference(owner))) if of_joint and call.name in forces else call
+
     def _reactions(self) -> Iterator[tuple[str, Call]]:
         """Letters of reactions and multipliers, and the function that each stands for."""
         model = self.system.scope.model
         for each, call, number in self._named:
             label = call.name.removeprefix("reaction_")
             if not label.startswith("couple_"):
-                yield reaction_name(label, each.owner, number), call
+                yield reaction_name(label, each.owner, number), self._as_derived(call, each.owner)
                 if label == "tension" and not number:
                     yield reaction_name(label, each.owner, "1"), call
         joints = {name: body.joint.symbol for name, body in model.bodies.items() if body.joint is not None}
@@ -186,7 +211,7 @@ class Reading:
         for name, symbol in owners.items():
             letter = name if symbol is None or symbol.letter is None else symbol.letter.text
             for axis in ("x", "y", "z") if model.space == "space" else ("x", "y"):
-                yield f"{letter}_{axis}", Call(f"reaction_{axis}", (Reference(name),))
+                yield f"{letter}_{axis}", self._as_derived(Call(f"reaction_{axis}", (Reference(name),)), name)
             yield f"M_{letter}", Call("reaction_couple", (Reference(name),))
         for row in self.system.constraints.closing:
             multiplier = Call(MULTIPLIER, (Reference(row.constraint), Expression.number(row.number)))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+import tempfile
 import tomllib
 from collections.abc import Callable
 from functools import cache
@@ -19,6 +20,7 @@ from slow_run import beside, usual
 
 sys.path.insert(0, str(Path(__file__).parent))
 
+import calls
 import compare
 import cross
 import laws
@@ -308,7 +310,24 @@ def rests(text: str, _: str) -> None:
     assert found.certify().ok
 
 
+def holds_by_command(text: str, words: str) -> None:
+    with tempfile.TemporaryDirectory() as folder:
+        outcome = calls.by_command(text, words.split(), Path(folder))
+    assert (outcome.code, outcome.fault) == (0, ""), outcome.detail
+
+
+def lines_are_right(text: str, names: str) -> None:
+    model = eomgen.loads(text)
+    lines = [x.strip() for x in eomgen.derive(model).render("text").splitlines()]
+    for name in names.split(", "):
+        (line,) = (x for x in lines if x.startswith(f"{name} = "))
+        assert eomgen.verify(model, line).verdict == "right"
+        assert eomgen.verify(model, f"{line} + 1").verdict == "wrong"
+
+
 EXPECTED: dict[str, Callable[[str, str], None]] = {
+    "command": holds_by_command,
+    "verified": lines_are_right,
     "refused": is_refused,
     "answers": answers_are,
     "oracle": is_as_the_oracle_says,
