@@ -8,7 +8,7 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -18,6 +18,7 @@ DIVIDED = ("symbolic", "mechanics")  # rooms whose folders have doors of their o
 SEAMS = ("joints", "forces", "constraints", "shapes", "outputs", "targets", "verbs")  # a member is a file, or a class
 LOWER = ("symbolic", "model", "mechanics", "codegen", "simulation")
 LAZY = re.compile(r"^(?:functools\.)?(?:cached_property|cache|lru_cache)\b")
+BY_HAND = re.compile(r"^(?:dict|list|OrderedDict|defaultdict)\b.*= field\(.*default_factory=", re.S)
 MOST_KEPT = 2  # things derived of a model that a class may cache before it counts as a bundle
 
 
@@ -134,17 +135,67 @@ class House:
         mine = (names for own, names in self.crossing.items() if own.split(".")[0] == room)
         return {(home, x) for names in mine for home, x in names if home.split(".")[0] != room}
 
+    @cached_property
+    def classes(self) -> list[tuple[str, ast.ClassDef]]:
+        """(module, class) of all of them."""
+        trees = ((m.name, node) for m in self.modules.values() for node in ast.walk(m.tree))
+        return [(name, node) for name, node in trees if isinstance(node, ast.ClassDef)]
+
+    @cached_property
+    def of_a_model(self) -> set[str]:
+        """Names of the classes that hold a model, or what holds one: by their fields, bases and `__init__`."""
+        words = {node: set(re.findall(r"\w+", " ".join(_held(node)))) for _, node in self.classes}
+        found, more = set[str](), {"Model"}
+        while more > found:
+            found = more
+            more = found | {node.name for _, node in self.classes if words[node] & found}
+        return found
+
     @property
     def bundles(self) -> list[tuple[str, int]]:
-        """(class, how many) of those that cache more than a few properties."""
-        classes = (n for m in self.modules.values() for n in ast.walk(m.tree) if isinstance(n, ast.ClassDef))
-        kept = ((node.name, sum(map(_is_kept, node.body))) for node in classes)
-        return sorted(((name, k) for name, k in kept if k > MOST_KEPT), key=lambda each: -each[1])
+        """(module.class, how many) of those that cache more than a few things derived of a model."""
+        kept = ((f"{m}.{node.name}", node.name, _kept(node)) for m, node in self.classes)
+        found = [(name, k) for name, own, k in kept if k > MOST_KEPT and own in self.of_a_model]
+        return sorted(found, key=lambda each: (-each[1], each[0]))
+
+    def calls(self, names: Collection[str], above: Collection[str]) -> set[tuple[str, str]]:
+        """(module, function) of each call of these functions outside some rooms."""
+        return {
+            (module.name, node.func.id)
+            for module in self.modules.values()
+            if module.name.split(".")[0] not in above
+            for node in ast.walk(module.tree)
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in names
+        }
 
 
-def _is_kept(node: ast.stmt) -> bool:
-    decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else ()
-    return any(LAZY.match(ast.unparse(each)) for each in decorators)
+def _held(node: ast.ClassDef) -> Iterator[str]:
+    """Texts of what a class holds: its bases, and the types of its fields and of the arguments of `__init__`."""
+    yield from map(ast.unparse, node.bases)
+    for part in node.body:
+        if isinstance(part, ast.AnnAssign):
+            yield ast.unparse(part.annotation)
+        elif isinstance(part, ast.FunctionDef) and part.name == "__init__":
+            yield from (ast.unparse(x.annotation) for x in (*part.args.args, *part.args.kwonlyargs) if x.annotation)
+
+
+def _kept(node: ast.ClassDef) -> int:
+    """Number of caches of a class: lazy properties, fields and attributes that begin empty, values recalled."""
+    return sum(sum(_kept_by(part)) for part in node.body)
+
+
+def _kept_by(part: ast.stmt) -> Iterator[int]:
+    if isinstance(part, ast.AnnAssign) and part.value is not None:
+        yield BY_HAND.match(f"{ast.unparse(part.annotation)} = {ast.unparse(part.value)}") is not None
+    if not isinstance(part, ast.FunctionDef):
+        return
+    yield any(LAZY.match(ast.unparse(each)) for each in part.decorator_list)
+    for node in ast.walk(part):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "recalled":
+            yield ast.unparse(node.args[0]) == "self"
+        elif isinstance(node, ast.Assign | ast.AnnAssign) and part.name == "__init__":
+            target = node.target if isinstance(node, ast.AnnAssign) else node.targets[0]
+            yield isinstance(target, ast.Attribute) and node.value is not None and ast.unparse(node.value) == "{}"
 
 
 def house(package: Path = PACKAGE) -> House:
@@ -192,7 +243,7 @@ def figures(whole: House) -> Iterator[tuple[str, str]]:
         yield f"foreign names in {room}", str(len(whole.taken_by(room)))
     doors = {m.name: len(door_of(f"eomgen.{m.name}")) for m in modules if m.is_init and m.name}
     yield "rooms with a door (names)", ", ".join(f"{name} {k}" for name, k in sorted(doors.items()) if k)
-    yield f"classes that cache more than {MOST_KEPT} properties", str(len(whole.bundles))
+    yield f"classes that cache more than {MOST_KEPT} things derived of a model", str(len(whole.bundles))
     yield "the largest of them", ", ".join(f"{name} {k}" for name, k in whole.bundles[:6])
     yield "public names in more than one module", str(sum(k > 1 for k in homes.values()))
     private = sum(small_literals(m) for m in modules if m.path.name != "tolerances.py")

@@ -125,30 +125,44 @@ class Generated:
                 found.append((float(place.state[symbols.t]), x, p))
         return found
 
-    @cached_property
-    def reactions(self) -> Emitted | None:
-        """The reactions, described; None where none has a single value."""
-        return self._reactions[0]
-
     @property
     def note(self) -> str:
         """A line on the reactions that are not in it, or ""."""
         return self._reactions[1]
 
     @cached_property
+    def functions(self) -> dict[Role, Emitted]:
+        """Every function that is written, described, by its role, the right-hand side first.
+
+        Raises:
+            DerivationError: the regressor is requested, and a contact has Coulomb friction.
+        """
+        further = (self._outputs(), self._matrices(), self._jacobian(), self._inverse(), self._linear())
+        found = (self.motion, self._reactions[0], *further)
+        return {each[1].role: each for each in found if each is not None}
+
+    @property
+    def emitted(self) -> tuple[Emitted, ...]:
+        """The same without their roles."""
+        return tuple(self.functions.values())
+
+    @property
+    def reactions(self) -> Emitted | None:
+        """The reactions, described; None where none has a single value."""
+        return self.functions.get(REACTIONS)
+
+    @property
     def inverse(self) -> Emitted | None:
         """Inverse dynamics, described; None where it is not requested."""
+        return self.functions.get(INVERSE)
+
+    def _inverse(self) -> Emitted | None:
         if self.actuated is None:
             return None
         found = self.equations.inverse_dynamics(self.actuated)
-        answers = vectors(found.program, x0=self._start.x0, p0=self._start.p0, held=self._held)
-        return found.program, replace(self.motion[1], vectors=answers, role=INVERSE, outputs=found.names)
-
-    @cached_property
-    def emitted(self) -> tuple[Emitted, ...]:
-        """Every function that is written, the right-hand side first."""
-        found = (self.motion, self.reactions, self.outputs, self.matrices, self.jacobian, self.inverse, self.regressor)
-        return tuple(each for each in found if each is not None)
+        return found.program, replace(
+            self.motion[1], vectors=self._answers(found.program), role=INVERSE, outputs=found.names
+        )
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -159,11 +173,10 @@ class Generated:
             "what puts the constraints back as they open by the errors of many steps (--baumgarte lets them pull)"
         )
         drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.constraints.rows)
-        unfinished += ["jacobian: nothing moves"] if self.slopes and self.jacobian is None else []
+        unfinished += ["jacobian: nothing moves"] if self.slopes and JACOBIAN not in self.functions else []
         return (*(note for note in (self.note, open_constraints * drifts) if note), *left, *unfinished)
 
-    @cached_property
-    def outputs(self) -> Emitted | None:
+    def _outputs(self) -> Emitted | None:
         """The outputs that are functions of the state, described; None where there are none."""
         names = tuple(self.equations.requested_outputs.values)
         if not names:
@@ -171,14 +184,12 @@ class Generated:
         program = self.equations.outputs_program
         return program, replace(self.motion[1], vectors=self._answers(program), role=OUTPUTS, outputs=names)
 
-    @cached_property
-    def matrices(self) -> Emitted | None:
+    def _matrices(self) -> Emitted | None:
         """M, forcing, J and gamma, described; None where friction is none of them, or nothing moves."""
         graph = self.equations.graph
         return None if graph.friction or not graph.M else self._blocks(matrices_of(graph), MATRICES)
 
-    @cached_property
-    def jacobian(self) -> Emitted | None:
+    def _jacobian(self) -> Emitted | None:
         """The slopes of the right-hand side, described; None where they are not requested, or nothing moves."""
         if not self.slopes or not self.equations.graph.symbols.q:
             return None
@@ -186,8 +197,7 @@ class Generated:
         program, described = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
         return program, replace(described, vectors=tuple(v for v in described.vectors if self._are_single(v)))
 
-    @cached_property
-    def regressor(self) -> Emitted | None:
+    def _linear(self) -> Emitted | None:
         """The regressor and its base columns, described; None where it is not requested.
 
         Raises:

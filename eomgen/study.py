@@ -22,7 +22,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import MissingValues
-from eomgen.frozen import dataclass, recalled
+from eomgen.frozen import RECALLED, dataclass, recalled
 from eomgen.mechanics.constraints import degrees_of_freedom, holds_identically
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
@@ -53,6 +53,7 @@ from eomgen.symbolic.expression import (
     State,
     depends_on,
     substituted,
+    symbols_of,
 )
 from eomgen.symbolic.numeric import COMPUTED, FLOAT, Work, evaluate, growing, number_of, numbers_of
 from eomgen.symbolic.print import text_size
@@ -60,6 +61,8 @@ from eomgen.symbolic.solve import LinearSystem, general_solution
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
     from eomgen.codegen import Program, RateSlopes, RequestedOutputs
+    from eomgen.mechanics.dynamics import Extent
+    from eomgen.mechanics.equilibrium import Equilibria, StaticEquations
     from eomgen.mechanics.linearization import FirstOrder
     from eomgen.mechanics.reactions import Reactions
 
@@ -80,6 +83,10 @@ class Study:
     system: System
     assumptions: tuple[str, ...] = ()
     replaced: EquationsOfMotion | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """State to be pickled, without what is recalled."""
+        return {name: value for name, value in self.__dict__.items() if name != RECALLED}
 
     @property
     def model(self) -> Model:
@@ -105,10 +112,15 @@ class Study:
     @cached_property
     def explicit(self) -> EquationsOfMotion:
         """The equations of motion as code has them: explicit where that is shorter, finite where nothing slides."""
-        equations = with_accelerations(self.derived)
+        equations = self.explicit_while_sliding
         if not equations.friction or equations.accelerations is None:
             return equations
         return replace(equations, accelerations=with_rest(self.system, equations.accelerations))
+
+    @cached_property
+    def explicit_while_sliding(self) -> EquationsOfMotion:
+        """The same without a value where nothing slides and friction has no direction: there a run of them ends."""
+        return with_accelerations(self.derived)
 
     @cached_property
     def program(self) -> Program:
@@ -140,7 +152,8 @@ class Study:
         """The linearized equations beside any motion, for numbers at a state."""
         from eomgen.mechanics.linearization import FirstOrder
 
-        return FirstOrder(self.system, ())
+        refuse_massless(self.derived)
+        return FirstOrder(self.derived, ())
 
     # -- reactions and outputs ---------------------------------------------------------------------
 
@@ -205,6 +218,10 @@ class Study:
         """The same with all speeds 0."""
         return ExactStart(self.system, True)
 
+    def start_of(self, *, at_rest: bool) -> ExactStart:
+        """The start, or the same with all speeds 0."""
+        return self.start_from_rest if at_rest else self.start
+
     @cached_property
     def state_at_start(self) -> dict[str, float]:
         """q and u at the start, in numbers.
@@ -213,6 +230,18 @@ class Study:
             MissingValues: a parameter that it needs has no value.
         """
         return start_state(self.system)
+
+    @cached_property
+    def values_at_start(self) -> dict[str, Scalar | float]:
+        """q and u at the start by name, exact where they have a closed form, so that zeros are exact.
+
+        Raises:
+            MissingValues: a parameter that they need has no value.
+        """
+        values: dict[str, Scalar | float] = {**self.state_at_start}
+        exact = {**self.start.exact, **self.system.loads.begun}
+        closed = zip(exact, substituted(tuple(exact.values()), self.parameters), strict=True)
+        return values | {x.name: value for x, value in closed if x.name in values and not symbols_of((value,))}
 
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
@@ -225,6 +254,35 @@ class Study:
             return found
         short = by_short_rows(self.equations, self.simple)
         return found if short is None or max(map(text_size, short.values())) > size else short
+
+    def rates(self, *, at_rest: bool) -> tuple[dict[Node, Scalar], Extent] | None:
+        """(every speed as a function of the coordinates, where that holds), by the first integrals; None: by none.
+
+        Raises:
+            DerivationError: a coordinate has no value at the start.
+        """
+        from eomgen.mechanics.integrals import rates_and_extent
+
+        start = self.start_of(at_rest=at_rest).values
+        return recalled(
+            self, ("rates", at_rest), lambda: rates_and_extent(self.equations, start, accelerations=self.accelerations)
+        )
+
+    def rates_by_one(self, *, at_rest: bool) -> tuple[dict[Node, Scalar], Extent] | None:
+        """(the speeds that momenta from the start and constraints give by one of them, where); None: several are free.
+
+        Raises:
+            DerivationError: a coordinate has no value at the start.
+        """
+        from eomgen.mechanics.integrals import relations_of, where_momenta_hold
+
+        start = self.start_of(at_rest=at_rest).values
+
+        def found() -> tuple[dict[Node, Scalar], Extent] | None:
+            relations = relations_of(self.equations, start)
+            return None if relations is None else (relations.speeds, where_momenta_hold(self.equations))
+
+        return recalled(self, ("rates by one", at_rest), found)
 
     @property
     def accelerations(self) -> ScalarRow:
@@ -242,6 +300,26 @@ class Study:
     def quantities(self) -> Quantities:
         """The values of output functions, accelerations and multipliers as symbols."""
         return Quantities(self.system)
+
+    # -- at rest ---------------------------------------------------------------------------------
+
+    @cached_property
+    def statics(self) -> StaticEquations:
+        """The equations of rest."""
+        from eomgen.mechanics.equilibrium import static_equations
+
+        return static_equations(self.system)
+
+    @cached_property
+    def equilibria(self) -> Equilibria:
+        """Every equilibrium that is found, the nearest to the start first.
+
+        Raises:
+            DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
+        """
+        from eomgen.mechanics.equilibrium import all_equilibria
+
+        return all_equilibria(self.statics)
 
     # -- as functions of the state ---------------------------------------------------------------
 

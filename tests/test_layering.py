@@ -377,3 +377,88 @@ def test_no_module_needs_what_only_posix_has():
             names = {each.name for part in tree.body if isinstance(part, ast.Import) for each in part.names}
             names |= {part.module for part in tree.body if isinstance(part, ast.ImportFrom)}
             assert not names & OF_POSIX, path
+
+
+READERS = {  # classes beside `Study` that cache more than six things: each number may only fall
+    "equations.Equations": 7,
+    "generated.Generated": 8,
+    "judge.balances.Balances": 11,
+    "judge.case.Case": 11,
+    "mechanics.equilibrium.places._Search": 8,
+    "mechanics.equilibrium.search._Search": 11,
+    "mechanics.free_bodies.friction._WithFriction": 8,
+    "mechanics.linearization.modes.Modes": 9,
+    "mechanics.linearization.steady._Writing": 9,
+    "mechanics.rigidity.structure.Structure": 10,
+    "proof.free_bodies._Formulas": 9,
+    "simulation.columns._Columns": 7,
+    "simulation.phase_model.PhaseModel": 9,
+    "simulation.phase_models.PhaseModels": 7,
+    "simulation.reaction_columns.ReactionColumns": 9,
+}
+
+
+def test_what_is_derived_of_a_model_is_cached_by_its_study_and_few_others(house):
+    """Lazy properties, fields that begin empty and values recalled, of classes that hold a model or what holds one."""
+    found = dict(house.bundles)
+    assert found.pop("study.Study") == max(house.bundles, key=lambda each: each[1])[1]
+    assert {name: k for name, k in found.items() if k > READERS.get(name, 6)} == {}
+    assert READERS.keys() <= found.keys()
+    assert len(found) <= 78
+
+
+def test_a_bundle_is_seen_by_whatever_it_caches(house, tmp_path):
+    """A lazy property, a field that begins empty, one of `__init__`, a recalled value: of what holds a model alone."""
+    texts = {
+        "fields": "c: Case\n    k: dict[str, int] = field(default_factory=dict)",
+        "recalled": "c: Case\n    def f(self): return recalled(self, 1, g)",
+        "begun": "def __init__(self, c: Case): self.k = {}",
+        "lazy": "c: Case\n    @cached_property\n    def f(self): return 1",
+        "numbers": "c: float\n    @cached_property\n    def f(self): return 1",
+    }
+    lazy = "".join(f"\n    @cached_property\n    def x{k}(self): return 1" for k in range(2))
+    for name, text in texts.items():
+        (tmp_path / f"{name}.py").write_text(f"class {name.title()}:\n    {text}{lazy}\n")
+    (tmp_path / "case.py").write_text("class Case:\n    model: Model\n")
+    found = run_path(str(TESTS.parent / "benchmarks" / "house.py"))["house"](tmp_path).bundles
+    assert found == [(f"{name}.{name.title()}", 3) for name in ("begun", "fields", "lazy", "recalled")]
+
+
+DERIVATIONS = {
+    "accelerations_and_multipliers",
+    "all_equilibria",
+    "assembled_by_recursion",
+    "determinate",
+    "equations_of_motion",
+    "outputs_of_state",
+    "rates_and_extent",
+    "right_hand_side",
+    "slopes_of",
+    "static_equations",
+    "system_of",
+    "with_accelerations",
+}
+OF_THEIR_OWN = {  # what rooms above `study` derive themselves, and why
+    ("documents.reaction_steps", "rates_and_extent"): "of the system that is shown",
+    ("equations", "equations_of_motion"): "with the laws of what is driven by their names",
+    ("equations", "system_of"): "with the laws of what is driven by their names",
+    ("identification.proof_of_groups", "equations_of_motion"): "a proof, of other mass properties",
+    ("judge.decision", "equations_of_motion"): "of any system, for its pieces",
+    ("page.live", "right_hand_side"): "of the study's accelerations while it slides",
+    ("questions.motion_from_start", "right_hand_side"): "of the study's accelerations while it slides",
+    ("questions.motion_from_start", "system_of"): "the names of the speeds, before contacts are known",
+    ("questions.proof_of_answers", "system_of"): "a proof, over the declared speeds",
+    ("questions.single_run", "assembled_by_recursion"): "with rows that pull",
+    ("verbs.animate", "system_of"): "of a structure that is pulled loose where it starts",
+    ("verbs.kept_derivations", "equations_of_motion"): "anew, to trust what was kept on disk",
+    ("verbs.kept_derivations", "system_of"): "anew, to trust what was kept on disk",
+    ("verbs.checked", "assembled_by_recursion"): "what is massless, of models that have no equations",
+    ("verbs.checked", "system_of"): "each error by itself",
+    ("verbs.reactions", "system_of"): "names of reactions, of models that have no equations",
+}
+BELOW = ("symbolic", "model", "robots", "mechanics", "codegen", "simulation", "study", "proof", "certificate")
+
+
+def test_what_a_study_derives_is_asked_of_it(house):
+    """Rooms above `study` call no function that it derives by, but where what they derive is another thing."""
+    assert house.calls(DERIVATIONS, BELOW) == OF_THEIR_OWN.keys()

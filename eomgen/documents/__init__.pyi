@@ -33,9 +33,6 @@ from eomgen.documents.document import lines_document as lines_document
 # A document of one section without a head, for results that are no derivation
 from eomgen.documents.document import plain_document as plain_document
 
-# J^T lam, one entry a speed
-from eomgen.documents.equation_steps import multiplier_forces as multiplier_forces
-
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
 

@@ -7,7 +7,6 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
-from eomgen.documents import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.judge.contributions import Contributions
@@ -17,9 +16,8 @@ from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System, free_rates, per_speed
-from eomgen.mechanics.equilibrium import Equilibrium, all_equilibria
+from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.integrals import rates_and_extent, relations_of, where_momenta_hold
 from eomgen.mechanics.kinematics import let_go
 from eomgen.mechanics.start import ExactStart, known_parameters
 from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, inferred, leaves_of
@@ -60,26 +58,30 @@ class Case:
     begun: bool = False
 
     @cached_property
-    def motion(self) -> MotionFromStart:
-        return MotionFromStart(self.model, self.at_rest)
-
-    @cached_property
     def phase(self) -> Study:
         """The equations as `derive` gives them; of a motion that has begun those of its first phase."""
-        if self.begun or not self.model.coordinates or not has_phases(self.model):
-            return self.motion.phase
-        return study_of(self.model)
+        if self._as_at_start:
+            return study_of(self.model)
+        return MotionFromStart(self.model, self.at_rest).phase
 
-    @cached_property
+    @property
+    def _as_at_start(self) -> bool:
+        """True if contacts, which may change, are taken as they are before anything moves."""
+        return not self.begun and bool(self.model.coordinates) and has_phases(self.model)
+
+    @property
+    def system(self) -> System:
+        return self.phase.system
+
+    @property
+    def starting(self) -> ExactStart:
+        """The start that every verb takes."""
+        return self.phase.start_of(at_rest=self.at_rest)
+
+    @property
     def start(self) -> Mapping[Node, Scalar]:
         """t, q and u at the start as scalars of the parameters, numbers without a closed form; {}: it is not known."""
         return self.starting.values
-
-    @cached_property
-    def starting(self) -> ExactStart:
-        """The start that every verb takes."""
-        of_motion = self.phase is self.motion.phase
-        return self.motion.begun if of_motion else ExactStart(self.system, self.at_rest)
 
     def starts_at_zero(self, *scalars: Scalar) -> bool | None:
         """True if scalars are 0 at the start, in numbers where it has no closed form; None: the start is not known."""
@@ -92,9 +94,7 @@ class Case:
     @cached_property
     def as_begun(self) -> Case | None:
         """The same just after the start; None where nothing begins there."""
-        if self.begun or not self.model.coordinates or not has_phases(self.model):
-            return None
-        return replace(self, begun=True)
+        return replace(self, begun=True) if self._as_at_start else None
 
     @cached_property
     def loosened(self) -> Case | None:
@@ -120,14 +120,14 @@ class Case:
         names = self.system.scope.names
         return frozenset(f"{q}''" for q, x in self.model.coordinates.items() if x.driven and is_zero(names[f"{q}''"]))
 
-    @cached_property
+    @property
     def laws_of_time(self) -> dict[Node, Scalar]:
         """The function of time of each coordinate that is driven by one."""
         scope, coordinates = self.system.scope, self.model.coordinates
         motions = {q: coordinates[q.name].motion for q in self.system.symbols.q}
         return {q: scope.value(law) for q, law in motions.items() if law is not None}
 
-    @cached_property
+    @property
     def constrained_rates(self) -> tuple[ScalarRow, ScalarRow]:
         """J u + sigma and J a + gamma of every constraint."""
         constraints, symbols = self.system.constraints, self.system.symbols
@@ -136,17 +136,13 @@ class Case:
             found.append(tuple(inner(J, unknowns) + b for J, b in zip(constraints.J, bias, strict=True)))
         return found[0], found[1]
 
-    @property
-    def system(self) -> System:
-        return self.phase.system
-
     @cached_property
     def reading(self) -> Reading:
         return Reading(self.system)
 
-    @cached_property
+    @property
     def quantities(self) -> Quantities:
-        return Quantities(self.system)
+        return self.phase.quantities
 
     @cached_property
     def equations(self) -> EquationsOfMotion | None:
@@ -156,15 +152,14 @@ class Case:
         except (DerivationError, ModelError):
             return None
 
-    @cached_property
-    def dimensions(self) -> Mapping[str, str]:
-        """Dimensions of the declared names, as far as they follow from the model."""
-        return {name: str(each) for name, each in inferred(Catalog(self.model, ())).found.items()}
+    def dimension(self, name: str) -> str:
+        """Dimension of a declared name, as far as it follows from the model; "" else."""
+        return str(self.parts.dimensions.get(name, ""))
 
-    @cached_property
+    @property
     def _equilibria(self) -> tuple[Equilibrium, ...]:
         try:
-            return all_equilibria(self.system).found
+            return self.phase.equilibria.found
         except (DerivationError, MissingValues):
             return ()
 
@@ -210,17 +205,15 @@ class Case:
         found = Mistakes(self.parts, what, of, start or {})
         return self._mistakes.setdefault((what, of), found)
 
-    @cached_property
+    @property
     def rows(self) -> ScalarRow:
         """E = M a + c - Q - J^T lam, one for each speed."""
-        e = self.equations
-        if e is None:
-            return ()
-        forces = multiplier_forces(e)
-        return tuple(
-            sum((m * a for m, a in zip(row, e.symbols.a, strict=True)), start=0) - right - force
-            for row, right, force in zip(e.M, e.forcing, forces, strict=True)
-        )
+        return () if self.equations is None else self.equations.residual[0]
+
+    @property
+    def closing(self) -> ScalarRow:
+        """J a + gamma, one for each constraint row."""
+        return () if self.equations is None else self.equations.residual[1]
 
     @cached_property
     def gained(self) -> Scalar | None:
@@ -233,17 +226,6 @@ class Case:
         with suppress(DerivationError):
             return gained if self.follows(self.system.scope.with_accelerations((gained,))[0]).holds else None
         return None
-
-    @cached_property
-    def closing(self) -> ScalarRow:
-        """J a + gamma, one for each constraint row."""
-        e = self.equations
-        if e is None:
-            return ()
-        return tuple(
-            sum((j * a for j, a in zip(row, e.symbols.a, strict=True)), start=gamma)
-            for row, gamma in zip(e.J, e.gamma, strict=True)
-        )
 
     # -- values of formulas -------------------------------------------------------------------
 
@@ -264,7 +246,7 @@ class Case:
         used = {name for leaf in leaves if isinstance(leaf.value, Expression) for name in leaf.value.names}
         return {**self.system.scope.names, **{x.name: y for x, y in self.definitions.items() if x.name not in used}}
 
-    @cached_property
+    @property
     def definitions(self) -> dict[Node, Scalar]:
         """Each parameter that the file gives by a formula, in terms of those that it gives by numbers."""
         scope, parts = self.system.scope, self.model.parameters
@@ -373,24 +355,23 @@ class Case:
         rows, closing = ([linear_row(x, self.forced)[0] for x in some] for some in (self.rows, self.closing))
         return rows, closing
 
-    @cached_property
+    @property
     def speeds(self) -> tuple[dict[Node, Scalar], Extent] | None:
         """(every speed as a function of the coordinates, where that holds), by the first integrals; None: by none."""
         if self.equations is None or not self.start:
             return None
         try:
-            return rates_and_extent(self.equations, self.start, accelerations=self.phase.accelerations)
+            return self.phase.rates(at_rest=self.at_rest)
         except (DerivationError, MissingValues, ModelError):
             return None
 
-    @cached_property
+    @property
     def by_momenta(self) -> tuple[dict[Node, Scalar], Extent] | None:
         """(the speeds that the momenta from the start and the constraints give by one of them, where); None: none."""
         if self.equations is None or not self.start:
             return None
         with suppress(DerivationError, MissingValues, ModelError):
-            found = relations_of(self.equations, self.start)
-            return None if found is None else (found.speeds, where_momenta_hold(self.equations))
+            return self.phase.rates_by_one(at_rest=self.at_rest)
         return None
 
     # -- what the solver of outputs answers --------------------------------------------------------

@@ -88,7 +88,7 @@ class Operator:
 
     system: System
 
-    @cached_property
+    @property
     def base(self) -> System:
         """The system whose speeds are rates."""
         return self.system.free or self.system
@@ -149,7 +149,7 @@ class Contributions:
     system: System
     equations: EquationsOfMotion | None = field(repr=False, default=None)
 
-    @cached_property
+    @property
     def operator(self) -> Operator:
         return Operator(self.system)
 
@@ -244,7 +244,7 @@ class Contributions:
             found.append(Contribution(name, body, force.name, Q=Q, kind="force", load=load))
         return found
 
-    @cached_property
+    @property
     def _varying(self) -> tuple[Node, ...]:
         """The symbols of which a constant force holds none."""
         symbols = self.operator.base.symbols

@@ -100,7 +100,7 @@ def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
     pi = case.system.scope.graph.pi
     quarter = over(pi, 2)
     yield 1, 0
-    if case.dimensions.get(name, "") in ANGLES:
+    if case.dimension(name) in ANGLES:
         for sign in (1, -1):
             for shift in (0, quarter, -quarter, pi):
                 if (sign, shift) != (1, 0):
@@ -113,7 +113,7 @@ def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
             yield 1, -rest
             yield -1, rest
     for parameter, node in case.system.symbols.parameters.items():
-        if case.dimensions.get(parameter, "") == case.dimensions.get(name, ""):
+        if case.dimension(parameter) == case.dimension(name):
             for sign in (1, -1):
                 yield from ((sign, node), (sign, -node))
 

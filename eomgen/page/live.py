@@ -16,7 +16,6 @@ from typing import Any
 
 from eomgen.codegen import (
     Program,
-    determinate,
     kinematic_rates,
     program_in_motion,
     program_of,
@@ -26,13 +25,13 @@ from eomgen.codegen import (
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import fixed_by_position, gaps_of, is_guess, is_typed, left_of
-from eomgen.mechanics.dynamics import System, mass, with_accelerations
-from eomgen.mechanics.free_bodies import with_rest
+from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Scope, branches_of
 from eomgen.mechanics.start import start_speeds
 from eomgen.model import Coordinate, Model, in_order
 from eomgen.scene import Scene
 from eomgen.simulation import PhaseModel, breakpoints_of
+from eomgen.study import Study
 from eomgen.symbolic.expression import Node, Scalar, is_zero, jacobian, substituted, symbols_of
 from eomgen.symbolic.numeric import growing
 
@@ -98,36 +97,31 @@ class Live:
 
     Args:
         phase: the one phase of a model whose contacts do not change.
+        study: what is derived of the system of this phase.
         scene: its drawable elements.
+        start, constraints: the constraints of the system as it is declared, and as it is integrated.
     """
 
     phase: PhaseModel
+    study: Study
     scene: Scene
+    start: ConstraintRows
+    constraints: ConstraintRows
 
     @property
     def model(self) -> Model:
-        return self.phase.system.scope.model
-
-    @cached_property
-    def start(self) -> ConstraintRows:
-        """The constraints of the system as it is declared."""
-        return constraint_rows(self.phase.declared)
-
-    @cached_property
-    def constraints(self) -> ConstraintRows:
-        """The constraints of the system as it is integrated."""
-        return self.start if self.phase.system is self.phase.declared else constraint_rows(self.phase.system)
+        return self.study.model
 
     @cached_property
     def programs(self) -> dict[str, Program]:
         """Programs by name; one that is the same as another, or has no results, is left out."""
         declared, system = self.phase.declared, self.phase.system
         with growing():
-            equations = with_accelerations(self.phase.equations)
+            equations = self.study.explicit_while_sliding
             found = {
                 "begin": self._begin(),
                 "rate": right_hand_side(equations),
-                "frame": program_in_motion(self._frame, equations),
+                "frame": program_in_motion(self._frame(), equations),
             }
             if self.start.gaps or self.start.rates:
                 found["start"] = self.start.program
@@ -140,13 +134,12 @@ class Live:
                 found["edges"] = program_of(left_of(self.phase.edges), system.symbols, inputs=system.inputs)
         return found
 
-    @cached_property
     def _frame(self) -> tuple[Scalar, ...]:
-        equations = self.phase.equations
+        equations = self.study.derived
         rates = kinematic_rates(equations)
         return (*self.scene.values, equations.T, equations.V, *rates, *self.reactions.values())
 
-    @cached_property
+    @property
     def derived(self) -> tuple[str, ...]:
         """The parameters whose values are expressions of others, each after those in its own."""
         given = {name: None if part is None else part.value for name, part in self.model.parameters.items()}
@@ -157,7 +150,8 @@ class Live:
         system = self.phase.declared
         scope, symbols = system.scope, system.symbols
         known: dict[Node, Scalar] = {symbols.t: 0}
-        for name in self.derived:
+        derived = self.derived
+        for name in derived:
             part = self.model.parameters[name]
             own = scope.value(part.value if part is not None else None)
             known[symbols.parameters[name]] = substituted((own,), known)[0]
@@ -165,13 +159,13 @@ class Live:
         q = [_begun(scope, part) for part in parts.values()]
         guesses = [scope.value(part.near) for part in parts.values()]
         speeds = start_speeds(system)
-        begun = (*(symbols.parameters[name] for name in self.derived), *q, *guesses, *(speeds[u] for u in symbols.u))
+        begun = (*(symbols.parameters[name] for name in derived), *q, *guesses, *(speeds[u] for u in symbols.u))
         return program_of(substituted(begun, known), symbols, inputs=system.inputs)
 
-    @cached_property
+    @property
     def reactions(self) -> dict[str, Scalar]:
         """The reactions that have a single value, by name."""
-        return single_reactions(self.phase)
+        return single_reactions(self.study)
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:
@@ -213,13 +207,22 @@ class Live:
         }
 
 
-def single_reactions(phase: PhaseModel) -> dict[str, Scalar]:
+def live_of(phase: PhaseModel, study: Study, scene: Scene) -> Live:
+    """The model of a phase, as a page moves it.
+
+    Args:
+        study: of the system of the phase.
+    """
+    start = constraint_rows(phase.declared)
+    return Live(phase, study, scene, start, start if phase.system is phase.declared else constraint_rows(phase.system))
+
+
+def single_reactions(study: Study) -> dict[str, Scalar]:
     """The reactions that have a single value, by name; {} where a body is unsupported."""
     try:
-        values = determinate(phase.reactions)
+        return study.reaction_values
     except DerivationError:
         return {}
-    return dict(zip(values, with_rest(phase.system, tuple(values.values())), strict=True))
 
 
 def _begun(scope: Scope, part: Coordinate) -> Scalar:

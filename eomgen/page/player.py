@@ -20,7 +20,7 @@ from eomgen.documents import notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
 from eomgen.model import Model, contacts_of, pieces_of, units_of
-from eomgen.page.live import Live, single_reactions
+from eomgen.page.live import Live, live_of, single_reactions
 from eomgen.page.markup import in_a_script, mathml, packed
 from eomgen.page.packing import packed_columns
 from eomgen.proof import (
@@ -36,6 +36,7 @@ from eomgen.proof import (
 )
 from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
 from eomgen.simulation import Configuration, PhaseModel, Trajectory
+from eomgen.study import Study
 from eomgen.symbolic.expression import parse_unit
 from eomgen.symbolic.numeric import CARRIED, COMPUTED, SEVEN_DIGITS, NoValue, evaluate, fifty_digits
 from eomgen.version import __version__
@@ -95,6 +96,11 @@ class PlayedRun:
         return self.phase.configuration != Configuration()
 
     @cached_property
+    def study(self) -> Study:
+        """Study of the system of the first phase."""
+        return Study(self.phase.system, replaced=self.phase.equations)
+
+    @property
     def rests(self) -> str:
         """Why the sliders rest: the page cannot move the model by itself; "" where it can."""
         if self.changes:
@@ -106,7 +112,7 @@ class PlayedRun:
     @cached_property
     def live(self) -> Live | None:
         """The model as the page evaluates it; None of contacts that change."""
-        return None if self.changes else Live(self.phase, self.scene)
+        return None if self.changes else live_of(self.phase, self.study, self.scene)
 
     @cached_property
     def drawn(self) -> tuple[dict[str, Any], np.ndarray | None]:
@@ -119,9 +125,9 @@ class PlayedRun:
     @cached_property
     def scene(self) -> Scene:
         """Scene with reactions of a model whose contacts do not change."""
-        scene = scene_of_system(self.phase.system, self.phase.equations)
-        values = single_reactions(self.phase)
-        found = resultants(self.phase.system, values)
+        scene = scene_of_system(self.study.system, self.study.derived)
+        values = single_reactions(self.study)
+        found = resultants(self.study.system, values)
         arrows = reaction_marks((resultant, resultant.of(values)) for resultant in found)
         return replace(scene, marks=(*scene.marks, *arrows))
 

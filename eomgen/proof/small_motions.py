@@ -307,7 +307,7 @@ class _Proof:
 
     # -- modes -----------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def wrong_mode(self) -> str:
         """(A - lambda) x = 0 with the printed coordinates of the shape; the speeds of x as they then must be.
 
@@ -329,7 +329,7 @@ class _Proof:
                 return f"mode {k}: {left.max():.2g} is left"
         return ""
 
-    @cached_property
+    @property
     def wrong_period(self) -> str:
         """exp(lambda/f) = exp(-2 pi zeta/sqrt(1 - zeta^2)), by the printed f and zeta."""
         for k, mode in enumerate(self.modes.spectrum.modes, start=1):
@@ -346,7 +346,7 @@ class _Proof:
         labels = self.modes.small.numbers.coordinates
         return np.array([shape[q] for q in labels]) if all(q in shape for q in labels) else None
 
-    @cached_property
+    @property
     def wrong_sums(self) -> str:
         values = np.array(self.modes.spectrum.eigenvalues)
         if len(values) != len(self.A):
@@ -359,7 +359,7 @@ class _Proof:
 
     # -- in closed form --------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def wrong_polynomial(self) -> str:
         """p(s) against the determinant of the pencil, at numbers s."""
         small, polynomial = self.modes.small, self.modes.polynomial
@@ -393,7 +393,7 @@ class _Proof:
         """The frequencies in closed form, in numbers."""
         return [number for number, _ in self.modes.closed if number >= 0]
 
-    @cached_property
+    @property
     def wrong_frequency(self) -> str:
         for w in self.closed:
             away = abs(self.values.imag - w).min()
@@ -415,7 +415,7 @@ class _Proof:
         left = self.values[np.argsort(abs(self.values))[zeros:]]
         return float(left.real.max(initial=-np.inf)) / self.largest if self.largest else 0.0
 
-    @cached_property
+    @property
     def wrong_stability(self) -> str:
         said = self.modes.spectrum.stability
         if said == "unstable":
@@ -513,7 +513,7 @@ class _Proof:
 
     # -- inputs ----------------------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def wrong_transfer(self) -> str:
         small, names = self.modes.small, self.modes.small.numbers
         trial = {x: float(v) for x, v in small.reference.trial.items()}

@@ -76,22 +76,19 @@ def placed(phase: Study, known: Mapping[Node, Scalar], numbers: Mapping[Node, fl
     return {**known, **places_of(equations, unknown, located)}
 
 
-def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAtInstant:
+def resting(study: Study) -> StateAtInstant:
     """Equilibrium that is nearest to the start; with unknowns in the loads, the start itself.
 
     Args:
-        system: its contacts as they are at rest.
-        guess: values of coordinates in place of `near` and `start`.
+        study: of the contacts as they are at rest.
     Raises:
         DerivationError: there is no equilibrium, or a contact would have to pull there.
     """
-    from eomgen.mechanics.equilibrium import all_equilibria, standing_system, static_equations
+    from eomgen.mechanics.equilibrium import standing_system
 
-    statics = static_equations(system)
-    if statics.loaded:
-        return _held(system)
-    equilibria = all_equilibria(system, guess)
-    place = equilibria.nearest()
+    if study.statics.loaded:
+        return _held(study.system)
+    place = study.equilibria.nearest()
     system = standing_system(place.statics.system)
     place.refuse_contradicted()
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""

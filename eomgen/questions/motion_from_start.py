@@ -18,7 +18,7 @@ from eomgen.codegen import compiled, program_of, right_hand_side
 from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
-from eomgen.mechanics.dynamics import Extent, system_of, with_accelerations
+from eomgen.mechanics.dynamics import Extent, system_of
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import AtRest, Model, Output, WrittenEquation
@@ -104,17 +104,17 @@ class MotionFromStart:
         """Reason why no phase begins at the start; "" where one does."""
         return "" if self.models is None or not self.model.coordinates else self._first.failure
 
-    @cached_property
+    @property
     def numbers(self) -> dict[Node, float]:
         """t, q and u at the start; {} where parameters are missing."""
         return self.begun.numbers
 
-    @cached_property
+    @property
     def begun(self) -> ExactStart:
         """The start at which the constraints hold."""
-        return self.phase.start_from_rest if self.at_rest else self.phase.start
+        return self.phase.start_of(at_rest=self.at_rest)
 
-    @cached_property
+    @property
     def start(self) -> dict[Node, Scalar]:
         """t, q and u at the start as scalars of the parameters; {} where one has no closed form there."""
         return dict(self.begun.exact) if self.begun.is_exact else {}
@@ -349,11 +349,10 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         RunFailed: the run ends before that time.
     """
     phase, p = motion.phase, parameters_in_numbers(motion)
-    system, equations, symbols = phase.system, phase.equations, phase.system.symbols
+    system, symbols = phase.system, phase.system.symbols
     x0 = np.array([motion.numbers[node] for node in (*symbols.q, *symbols.u)])
-    rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
     run = integrate(
-        rhs,
+        compiled(right_hand_side(phase.explicit_while_sliding), "numpy"),
         time=time,
         x0=x0,
         p=p,
@@ -362,7 +361,7 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         atol=FINE_RUN,
         samples=samples,
         projection=projection_of(system, p, "numpy"),
-        nearness=nearness_of(equations, p, system),
+        nearness=nearness_of(phase.equations, p, system),
         most_steps=steps,
     )
     if not run.ok:

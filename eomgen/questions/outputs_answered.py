@@ -37,7 +37,7 @@ from eomgen.errors import (
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
 from eomgen.mechanics.instant import InstantKinematics, instant_kinematics_of, requests_motion, requests_of
-from eomgen.mechanics.integrals import rates_and_extent, stay_constant
+from eomgen.mechanics.integrals import stay_constant
 from eomgen.mechanics.start import known_parameters
 from eomgen.model import (
     FUNCTIONS,
@@ -129,7 +129,7 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
         ModelError: no output can be answered as the model is wrong: say, a coordinate that moves no mass.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
-    solver, found, wrong, stopped = _Solver(model), dict[str, Answer](), [], ""
+    solver, found, wrong, stopped = _solver_of(model), dict[str, Answer](), [], ""
     for name, output in model.outputs.items():
         if stopped:
             found[name] = solver.unanswered(output, DerivationError(f"not sought: {stopped}"))
@@ -151,16 +151,23 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
     return Answers(found, solver, stopped)
 
 
+def _solver_of(model: Model) -> _Solver:
+    motions = {at_rest: MotionFromStart(model, at_rest) for at_rest in (False, True)}
+    return _Solver(model, motions, units_of_outputs(model))
+
+
 @dataclass(frozen=True)
 class _Solver:
-    """Solver of outputs: the equations of a model, derived where an output needs them."""
+    """Solver of outputs: the equations of a model, derived where an output needs them.
+
+    Args:
+        motions: the motion from the start, and from rest at the start.
+        units: of the outputs that have one.
+    """
 
     model: Model
-
-    @cached_property
-    def motions(self) -> dict[bool, MotionFromStart]:
-        """The motion from the start, and from rest at the start."""
-        return {at_rest: MotionFromStart(self.model, at_rest) for at_rest in (False, True)}
+    motions: Mapping[bool, MotionFromStart]
+    units: Mapping[Output, Unit]
 
     @property
     def phase(self) -> Study:
@@ -179,11 +186,7 @@ class _Solver:
         return Answer(unit=self._unit(output), message=f"{error.what}; {error.fix}" if error.fix else error.what)
 
     def _unit(self, output: Output) -> str:
-        return self._units[output].text if output in self._units else ""
-
-    @cached_property
-    def _units(self) -> dict[Output, Unit]:
-        return units_of_outputs(self.model)
+        return self.units[output].text if output in self.units else ""
 
     def _answer(self, output: Output) -> Answer:
         if is_of_a_run(output):
@@ -271,13 +274,11 @@ class _Solver:
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
         without = answer.value is None and answer.message == NO_VALUE.format("at the start")
-        if without and self._friction_at_rest:
-            resting = self._friction_at_rest
+        if without and (resting := self._friction_at_rest()):
             what = f"on the surface of {resting} nothing slides yet at the start, and friction has no direction there"
             return replace(answer, message=f"{what}; request it at a later instant: `at`")
         return answer
 
-    @cached_property
     def _friction_at_rest(self) -> str:
         """Names of the contacts on surfaces that are at rest at the start, with friction."""
         phase = self.phase
@@ -325,7 +326,7 @@ class _Solver:
             return replace(answer, value=None, message=jump) if jump else answer
         if not motion.start:
             raise DerivationError("a coordinate at the start has no closed form", fix="request it at an instant: `at`")
-        found = rates_and_extent(phase.equations, motion.start, accelerations=phase.accelerations)
+        found = phase.rates(at_rest=motion.at_rest)
         if found is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
@@ -383,7 +384,7 @@ class _Solver:
             MissingValues: a parameter that it needs has no value.
         """
         scalar = _in_unit(quantity, output)
-        known: dict[str, Scalar | float] = {x.name: v for x, v in self._parameters.items()}
+        known: dict[str, Scalar | float] = {x.name: v for x, v in self.phase.parameters.items()}
         names = {x.name for x in symbols_of((scalar,))}
         if names <= known.keys():
             return number_of(scalar, {x: known[x.name] for x in symbols_of((scalar,))})
@@ -397,23 +398,11 @@ class _Solver:
         values = {"t": 0.0, **known}
         moving = {x.name for x in (*system.symbols.q, *system.symbols.u)}
         if names & moving:
-            values |= self._begun
+            values |= self.phase.values_at_start
         for name in names & self.model.inputs.keys():
             state = {x: values[x.name] for x in symbols_of((system.inputs[name],))}
             values[name] = number_of(system.inputs[name], state)
         return number_of(scalar, {x: values[x.name] for x in symbols_of((scalar,))})
-
-    @cached_property
-    def _begun(self) -> dict[str, Scalar | float]:
-        """Coordinates and speeds at the start, exact where they have a closed form, so that zeros are exact."""
-        values: dict[str, Scalar | float] = {**self.phase.state_at_start}
-        exact = {**self.motions[False].begun.exact, **self.phase.system.loads.begun}
-        closed = zip(exact, substituted(tuple(exact.values()), self._parameters), strict=True)
-        return values | {x.name: value for x, value in closed if x.name in values and not symbols_of((value,))}
-
-    @cached_property
-    def _parameters(self) -> dict[Node, Scalar]:
-        return self.phase.parameters
 
     # -- at an instant -------------------------------------------------------------------------
 
@@ -471,7 +460,7 @@ class _Solver:
     @cached_property
     def at_rest(self) -> StateAtInstant:
         """Equilibrium, or the start held by the unknowns of the loads."""
-        return resting(study_at_rest(self.model).system)
+        return resting(study_at_rest(self.model))
 
     def _number_at(self, moment: StateAtInstant, output: Output) -> float:
         """The value in floating point.

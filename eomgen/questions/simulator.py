@@ -187,12 +187,12 @@ class Simulator:
         """Equations of the model at its own values."""
         return self.derive(self.model)
 
-    @cached_property
+    @property
     def is_constrained(self) -> bool:
         """True if the derivation may depend on the values of parameters: the model has constraints or contacts."""
         return has_phases(self.model) or bool(self.equations.graph.system.constraints.rows)
 
-    @cached_property
+    @property
     def keeps_start(self) -> bool:
         """True if the derivation depends on the start: contacts, constraints and springs that keep a length."""
         return has_phases(self.model) or self._follows_start

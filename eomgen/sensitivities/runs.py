@@ -13,7 +13,7 @@ from eomgen.codegen import compiled, kinematic_rates, parameter_vector, program_
 from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.linearization import CORNERS, FirstOrder
+from eomgen.mechanics.linearization import CORNERS
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Numbers
 from eomgen.model import Model, Output, Table, model_at, numeric_parameters, start_values
@@ -191,19 +191,16 @@ class ChangingState:
         closed = equations is not None and equations.friction
         return self.of([self.phase.of_state(formula) if closed else self.phase.raw(formula)])[0]
 
-    @cached_property
-    def _first(self) -> FirstOrder:
-        return FirstOrder(self.phase.system, ())
-
     @property
     def _rows(self) -> tuple[Scalar, ...]:
         """Residual that the accelerations and multipliers make 0."""
-        return *self._first.residual, *self._first.rows[1]
+        balance, closing = self.phase.equations.residual
+        return *balance, *closing
 
     @cached_property
     def _moving(self) -> tuple[Mapping[Node, Any], Seeds]:
         """The same with accelerations and multipliers."""
-        e, symbols = self._first.equations, self.phase.system.symbols
+        e, symbols = self.phase.equations, self.phase.system.symbols
         n, k, graph = len(e.M), len(e.J), self.phase.system.scope.graph
         M, J = np.split(Numbers(self.numbers).array((*e.M, *e.J), n), [n])
         inverse = np.linalg.pinv(np.block([[M, -J.T], [J, np.zeros((k, k))]]), rcond=RANK)

@@ -110,11 +110,11 @@ class PhaseModel:
     def reactions(self) -> Reactions:
         return self.watch.reactions
 
-    @cached_property
+    @property
     def coordinates(self) -> tuple[str, ...]:
         return tuple(q.name for q in self.system.symbols.q)
 
-    @cached_property
+    @property
     def speeds(self) -> tuple[str, ...]:
         return tuple(u.name for u in self.system.symbols.u)
 
@@ -158,14 +158,15 @@ class PhaseModel:
     def conservative(self) -> bool:
         return bool(self._known("conservative", lambda: is_conservative(self.equations)))
 
-    @cached_property
+    @property
     def declared_equations(self) -> EquationsOfMotion:
         """The equations of motion over the speeds that the model declares."""
         if self.declared is self.system:
             return self.equations
-        return equations_of_motion(self.declared)
+        found: EquationsOfMotion = self._known("declared equations", lambda: equations_of_motion(self.declared))
+        return found
 
-    @cached_property
+    @property
     def shown(self) -> tuple[str, ...]:
         """The speeds that a user sees."""
         return tuple(u.name for u in self.declared.symbols.u)
@@ -197,7 +198,7 @@ class PhaseModel:
         """Coordinates, rates, speeds and slacks of n states, by name."""
         named = dict(zip((*self.coordinates, *self.speeds), x.T, strict=False))
         if any(f"{q}'" not in named for q in self.coordinates):
-            rates = self._rates.many(t, self.functions.inner(x), self.p)
+            rates = self.functions.kinematic(self.system.scope.rates).many(t, self.functions.inner(x), self.p)
             named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
         if not self.loose:
             return named
@@ -268,10 +269,11 @@ class PhaseModel:
         found = self._known("slope", lambda: slope_of(self.equations, self.p, self.target))
         return None if found is None else replace(found, p=self.p)
 
-    @cached_property
+    @property
     def edges(self) -> tuple[Edge, ...]:
         """Edges at which closed contacts no longer determine the place where they touch."""
-        return edges_of(self.system.motion, self.configuration.open)
+        found: tuple[Edge, ...] = self._known("edges", lambda: edges_of(self.system.motion, self.configuration.open))
+        return found
 
     def slowest(self, t: float, x: np.ndarray) -> float:
         """The least speed with which anything slides on a surface; inf where nothing does [m/s]."""
@@ -294,10 +296,6 @@ class PhaseModel:
     def _slackening(self) -> RightHandSide:
         rates = {s.owner: s.value for s in self.watch.signals if s.what == "gap'" and s.value is not None}
         return self.functions.kinematic(tuple(rates[name] for name in self.loose))
-
-    @cached_property
-    def _rates(self) -> RightHandSide:
-        return self.functions.kinematic(self.system.scope.rates)
 
 
 def smallest_speed(values: Values) -> float:

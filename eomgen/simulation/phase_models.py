@@ -318,7 +318,7 @@ class DerivedAt:
         used = set(symbols_of([x for row in entries for x in (row.velocity, 0 if row.gap is None else row.gap)]))
         return [k for k, x in enumerate(self.system.symbols.parameters.values()) if x in used]
 
-    @cached_property
+    @property
     def _is_independent(self) -> bool:
         return not self.changes and self._rank == len(self._free.constraints.closing)
 
@@ -326,7 +326,7 @@ class DerivedAt:
     def _rank(self) -> int:
         return rank_of_constraints(self._free.constraints)
 
-    @cached_property
+    @property
     def _determining(self) -> tuple[list[int], list[int]]:
         """(the rows by which dependent coordinates are eliminated, their speeds)."""
         used = {} if self.system.elimination is None else self.system.elimination.used
@@ -334,7 +334,7 @@ class DerivedAt:
         rows = [i for i, row in enumerate(self._free.constraints.closing) if used.get((row.constraint, row.number))]
         return rows, [k for k, u in enumerate(self._free.symbols.u) if u.name[:-1] in names]
 
-    @cached_property
+    @property
     def _given(self) -> tuple[Scalar, ...]:
         """The gaps of rows that the coordinates were found to satisfy by themselves."""
         return tuple(row.gap for row in self._free.constraints.rows if row.identical and type(row.gap) is Node)

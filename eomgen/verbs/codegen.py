@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from eomgen import pipeline
 from eomgen.codegen import ALL as TARGETS
+from eomgen.codegen import JACOBIAN, MATRICES, OUTPUTS, REGRESSOR
 from eomgen.documents import Document, Lines, lines_document, plain_document, proven
 from eomgen.generated import Generated, generate
 from eomgen.model import Model
@@ -77,10 +78,10 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
         "reactions": list(reactions[1].outputs) if reactions else None,
         "reaction_operations": reactions[0].count.total if reactions else None,
     }
-    further = {"outputs": found.outputs, "matrices": found.matrices, "jacobian": found.jacobian}
-    for key, emitted in (*further.items(), ("regressor", found.regressor)):
-        if emitted is not None:
-            program, reported = emitted
+    further = {"outputs": OUTPUTS, "matrices": MATRICES, "jacobian": JACOBIAN, "regressor": REGRESSOR}
+    for key, role in further.items():
+        if role in found.functions:
+            program, reported = found.functions[role]
             payload[key] = list(reported.outputs or [name for name, *_ in reported.blocks])
             payload[f"{key}_operations"] = program.count.total
     if moved:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
 from typing import Any
 
 from eomgen import pipeline
@@ -46,39 +45,19 @@ class Compared:
 
 @dataclass(frozen=True)
 class Difference:
-    """The equations of motion of two models, side by side."""
+    """The equations of motion of two models, side by side.
+
+    Args:
+        declared: {table of parts: (names that only the other model declares, names that only this one declares)}.
+        values: the values of parameters that both have, where they differ [SI].
+        equations: every equation of motion and every row that closes a constraint, of either.
+    """
 
     first: Equations
     second: Equations
-
-    @cached_property
-    def declared(self) -> dict[str, tuple[list[str], list[str]]]:
-        """{table of parts: (names that only the other model declares, names that only this one declares)}."""
-        found = {}
-        for table in DECLARED:
-            own, other = (list(getattr(e.model, table) or ()) for e in (self.first, self.second))
-            found[table] = ([x for x in other if x not in own], [x for x in own if x not in other])
-        return {table: names for table, names in found.items() if any(names)}
-
-    @cached_property
-    def values(self) -> dict[str, tuple[float | None, float | None]]:
-        """The values of parameters that both have, where they differ [SI]."""
-        own, other = (exact_parameters(e.model) for e in (self.first, self.second))
-        shared = [name for name in self.first.model.parameters if name in self.second.model.parameters]
-        pairs = {name: (own.get(name), other.get(name)) for name in shared}
-        return {
-            name: (None if a is None else float(a), None if b is None else float(b))
-            for name, (a, b) in pairs.items()
-            if a != b
-        }
-
-    @cached_property
-    def equations(self) -> tuple[Compared, ...]:
-        """Every equation of motion and every row that closes a constraint, of either."""
-        graph = Graph()
-        rows = [_rows(e.graph, graph) for e in (self.first, self.second)]
-        names = dict.fromkeys((*rows[0], *rows[1]))
-        return tuple(_compared(name, *(row.get(name) for row in rows)) for name in names)
+    declared: Mapping[str, tuple[list[str], list[str]]]
+    values: Mapping[str, tuple[float | None, float | None]]
+    equations: tuple[Compared, ...]
 
     def entries(self) -> Mapping[str, Any]:
         """Entries of the JSON document."""
@@ -134,9 +113,38 @@ class Difference:
         return reported or [prose("Nothing is free to move in either.")]
 
 
+def difference_of(first: Equations, second: Equations) -> Difference:
+    """The equations of motion of two models, compared."""
+    pair, graph = (first, second), Graph()
+    rows = [_rows(e.graph, graph) for e in pair]
+    equations = (_compared(name, *(row.get(name) for row in rows)) for name in dict.fromkeys((*rows[0], *rows[1])))
+    return Difference(
+        first, second, _declared(*(e.model for e in pair)), _values(first.model, second.model), tuple(equations)
+    )
+
+
+def _declared(first: Model, second: Model) -> dict[str, tuple[list[str], list[str]]]:
+    found = {}
+    for table in DECLARED:
+        own, other = (list(getattr(model, table) or ()) for model in (first, second))
+        found[table] = ([x for x in other if x not in own], [x for x in own if x not in other])
+    return {table: names for table, names in found.items() if any(names)}
+
+
+def _values(first: Model, second: Model) -> dict[str, tuple[float | None, float | None]]:
+    own, other = (exact_parameters(model) for model in (first, second))
+    shared = [name for name in first.parameters if name in second.parameters]
+    pairs = {name: (own.get(name), other.get(name)) for name in shared}
+    return {
+        name: (None if a is None else float(a), None if b is None else float(b))
+        for name, (a, b) in pairs.items()
+        if a != b
+    }
+
+
 def difference_document(model: Model, other: Model, *, method: str, certify: bool) -> Document:
     """Differences between this model and another, with the proofs of both."""
-    found = Difference(pipeline.derive(model, method), pipeline.derive(other, method))
+    found = difference_of(pipeline.derive(model, method), pipeline.derive(other, method))
     document = replace(document_of(model, f"difference from {other.name}", found.steps), entries=found.entries)
     return proven(document, _both(found.first.certify(), found.second.certify()) if certify else None)
 

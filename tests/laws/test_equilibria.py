@@ -16,8 +16,9 @@ from eomgen.documents.json_form import as_dict
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.reactions import holding_of
-from eomgen.mechanics.equilibrium.search import Equilibria, Equilibrium, all_equilibria
+from eomgen.mechanics.equilibrium.search import Equilibria, Equilibrium
 from eomgen.model.parts import Model
+from eomgen.study import Study
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions_document
 
@@ -33,7 +34,7 @@ def model_of(text: str, **parameters: float | str) -> Model:
 
 
 def found_in(model: Model) -> Equilibria:
-    return all_equilibria(system_of(model))
+    return Study(system_of(model)).equilibria
 
 
 def exact(place: Equilibrium) -> dict[str, str]:

@@ -124,8 +124,8 @@ def test_a_place_that_is_no_rest_is_seen(monkeypatch):
     """phi = 0.01 in place of 0."""
     resting = answers.resting
 
-    def aside(system, guess=None):
-        found = resting(system, guess)
+    def aside(study):
+        found = resting(study)
         (phi,) = found.phase.system.symbols.q
         return StateAtInstant(found.phase, found.exact, {**found.numbers, phi: 0.01}, found.method)
 

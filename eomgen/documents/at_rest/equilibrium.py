@@ -33,7 +33,6 @@ from eomgen.documents.statements import (
 )
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium import (
     Curve,
     Equilibria,
@@ -42,7 +41,6 @@ from eomgen.mechanics.equilibrium import (
     RestingReaction,
     Stability,
     StaticEquations,
-    all_equilibria,
     reactions_or_why,
     standing_system,
 )
@@ -100,8 +98,8 @@ class Resting(Result):
         if not self.places:
             return Certificate(())
         balanced = (balance_check(self.places), pushes_check(self.places))
-        first = first_order_of(standing_system(self.places[0].statics.system))
         try:
+            first = first_order_of(standing_system(self.places[0].statics.system))
             base = certify(first.equations, begins=False)
         except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
             return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
@@ -135,17 +133,6 @@ class Resting(Result):
             RunFailed: there is none; the system is in space; parameters have no values.
         """
         return resting_picture(self.places)
-
-
-def resting_places(model: Model, system: System) -> Resting:
-    """The equilibria of a model.
-
-    Args:
-        system: of the model, contacts as they are at the start.
-    Raises:
-        DerivationError: dry friction; a drive that moves on steadily; forces that hold an unknown.
-    """
-    return Resting(model, all_equilibria(system))
 
 
 def _place(place: Equilibrium) -> dict[str, Any]:

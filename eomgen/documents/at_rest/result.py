@@ -276,13 +276,13 @@ def statics(
         DerivationError: bodies can move; a force acts at no place.
     """
     model = model_at(model, parameters, start)
-    system = study_at_rest(model).system
-    if has_degrees_of_freedom(system):
-        from eomgen.documents.at_rest.equilibrium import resting_places
+    study = study_at_rest(model)
+    if has_degrees_of_freedom(study.system):
+        from eomgen.documents.at_rest.equilibrium import Resting
 
         _refuse_for_resting(reaction=reaction, influence=influence)
-        return resting_places(model, system)
-    held, _ = with_drives_held(system)  # what the model drives is held where it starts
+        return Resting(model, study.equilibria)
+    held, _ = with_drives_held(study.system)  # what the model drives is held where it starts
     found = static_reactions_of(held, only=reaction)
     line = None if influence is None else influence_line(found.structure, influence)
     return Statics(model, found, line)

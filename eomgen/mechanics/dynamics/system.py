@@ -336,7 +336,7 @@ class EquationsOfMotion:
         """The symbols in which everything is written."""
         return self.system.symbols
 
-    @property
+    @cached_property
     def residual(self) -> tuple[ScalarRow, ScalarRow]:
         """(M a - forcing - J^T lam, J a + gamma) with a and lam as symbols: zero in every motion."""
         a, lam = self.symbols.a, self.symbols.lam

@@ -16,7 +16,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Constraints, generic_state, rows_of_constraint
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
-from eomgen.mechanics.equilibrium.equations import StaticEquations, static_equations
+from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
 from eomgen.mechanics.free_bodies import Indeterminate
@@ -164,28 +164,15 @@ def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
     return DerivationError(what, "coordinates", fix)
 
 
-def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
-    """Every equilibrium that is found, the nearest to the guess first, with the statement if there may be others.
+def all_equilibria(statics: StaticEquations) -> Equilibria:
+    """Every place that is found at which static equations hold, the nearest to the start first; it says if all are.
 
     Those that a one-sided contact does not hold, or does not let the system reach, come last.
 
-    Args:
-        guess: values of coordinates in place of `near` and `start`.
     Raises:
-        UsageError: a name in the guess that is no coordinate.
         DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
     """
-    return equilibria_of(static_equations(system), guess)
-
-
-def equilibria_of(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibria:
-    """Every place at which static equations hold; see `all_equilibria`.
-
-    Raises:
-        UsageError: a name in the guess that is no coordinate.
-        DerivationError: the forces hold an unknown.
-    """
-    return _search(statics, guess).equilibria()
+    return _search(statics, None).equilibria()
 
 
 def nearest_equilibrium(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibrium:

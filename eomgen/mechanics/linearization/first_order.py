@@ -54,30 +54,24 @@ class FirstOrder:
     """The equations of motion of a system, and their first derivatives, as graph scalars.
 
     Args:
-        system: the system.
+        equations: the equations of motion.
         relations: what is known between positions: they vanish.
         at_rest: whether it is looked at where all speeds are 0 alone: what holds none of them is far shorter.
     """
 
-    system: System
+    equations: EquationsOfMotion
     relations: tuple[Scalar, ...]
     at_rest: bool = False
 
-    @cached_property
-    def equations(self) -> EquationsOfMotion:
-        equations = equations_of_motion(self.system)
-        refuse_massless(equations)
-        return equations
+    @property
+    def system(self) -> System:
+        return self.equations.system
 
     def looked_at(self, *, at_rest: bool) -> FirstOrder:
         """The same equations for states at rest, or for moving ones, without a new derivation."""
-        if at_rest == self.at_rest:
-            return self
-        found = replace(self, at_rest=at_rest)
-        found.__dict__["equations"] = self.equations
-        return found
+        return self if at_rest == self.at_rest else replace(self, at_rest=at_rest)
 
-    @cached_property
+    @property
     def residual(self) -> tuple[Scalar, ...]:
         """M a - forcing - J^T lam."""
         return self.equations.residual[0]
@@ -89,14 +83,14 @@ class FirstOrder:
         rows = (*e.M, e.forcing, *e.J, e.sigma, e.gamma)
         return frozenset(x.name for x in symbols_of(x for row in rows for x in row))
 
-    @cached_property
+    @property
     def held(self) -> frozenset[Node]:
         """Symbols that occur in the equations of motion, in the rates and in the relations."""
         scope, rows = self.system.scope, (*self.equations.M, *self.equations.J, *self.rows)
         entries = (x for row in (*rows, *scope.N) for x in row)
         return frozenset(symbols_of((*entries, *self.residual, *scope.rates, *self.relations)))
 
-    @cached_property
+    @property
     def rows(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
         """(J u + sigma, J a + gamma)."""
         graph, symbols = self.equations, self.system.symbols
@@ -109,7 +103,7 @@ class FirstOrder:
         symbols = self.system.symbols
         q, u, w = symbols.q, symbols.u, tuple(symbols.inputs.values())
         velocities, accelerations = self.rows
-        unmoved, still = self._unmoved, dict.fromkeys(u, 0) if self.at_rest else {}
+        unmoved, still = self._unmoved(), dict.fromkeys(u, 0) if self.at_rest else {}
 
         def by_places(rows: Sequence[Scalar]) -> ScalarRows:
             return jacobian(substituted(rows, unmoved | still), q)
@@ -125,7 +119,6 @@ class FirstOrder:
             "W": [[-x for x in row] for row in jacobian(self.residual, w)],
         }
 
-    @cached_property
     def _unmoved(self) -> dict[Node, Scalar]:
         """Accelerations that are 0 in every state considered: all of them at rest, if no constraint needs one."""
         e, s = self.equations, self.system.symbols
@@ -134,11 +127,17 @@ class FirstOrder:
 
 
 def first_order_of(system: System) -> FirstOrder:
-    """The equations of a system to first order."""
+    """The equations of a system to first order.
+
+    Raises:
+        ModelError: a free coordinate moves no mass.
+    """
     scope = system.scope
     relations = [x for x in position_equations(system, start_values(scope)) if depends_on(x, scope.symbols.q)]
     relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
-    return FirstOrder(system, tuple(relations))
+    equations = equations_of_motion(system)
+    refuse_massless(equations)
+    return FirstOrder(equations, tuple(relations))
 
 
 def _held(system: System) -> list[list[Scalar]]:
