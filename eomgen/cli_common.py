@@ -217,7 +217,7 @@ def deliver_several(
                 results.append(failure(error.exit_code, error.problems))
     if form == "json":
         models = [{"path": path, **json.loads(each)} for path, each in zip(paths, results, strict=True)]
-        results = [json.dumps({"schema_version": SCHEMA_VERSION, "models": models}, indent=1) + "\n"]
+        results = [files.json_text({"schema_version": SCHEMA_VERSION, "models": models}, indent=1) + "\n"]
     put("\n".join(results), output)
     return code
 

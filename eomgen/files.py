@@ -9,6 +9,7 @@ folder `.eomgen-*` beside its target, the next write into the same folder takes 
 from __future__ import annotations
 
 import errno
+import json
 import os
 import re
 import secrets
@@ -20,9 +21,9 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
-from eomgen.errors import WriteFailed
+from eomgen.errors import DerivationError, WriteFailed
 
 try:
     import fcntl
@@ -38,6 +39,23 @@ SILENCE = 30.0  # seconds after which nothing more is awaited of a pipe
 LOOK = 0.1  # seconds between two looks at a silent pipe
 TRIES = 10  # another process may take a new folder away before it is locked
 WAITING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
+
+
+def json_text(content: Any, **form: Any) -> str:
+    """The content as JSON, which has no nan and no infinity.
+
+    Args:
+        form: `indent`, `separators` and such of `json.dumps`.
+    Raises:
+        DerivationError: a number of it is not finite.
+    """
+    try:
+        return json.dumps(content, allow_nan=False, **form)
+    except ValueError as error:
+        raise DerivationError(
+            f"a result has no finite number, which JSON cannot hold: {error}",
+            fix="its text form shows which; give values at which it is real and within doubles",
+        ) from error
 
 
 def write(path: str | Path, content: Content) -> None:

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 import eomgen
-from eomgen.errors import ExpressionError, ModelError
+from eomgen.cli import main
+from eomgen.errors import DerivationError, ExpressionError, ModelError
+from eomgen.files import json_text
+from eomgen.model.shapes import MassProperties
+from eomgen.model.shapes.base import diagonal
+from eomgen.model.shapes.solids import Cone
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.text import parse
@@ -88,3 +95,56 @@ def test_exact_numbers_beyond_all_doubles_are_infinite_in_doubles_and_right_in_t
     assert np.all(np.isinf(evaluate((x * 10**400,), {x: np.ones(2)}, ARRAYS)[0]))
     low, high = INTERVALS.number(-(10**400))
     assert low == -math.inf and high < -1e308
+
+
+CONE = """
+eomgen = 1
+space = "space"
+parameters = {{ m = "{m}", r = "{r}", h = 0.4 }}
+[bodies.b]
+shape = {{ kind = "cone", mass = "m", radius = "r", height = "h" }}
+joint = {{ kind = "fixed" }}
+"""
+
+
+def _run(tmp_path, text, *words):
+    path = tmp_path / "cone.toml"
+    path.write_text(text)
+    return CliRunner().invoke(main, [words[0], str(path), *words[1:]])
+
+
+@pytest.mark.parametrize("form", ["text", "json", "latex", "markdown"])
+@pytest.mark.parametrize("certify", [(), ("--no-certify",)], ids=["certified", "not certified"])
+def test_a_result_beyond_doubles_has_failed_in_every_form_and_is_named(tmp_path, form, certify):
+    """m r^2 at m = 1e300 kg, r = 1e10 m is 1e320 kg m^2: no result, so exit 3; never an internal error."""
+    done = _run(tmp_path, CONE.format(m="1e300", r="1e10"), "inertia", "--format", form, *certify)
+    assert done.exit_code == 3
+    assert "no finite number: " in done.stderr and "I_xx" in done.stderr
+    if form == "json":
+        found = json.loads(done.stdout, parse_constant=pytest.fail)["results"]["I_xx(b)"]
+        assert found["value"] is None and "no finite number" in found["message"]
+
+
+def test_a_formula_that_makes_a_moment_of_inertia_negative_is_contradicted_in_json(tmp_path, monkeypatch):
+    """k = sqrt(I/m) of I < 0 is no number: exit 3, the shape's check fails, and null stands for k."""
+
+    def of_mass(self, m, value):
+        r, h = value(self.radius), value(self.height)
+        across = Fraction(3, 80) * m * h * h - 2 * m * r * r
+        return MassProperties(m, (0, 0, 0), diagonal(across, across, Fraction(3, 10) * m * r * r))
+
+    monkeypatch.setattr(Cone, "of_mass", of_mass)
+    done = _run(tmp_path, CONE.format(m="2", r="0.3"), "inertia", "--json")
+    assert done.exit_code == 3
+    assert "the certificate FAILS" in done.stderr and "no finite number: results.k_1(b)" in done.stderr
+    found = json.loads(done.stdout, parse_constant=pytest.fail)
+    assert found["results"]["k_1(b)"]["value"] is None
+    assert "fails" in {check["status"] for check in found["certificate"]["checks"]}
+
+
+@pytest.mark.parametrize("beyond", [math.nan, math.inf, -math.inf])
+def test_json_never_holds_what_is_no_number(beyond):
+    """JSON has no word for nan and inf: what would be written with one is refused, however deep it stands."""
+    with pytest.raises(DerivationError, match="no finite number"):
+        json_text({"a": [1.0, {"b": beyond}]})
+    assert json_text({"a": [1.0, None]}) == '{"a": [1.0, null]}'

@@ -5,7 +5,6 @@ Program -> right answers at random states, in 50 digits, with which emitted code
 
 from __future__ import annotations
 
-import json
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -19,6 +18,7 @@ from eomgen.codegen.program import Program, Solve, at_unit_norms, stem_of, unit_
 from eomgen.codegen.rhs import RightHandSide, compiled, target_named
 from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Target, TestVector, header
 from eomgen.errors import DerivationError
+from eomgen.files import json_text
 from eomgen.symbolic.expression import Fraction, Node
 from eomgen.symbolic.numeric import COMPUTED, SINGLE, SINGLE_ROUNDING, SOLVED, Arithmetic, evaluate, fifty_digits
 from eomgen.version import SCHEMA_VERSION
@@ -309,7 +309,7 @@ def vectors_text(emitted: Sequence[Emitted]) -> str:
         "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the others out or tau; "
         "null: no value there, not a number",
     }
-    lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
+    lines = [f" {json_text(name)}: {json_text(value, ensure_ascii=False)}," for name, value in head.items()]
     if not any(reported.role.name == "reactions" for _, reported in emitted):
         lines.append(' "reactions": null,')
     for other, reported in emitted:
@@ -334,7 +334,7 @@ def _other(program: Program, reported: Description) -> list[str]:
             "accelerations": [x.name for x in program.accelerations],
             "inputs": list(program.symbols.inputs),
         }
-    lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
+    lines = [f"  {json_text(key)}: {json_text(value, ensure_ascii=False)}," for key, value in own.items()]
     return [f' "{reported.role.name}": {{', *lines, *_listed(reported, "  "), " },"]
 
 
@@ -353,5 +353,5 @@ def _listed(description: Description, indent: str) -> list[str]:
         }
         for v in description.vectors
     ]
-    listed = ",\n".join(f"{indent} {json.dumps(row)}" for row in rows)
+    listed = ",\n".join(f"{indent} {json_text(row)}" for row in rows)
     return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]

@@ -5,7 +5,6 @@ Document -> JSON: its entries, its steps; formulas as text that the grammar of t
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -16,6 +15,7 @@ from eomgen.documents.reaction_values import reactions_payload
 from eomgen.documents.reading import TRIED, Reader, without_cases
 from eomgen.documents.statements import Formula, Grid, Prose, Quantity, Statement, Table
 from eomgen.documents.text import cell_text, formula_text, prose_text, side_text, statement_lines
+from eomgen.files import json_text
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.model import Taken, exact_parameters
@@ -28,7 +28,7 @@ name = "json"
 
 def render(document: Document) -> str:
     """The document as a JSON text."""
-    return json.dumps(as_dict(document), indent=1, allow_nan=False) + "\n"
+    return json_text(as_dict(document), indent=1) + "\n"
 
 
 def as_dict(document: Document) -> dict[str, Any]:

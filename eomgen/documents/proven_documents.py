@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import operator
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
@@ -12,8 +14,8 @@ from typing import Any
 from eomgen.documents.document import Document, quantities_of
 from eomgen.documents.read_back import page_read_back
 from eomgen.documents.rendering import drawn
-from eomgen.documents.statements import Equation, Listing, Matrix, Quantity, Statement, parts_of
-from eomgen.documents.text import cases_text, is_piecewise, side_text
+from eomgen.documents.statements import Equation, Formula, Grid, Law, Listing, Matrix, Quantity, Statement, parts_of
+from eomgen.documents.text import cases_text, cell_text, is_piecewise, side_text
 from eomgen.documents.texts_read import json_read_back, text_read_back
 from eomgen.errors import ExpressionError, NumberBeyond
 from eomgen.proof import Certificate, Check, Tally, differing
@@ -23,6 +25,9 @@ from eomgen.symbolic.print import to_text
 
 NAME = "formulas, read back as they are printed, are what they stand for"
 HOW = "50 digits"
+NUMBERLESS = "it has no finite number: it is not real, or beyond what a double holds"
+NO_NUMBERS = ("nan", "inf", "-inf")  # as they are printed
+NAMED = 3  # of those without a finite number in a message
 SHOWN = 60  # characters of a formula in a message
 TRIES = 12  # random values of the symbols of a formula, for one with a value
 CASE = re.compile(r"(?P<if_true>.*?)(?: else)? where (?P<left>.*) (?P<relation><=?) (?P<right>.*)")
@@ -53,7 +58,11 @@ def proven_for_machines(document: Document) -> Document:
 
 
 def proven_as(document: Document, form: str) -> Document:
-    """The document with a proof of the page that is made of it, read back, where it has one."""
+    """The document with a proof of the page that is made of it, read back, where it has one.
+
+    Where a number of it is not finite it has failed, and names it.
+    """
+    document = _with_finite_numbers(document, form)
     if form == "json":
         return proven_for_machines(document)
     if document.certificate is None:
@@ -178,3 +187,67 @@ def _off(expression: Expression, unit: str, right: float, values: Mapping[str, A
     state = dict(zip(symbols.values(), evaluate([values[name] for name in symbols], {}, digits), strict=True))
     found = float(evaluate((scalar,), state, digits)[0])
     return differing(found / parse_unit(unit).size, right)
+
+
+# -------- finite numbers --------------------------------------------------------------------------------------
+# nan and inf are no results, and JSON has no word for them: they become null, and the document says of what.
+
+
+def _with_finite_numbers(document: Document, form: str) -> Document:
+    """The document, failed where a number of it is not finite.
+
+    Args:
+        form: in which it is written: JSON is made of the entries, other forms of the sections.
+    """
+    names: list[str] = []
+    if form == "json":
+        entries = _finite("", document.entries(), names)
+        document = replace(document, entries=lambda: entries)
+    else:
+        statements = (statement for step in document.steps for statement in step.statements)
+        names += dict.fromkeys(name for statement in statements for name in _numberless(statement))
+    if not names:
+        return document
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    failed = f"no finite number: {', '.join(names[:NAMED])}{more}"
+    return replace(document, failed="; ".join(filter(None, (document.failed, failed))))
+
+
+def _finite(name: str, entry: Any, names: list[str]) -> Any:
+    """The entry with None for numbers that are not finite, whose names are added to the list."""
+    if isinstance(entry, Quantity):
+        beside, value = _finite(name, entry.beside, names), _finite(name, entry.value, names)
+        if value is entry.value:
+            return entry if beside is entry.beside else replace(entry, beside=beside)
+        return replace(entry, value=None, message=entry.message or NUMBERLESS, beside=beside)
+    if isinstance(entry, Mapping):
+        found = {key: _finite(f"{name}.{key}" if name else str(key), inner, names) for key, inner in entry.items()}
+        return entry if all(map(operator.is_, found.values(), entry.values())) else found
+    if isinstance(entry, (list, tuple)):
+        rows = [_finite(f"{name}[{k}]", inner, names) for k, inner in enumerate(entry)]
+        return entry if all(map(operator.is_, rows, entry)) else rows
+    if isinstance(entry, float) and not math.isfinite(entry):
+        names.append(name)
+        return None
+    return entry
+
+
+def _numberless(statement: Statement) -> Iterator[str]:
+    """Names of what a statement tells without a finite number."""
+    if isinstance(statement, Listing):
+        values = ((row.name, row.quantity.value) for row in statement.rows)
+        yield from (name for name, value in values if value is not None and not math.isfinite(value))
+    elif isinstance(statement, Formula) and any(map(_is_no_number, statement.sides)):
+        yield side_text(statement.sides[0])
+    elif isinstance(statement, Grid):
+        for row in statement.rows:
+            yield from (cell_text(row[max(k - 1, 0)]) for k, cell in enumerate(row) if _is_no_number(cell))
+
+
+def _is_no_number(part: Any) -> bool:
+    """True for nan and infinity, as numbers and as they are printed."""
+    if isinstance(part, Matrix):
+        return any(_is_no_number(x) for row in part.rows for x in row)
+    if isinstance(part, Law):
+        part = part.text
+    return part in NO_NUMBERS if isinstance(part, str) else isinstance(part, float) and not math.isfinite(part)

@@ -5,12 +5,12 @@ The formats of a report, by the ending of its file: each gives the files, by nam
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from eomgen.documents import Setter, markdown_blocks, markdown_escaped, setter_of
 from eomgen.errors import RunFailed, ToolMissing, UsageError, visible
+from eomgen.files import json_text
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.figure import Pictures
 from eomgen.page.html import html_page
@@ -133,7 +133,7 @@ def notebook_text(report: Report) -> str:
         raise RunFailed(
             f"a cell of the notebook fails: {error.ename}: {error.evalue}", fix="write an .html or .md"
         ) from error
-    return json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+    return json_text(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 
 
 def _cells(report: Report) -> Iterator[tuple[bool, str]]:

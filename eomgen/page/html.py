@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import re
 from collections.abc import Callable, Sequence
 from html import unescape
@@ -28,6 +27,7 @@ from eomgen.documents import (
     side_latex,
 )
 from eomgen.errors import ToolMissing
+from eomgen.files import json_text
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
 from eomgen.page.markup import Html, element, font_face, html, in_a_row, in_a_script, mathml, packed, script, style
 from eomgen.page.packing import table_bytes, with_far_copies
@@ -56,7 +56,7 @@ def html_page(report: Report) -> str:
         element("header", *_head(report)),
         shown,
         element("footer", element("p", *_made(report))),
-        element("template", packed(json.dumps(apart).encode()), id="apart"),
+        element("template", packed(json_text(apart).encode()), id="apart"),
         script(f"{in_a_script(own_text('player/columns.mjs'))}\n{own_text('page.js')}"),
     )
     head = (
@@ -265,7 +265,7 @@ def _attachments(files: Sequence[Attachment], computed: frozenset[str]) -> Html:
             reported, size, content = None, f" ({max(1, round(len(file.content) / 1024))} KB)", file.content
         else:
             carried = {name: column for name, column in file.content.items() if name not in computed}
-            reported, size, content = json.dumps(tuple(file.content)), "", table_bytes(carried, DIGITS)
+            reported, size, content = json_text(tuple(file.content)), "", table_bytes(carried, DIGITS)
         named = {"data_name": file.name, "data_media": file.media, "data_columns": reported}
         link = element("a", file.name, href="#downloads", data_packed=packed(with_far_copies(content)), **named)
         rows.append(element("li", link, f"{size}: {file.about}"))

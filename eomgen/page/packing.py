@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
+from eomgen.files import json_text
 from eomgen.frozen import dataclass
 
 # -------- columns ---------------------------------------------------------------------------------------------
@@ -68,7 +68,7 @@ def packed_columns(columns: Iterable[np.ndarray], digits: int) -> PackedColumns:
 def table_bytes(columns: Mapping[str, np.ndarray], digits: int) -> bytes:
     """A table of named columns as a page offers it: a line of JSON, then the numbers."""
     packed = packed_columns(columns.values(), digits)
-    return json.dumps(packed.head(names=tuple(columns)), separators=(",", ":")).encode() + b"\n" + packed.content
+    return json_text(packed.head(names=tuple(columns)), separators=(",", ":")).encode() + b"\n" + packed.content
 
 
 def _holes(column: np.ndarray) -> Iterable[Hole]:

@@ -22,6 +22,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from eomgen.errors import ExpressionError, UsageError
+from eomgen.files import json_text
 from eomgen.frozen import dataclass
 from eomgen.model import Model, Taken, TypedNumbers, loads, nearest, refuse_what_is_not_set, with_values
 from eomgen.sensitivities import slope_requested
@@ -351,7 +352,7 @@ class SweepPlan:
         versions = {"eomgen": __version__, "numpy": np.__version__, "python": platform.python_version()}
         versions |= {"machine": platform.machine(), "system": platform.system()}
         reported = {"hash": self.hash, "runs": self.runs.count, "columns": list(self.columns), **self.as_dict()}
-        return json.dumps(reported | {"versions": versions}, indent=1) + "\n"
+        return json_text(reported | {"versions": versions}, indent=1) + "\n"
 
 
 def asdict_of(plan: SweepPlan) -> dict[str, Any]:
