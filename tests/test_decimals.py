@@ -21,6 +21,10 @@ from eomgen.symbolic.print.layout import decimal_of, number_text
         (Fraction(3, 8), "3/8"),
         (Fraction(3, 80), "3/80"),  # of a cone
         (Fraction(1, 128), "1/128"),
+        (Fraction(83, 320), "83/320"),  # of a hemisphere
+        (Fraction(127, 128), "127/128"),
+        (Fraction(3, 160), "3/160"),
+        (Fraction(1234567, 160), "7716.04375"),  # its fraction is longer
         (Fraction(1, 25), "0.04"),
         (Fraction(33, 400), "0.0825"),
         (Fraction(-33, 400), "-0.0825"),

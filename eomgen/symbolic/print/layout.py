@@ -455,7 +455,7 @@ def _is_of_sums(x: Node) -> bool:
 
 MOST_DIGITS = 8  # of a decimal that may be longer than its fraction
 LONGEST_FRACTION = 100  # the smallest denominator of a fraction that reads worse than its decimal
-MUCH_LONGER = 2  # characters by which a decimal may be longer than its fraction
+MUCH_LONGER = 2  # characters by which a decimal of hundredths may be longer than its fraction
 MOST_PRINTED = 4000  # digits of a whole number: Python prints 4300
 BITS = math.log2(10)  # of a digit
 KEPT = 1000  # numbers whose decimals are cached
@@ -493,7 +493,8 @@ def _is_long(c: Number) -> bool:
 def decimal_of(c: Number) -> tuple[str, int] | None:
     """(digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better.
 
-    33/400 is 0.0825 and 1/25 is 0.04; 1/12, 27/2, 3/80 and 1/128 stay fractions. One of many digits, as a file of
+    33/400 is 0.0825 and 1/25 is 0.04; 1/12, 27/2, 3/80 and 1/128 stay fractions, and so does 83/320 (of a hemisphere),
+    whose decimal is longer: only a denominator with 25 in it comes from decimals. One of many digits, as a file of
     another program has it, is the decimal that it was where that is shorter.
     """
     if _is_long(c) or (c.denominator < LONGEST_FRACTION and c.denominator % 25):
@@ -503,7 +504,7 @@ def decimal_of(c: Number) -> tuple[str, int] | None:
     if places is None:
         return None
     text, power = _placed(digits, places)
-    longer = MUCH_LONGER if len(digits) <= MOST_DIGITS else -1
+    longer = -1 if len(digits) > MOST_DIGITS else 0 if c.denominator % 25 else MUCH_LONGER
     if len(text) + (len(f"e{power}") if power else 0) > len(str(abs(c))) + longer:
         return None
     return ("-" if c < 0 else "") + text, power
