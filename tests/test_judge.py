@@ -955,3 +955,42 @@ def test_derivatives_of_energies_are_no_products_of_letters(model, right, wrong)
         assert found.verdict == reported, found
         (said,) = verdicts_again([judge.said(found)])
         assert said.ok or (said.ok is None and judge.case.reading.read(equation).takes_rates), said
+
+
+TURNED = """
+eomgen = 1
+name = "turned"
+space = "plane"
+parameters = { m = 2, r = 3, M = 2 }
+coordinates = { phi = { start = 0, speed = "1/9" } }
+bodies.b = { mass = "m", center = ["r", 0], inertia = 0, joint = { kind = "revolute", angle = "phi" } }
+forces.c = { kind = "couple", body = "b", couple = "M" }
+"""
+FREE_TURN = TURNED[: TURNED.index("forces")]
+
+
+@each(
+    "model, equation, verdict",
+    [
+        (TURNED, "9*phi'' = 1", "right"),
+        (TURNED, "phi'' = 1/9", "right"),
+        (TURNED, "phi'' = 2/9", "wrong"),
+        (TURNED, "m*r^2*phi'' = 2", "right"),
+        (TURNED, "M*r^2*phi'' = M", "wrong"),  # M = m by their numbers: no number is meant
+        (FREE_TURN, "m*r^2*phi' = 2", "right"),
+        (FREE_TURN, "m*r^2*phi' = 3", "wrong"),
+        (FREE_TURN, "m*r^2*phi' = M", "wrong"),
+        (TURNED.replace("r = 3", "r = 1"), "2*phi'' = M", "right"),
+        (FREE_TURN, "T = 9*phi'^2", "right"),
+        (FREE_TURN.replace("r = 3", "r = 1"), "T = 1/2*phi'^2", "wrong"),
+        (FREE_TURN.replace("m = 2, r = 3", "m = 6, r = 1"), "T = 3*phi'^2", "wrong"),  # a square of 1 is left out
+        (FREE_TURN, "T = 1/9", "right"),
+        (FREE_TURN, "T = 2/9", "wrong"),
+    ],
+)
+def test_a_term_that_is_a_number_alone_has_its_unit_by_the_values_of_the_file(model, equation, verdict):
+    """m r^2 phi' = 2: right with the values of the file, which are told; no name stands for another of its value."""
+    found = eomgen.verify(eomgen.loads(model), equation)
+    assert found.verdict == verdict, found
+    if verdict == "right":
+        assert "the values of the file: " in found.up_to

@@ -250,6 +250,8 @@ class Judge:
                 or on_one_side(case, written, kind, scalar)
                 or found
             )
+        elif found.why == CONSTANT:  # with another value, but of the file's numbers it may be this one
+            found = with_values_of_file(case, written, kind, scalar) or found
         if not found.holds and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 so = truth_of(begun, begun.value(written.difference), kind)

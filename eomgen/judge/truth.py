@@ -278,16 +278,38 @@ def stays_constant(case: Case, scalar: Scalar) -> Extent:
 
 
 def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Scalar) -> Decided | None:
-    """Right where the numbers in it are values of the file: of parameters that it does not name."""
-    missing = meant_by_numbers(case, written, (scalar, *case.rows))
-    found = _holds_with(case, kind, scalar, missing) if missing else None
-    return None if found is None else Decided(True, f"{found.from_start}{values_reported(missing)}{while_(found.held)}")
+    """Right where the numbers in it are values of the file: of parameters that it does not name; if not of these alone
+    of all, where it speaks in numbers."""
+    scalars = (scalar, *case.rows)
+    for known in (meant_by_numbers(case, written, scalars), _all_values(case, written, scalars)):
+        if known and (found := _holds_with(case, kind, scalar, known)) is not None:
+            return Decided(True, f"{found.from_start}{values_reported(known)}{while_(found.held)}")
+    return None
+
+
+def _all_values(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
+    """Values of all parameters in scalars, the first that of an equation which speaks in numbers; {}: it does not.
+
+    A term without any name, the 2 of m r^2 phi' = 2, has its unit by the file alone; so has every number of an equation
+    that names no parameter, phi'' + 4.905 sin(phi) = 0: there a 1 is not put in, of which nobody sees that it is meant.
+    """
+    parameters, values = case.system.symbols.parameters, _exact_values(case)
+    terms = scalars[0].args if type(scalars[0]) is Node and scalars[0].op == "add" else ()
+    if all(type(x) is Node for x in terms):
+        if parameters.keys() & written.names:
+            return {}
+        values = {name: x for name, x in values.items() if x not in (1, -1)}
+    return {x: values[n] for n, x in parameters.items() if n in values and depends_on_one(scalars, x)}
+
+
+def _exact_values(case: Case) -> dict[str, Scalar]:
+    return {name: exact(x) for name, x in exact_parameters(case.model).items() if not isinstance(x, float)}
 
 
 def meant_by_numbers(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
     """Values of parameters in scalars that an equation does not name; {} where none of its numbers is one of these."""
     parameters = case.system.symbols.parameters
-    known = {name: exact(x) for name, x in exact_parameters(case.model).items() if not isinstance(x, float)}
+    known = _exact_values(case)
     missing: dict[Node, Scalar] = {
         x: known[n]
         for n, x in parameters.items()
