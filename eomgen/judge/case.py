@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
@@ -20,7 +21,7 @@ from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import let_go
 from eomgen.mechanics.start import ExactStart, known_parameters
-from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, inferred, leaves_of
+from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, exact_parameters, inferred, leaves_of
 from eomgen.questions import Answer, MotionFromStart, solve
 from eomgen.simulation import has_phases
 from eomgen.study import Study, study_of
@@ -34,6 +35,7 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     depends_on,
     derivative,
+    exact,
     gradient,
     inner,
     is_zero,
@@ -255,6 +257,36 @@ class Case:
         for _ in known:  # formulas of formulas
             known = dict(zip(known, substituted(tuple(known.values()), known), strict=True))
         return known
+
+    def meant_by_numbers(self, written: HandEquation, scalars: ScalarRow) -> dict[Node, Scalar]:
+        """Values of parameters in scalars that an equation does not name; {}: none of its numbers is one of these."""
+        missing = self._values_in(scalars, {n: x for n, x in self._values.items() if n not in written.names})
+        numbers = {abs(what) for side in (written.left, written.right) for kind, what in side.code if kind == "number"}
+        return missing if numbers & {abs(x) for x in missing.values() if x not in (0, 1, -1)} else {}
+
+    def meant_as_a_whole(self, written: HandEquation, scalars: ScalarRow) -> dict[Node, Scalar]:
+        """Values of all parameters in scalars, the first that of an equation which speaks in numbers; {}: it does not.
+
+        A term without any name, the 2 of m r^2 phi' = 2, has its unit by the file alone; so has every number of an
+        equation that names no parameter, phi'' + 4.905 sin(phi) = 0: there a 1 is not put in, which nobody sees.
+        """
+        terms = scalars[0].args if type(scalars[0]) is Node and scalars[0].op == "add" else ()
+        if any(type(x) is not Node for x in terms):
+            return self._values_in(scalars, self._values)
+        named = self.system.symbols.parameters.keys() & written.names
+        return {} if named else self._values_in(scalars, {n: x for n, x in self._values.items() if x not in (1, -1)})
+
+    @cached_property
+    def _values(self) -> dict[str, Any]:
+        """Exact values of the parameters, by name; those in doubles left out."""
+        return {name: exact(x) for name, x in exact_parameters(self.model).items() if not isinstance(x, float)}
+
+    def _values_in(self, scalars: ScalarRow, values: Mapping[str, Any]) -> dict[Node, Scalar]:
+        """Those of values whose parameters stand in scalars."""
+        parameters = self.system.symbols.parameters
+        return {
+            x: values[n] for n, x in parameters.items() if n in values and any(depends_on(y, (x,)) for y in scalars)
+        }
 
     def evaluated(
         self, expression: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar]

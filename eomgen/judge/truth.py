@@ -31,7 +31,6 @@ from eomgen.symbolic.expression import (
     depends_on,
     depends_on_any,
     derivative,
-    exact,
     gradient,
     is_zero,
     order,
@@ -281,43 +280,10 @@ def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Sc
     """Right where the numbers in it are values of the file: of parameters that it does not name; if not of these alone
     of all, where it speaks in numbers."""
     scalars = (scalar, *case.rows)
-    for known in (meant_by_numbers(case, written, scalars), _all_values(case, written, scalars)):
+    for known in (case.meant_by_numbers(written, scalars), case.meant_as_a_whole(written, scalars)):
         if known and (found := _holds_with(case, kind, scalar, known)) is not None:
             return Decided(True, f"{found.from_start}{values_reported(known)}{while_(found.held)}")
     return None
-
-
-def _all_values(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
-    """Values of all parameters in scalars, the first that of an equation which speaks in numbers; {}: it does not.
-
-    A term without any name, the 2 of m r^2 phi' = 2, has its unit by the file alone; so has every number of an equation
-    that names no parameter, phi'' + 4.905 sin(phi) = 0: there a 1 is not put in, of which nobody sees that it is meant.
-    """
-    parameters, values = case.system.symbols.parameters, _exact_values(case)
-    terms = scalars[0].args if type(scalars[0]) is Node and scalars[0].op == "add" else ()
-    if all(type(x) is Node for x in terms):
-        if parameters.keys() & written.names:
-            return {}
-        values = {name: x for name, x in values.items() if x not in (1, -1)}
-    return {x: values[n] for n, x in parameters.items() if n in values and depends_on_one(scalars, x)}
-
-
-def _exact_values(case: Case) -> dict[str, Scalar]:
-    return {name: exact(x) for name, x in exact_parameters(case.model).items() if not isinstance(x, float)}
-
-
-def meant_by_numbers(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
-    """Values of parameters in scalars that an equation does not name; {} where none of its numbers is one of these."""
-    parameters = case.system.symbols.parameters
-    known = _exact_values(case)
-    missing: dict[Node, Scalar] = {
-        x: known[n]
-        for n, x in parameters.items()
-        if n in known and n not in written.names and depends_on_one(scalars, x)
-    }
-    sides = (written.left, written.right)
-    numbers = {abs(what) for side in sides for kind, what in side.code if kind == "number"}
-    return missing if numbers & {abs(x) for x in missing.values() if x not in (0, 1, -1)} else {}
 
 
 def values_reported(values: Mapping[Node, Scalar]) -> str:
@@ -328,7 +294,7 @@ def values_reported(values: Mapping[Node, Scalar]) -> str:
 def with_definitions(case: Case, kind: str, scalar: Scalar) -> Decided | None:
     """Right where parameters are replaced by the formulas that the file gives for them."""
     known = case.definitions
-    used = [x for x in known if depends_on_one((scalar, *case.rows), x)]
+    used = [x for x in known if any(depends_on(y, (x,)) for y in (scalar, *case.rows))]
     found = _holds_with(case, kind, scalar, known) if used else None
     if found is None:
         return None
@@ -398,10 +364,6 @@ def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scal
         return None
     steady = _holds_with(case, "rate", rate, known) if case.starts_at_zero(plain) else None
     return None if steady is None else HoldsWith(steady.held, FROM_START)
-
-
-def depends_on_one(scalars: Sequence[Scalar], x: Node) -> bool:
-    return any(depends_on(each, (x,)) for each in scalars)
 
 
 def on_one_side(case: Case, written: HandEquation, kind: str, scalar: Scalar) -> Decided | None:
@@ -597,7 +559,7 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
     found = _put_in(case, name, x, any_start=bool(constants))
     if found is None or (found.holds and found.begins is not False):
         return found
-    values = meant_by_numbers(case, written, (x, *case.rows, *case.start.values()))
+    values = case.meant_by_numbers(written, (x, *case.rows, *case.start.values()))
     other = _put_in(case, name, x, any_start=bool(constants), values=values) if values else None
     return other if other is not None and other.holds and other.begins else found
 
