@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,9 +21,11 @@ from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.arithmetic import INTERVALS
+from eomgen.symbolic.numeric.dense import independent, lengths_of
 from eomgen.symbolic.numeric.evaluation import ARRAYS, FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 
+MODELS = Path(__file__).parent.parent / "models"
 SPRING = """
 eomgen = 1
 space = "plane"
@@ -148,3 +151,25 @@ def test_json_never_holds_what_is_no_number(beyond):
     with pytest.raises(DerivationError, match="no finite number"):
         json_text({"a": [1.0, {"b": beyond}]})
     assert json_text({"a": [1.0, None]}) == '{"a": [1.0, null]}'
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-200, 1.0, 1e200, 1e300])
+def test_lengths_of_rows_and_columns_are_right_at_any_size(size):
+    """|s (3, 4)| = 5 s, although (3 s)^2 is beyond doubles, or below."""
+    A = size * np.array([[3.0, 4.0], [0.0, 0.0]])
+    assert lengths_of(A, 1) == pytest.approx([5 * size, 0], rel=1e-15, abs=0)
+    assert lengths_of(A, 0) == pytest.approx([3 * size, 4 * size], rel=1e-15, abs=0)
+    assert lengths_of(A) == pytest.approx(5 * size, rel=1e-15, abs=0)
+    assert independent(size * np.array([[1.0, 2.0], [2.0, 1.0]]), smallest=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("x", ["1e-300", "1e-160", "1e200*a"])
+def test_the_reactions_of_a_truss_are_proven_wherever_its_nodes_stand(tmp_path, x):
+    """A node 1e-300 m aside makes numbers of 300 digits in the exact directions of members: the proof holds."""
+    text = (MODELS / "seeds" / "ch21_p6.toml").read_text().replace("n1 = [0, 0]", f'n1 = ["{x}", 0]')
+    done = _run(tmp_path, text, "solve", "--json")
+    found = json.loads(done.stdout)
+    assert done.exit_code == 0 and found["certificate"]["ok"], done.stderr
+    if x != "1e200*a":
+        assert found["outputs"]["R1_y"]["value"] == pytest.approx(8)

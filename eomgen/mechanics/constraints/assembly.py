@@ -55,6 +55,7 @@ from eomgen.symbolic.numeric import (
     all_roots,
     evaluate,
     fifty_digits,
+    lengths_of,
     of_one_length,
 )
 
@@ -227,7 +228,7 @@ def fork_at(constraints: Constraints, state: State) -> Fork | None:
     if not constraints.closing or not constraints.motion.scope.symbols.u:
         return None
     J = _matrix(constraints, state)
-    lengths = np.linalg.norm(J, axis=1, keepdims=True)
+    lengths = lengths_of(J, 1, keepdims=True)
     U, sizes, _ = np.linalg.svd(of_one_length(J))
     here = int(np.sum(sizes > RANK))
     if here == len(constraints.closing):

@@ -34,6 +34,7 @@ from eomgen.symbolic.numeric import (
     balanced,
     evaluate,
     fifty_digits,
+    lengths_of,
 )
 
 CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)
@@ -477,7 +478,7 @@ def _slope(constraints: Constraints, state: State, free: Sequence[Node]) -> np.n
 
 def _slopes(J: np.ndarray) -> np.ndarray:
     """Length of each column of J, bounded below so that none is 0."""
-    lengths = np.linalg.norm(J, axis=0)
+    lengths = lengths_of(J, 0)
     return np.asarray(np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0)))
 
 

@@ -49,6 +49,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     independent_rows,
+    lengths_of,
 )
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
@@ -263,7 +264,7 @@ def rows_alike(constraints: Constraints) -> tuple[int, ...]:
         J = rows_where_closed(constraints, generic_state(constraints))
     except (DerivationError, MissingValues, NoValue):
         return own
-    kept, lengths, found = independent_rows(J, RANK_NEARBY), np.linalg.norm(J, axis=1), list(own)
+    kept, lengths, found = independent_rows(J, RANK_NEARBY), lengths_of(J, 1), list(own)
     for i in own:
         if i in kept or not lengths[i]:
             continue
@@ -467,7 +468,7 @@ class _Forms:
     def allowed(self, forms: Sequence[DifferentialForm]) -> np.ndarray:
         """A basis of what these forms and the held ones allow, one in each column."""
         rows = [self.numbers(form) for form in (*self.held, *forms)]
-        A = np.array([row / (np.linalg.norm(row) or 1) for row in rows])
+        A = np.array([row / (lengths_of(row) or 1) for row in rows])
         _, sizes, V = np.linalg.svd(A)
         return V[int(np.sum(sizes > RANK)) :].T
 
@@ -561,7 +562,7 @@ def _bracket(y: Sequence[Node], X: DifferentialForm, Y: DifferentialForm) -> Dif
 
 
 def _rank(rows: Sequence[np.ndarray]) -> int:
-    scaled = [row / (np.linalg.norm(row) or 1) for row in rows]
+    scaled = [row / (lengths_of(row) or 1) for row in rows]
     return int(np.linalg.matrix_rank(np.array(scaled), tol=RANK)) if scaled else 0
 
 

@@ -44,6 +44,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     independent_rows,
+    lengths_of,
 )
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
@@ -529,7 +530,7 @@ def _matrix(lines: Sequence[GivenRow], unknowns: Sequence[Node], values: State) 
         for node, x in zip(line.entries, numbers, strict=False):
             matrix[i, index[node]] = float(x)
         matrix[i, -1] = float(numbers[-1])
-        size = np.linalg.norm(matrix[i, :-1])
+        size = lengths_of(matrix[i, :-1])
         matrix[i] /= size if size else 1.0
     return matrix
 

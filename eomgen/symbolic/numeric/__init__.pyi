@@ -28,6 +28,9 @@ from eomgen.symbolic.numeric.dense import follows_in_digits as follows_in_digits
 # The rows that do not follow from those before them: what these leave of a row is more than `smallest` of it
 from eomgen.symbolic.numeric.dense import independent_rows as independent_rows
 
+# Euclidean lengths of the columns (axis 0), of the rows (axis 1) or of all together, at any size
+from eomgen.symbolic.numeric.dense import lengths_of as lengths_of
+
 # The rows brought to length 1; those that are rounding are 0
 from eomgen.symbolic.numeric.dense import of_one_length as of_one_length
 

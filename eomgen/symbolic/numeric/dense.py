@@ -22,9 +22,19 @@ def rank(A: np.ndarray, *, smallest: float = RANK) -> int:
     return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
 
 
+def lengths_of(A: np.ndarray, axis: int | None = None, *, keepdims: bool = False) -> np.ndarray:
+    """Euclidean lengths of the columns (axis 0), of the rows (axis 1) or of all together: |2^e a| = 2^e |a|.
+
+    Whatever their size: no square is beyond doubles, where numpy's norm of 1e200 is infinite and of 1e-200 is 0.
+    """
+    _, powers = np.frexp(np.max(np.abs(A), axis=axis, keepdims=True, initial=0.0))
+    found: np.ndarray = np.ldexp(np.linalg.norm(np.ldexp(A, -powers), axis=axis, keepdims=True), powers)
+    return found if keepdims else np.squeeze(found, axis=axis)
+
+
 def of_one_length(A: np.ndarray) -> np.ndarray:
     """The rows brought to length 1; those that are rounding are 0."""
-    brought: np.ndarray = A / divisor(np.linalg.norm(A, axis=1, keepdims=True))
+    brought: np.ndarray = A / divisor(lengths_of(A, 1, keepdims=True))
     return brought
 
 

@@ -37,7 +37,7 @@ from eomgen.symbolic.expression import (
     over,
     symbols_of,
 )
-from eomgen.symbolic.numeric import ELIMINATED_AT_50, PIECEWISE, RANK, check_patience
+from eomgen.symbolic.numeric import ELIMINATED_AT_50, PIECEWISE, RANK, check_patience, lengths_of
 from eomgen.symbolic.solve import cramer
 
 __all__ = ["LinearSystem", "Pivots", "Solution", "general_solution", "unique_solution"]
@@ -300,7 +300,7 @@ def _spanning(columns: Sequence[Sequence[Any]]) -> list[int]:
     basis: list[np.ndarray] = []
     for k, column in enumerate(columns):
         whole = np.array([float(x) for x in column])
-        rest = whole / np.linalg.norm(whole)
+        rest = whole / lengths_of(whole)
         for direction in (*basis, *basis):
             rest = rest - direction * (direction @ rest)
         if np.linalg.norm(rest) > RANK:
@@ -378,7 +378,7 @@ def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
 
 def _independent(A: np.ndarray) -> bool:
     """True if the columns are independent."""
-    lengths = np.linalg.norm(A, axis=0)
+    lengths = lengths_of(A, 0)
     return bool(lengths.all() and np.linalg.svd(A / lengths, compute_uv=False)[-1] > RANK)
 
 
