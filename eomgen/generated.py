@@ -72,6 +72,12 @@ from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import BEST, RUN, SINGLE, doing
 from eomgen.version import __version__
 
+NOT_SINGLE = (
+    "at no state tried are the values single, as a change of the state opens redundant constraints, and which of "
+    "these still hold then decides"
+)
+"""why slopes of some models have no right answers"""
+
 
 @dataclass(frozen=True)
 class Generated:
@@ -174,6 +180,7 @@ class Generated:
         )
         drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.constraints.rows)
         unfinished += ["jacobian: nothing moves"] if self.slopes and JACOBIAN not in self.functions else []
+        unfinished += [f"test vectors of the {d.role.name}: {d.untested}" for _, d in self.emitted if d.untested]
         return (*(note for note in (self.note, open_constraints * drifts) if note), *left, *unfinished)
 
     def _outputs(self) -> Emitted | None:
@@ -195,7 +202,8 @@ class Generated:
             return None
         found = self.equations.slopes
         program, described = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
-        return program, replace(described, vectors=tuple(v for v in described.vectors if self._are_single(v)))
+        single = tuple(v for v in described.vectors if self._are_single(v))
+        return program, replace(described, vectors=single, untested="" if single else NOT_SINGLE)
 
     def _linear(self) -> Emitted | None:
         """The regressor and its base columns, described; None where it is not requested.

@@ -334,6 +334,8 @@ def _other(program: Program, reported: Description) -> list[str]:
             "accelerations": [x.name for x in program.accelerations],
             "inputs": list(program.symbols.inputs),
         }
+    if reported.untested:
+        own |= {"untested": reported.untested}
     lines = [f"  {json_text(key)}: {json_text(value, ensure_ascii=False)}," for key, value in own.items()]
     return [f' "{reported.role.name}": {{', *lines, *_listed(reported, "  "), " },"]
 

@@ -293,3 +293,18 @@ def test_every_language_has_its_own_test():
     assert {target.name for target in ALL} == OWN_TESTS.keys()
     texts = texts_of("cart_pole", emitted("cart_pole"), targets=["julia"])
     assert all("Not run where it was made" in texts[name] for name in ("cart_pole_rhs.jl", "README.md"))
+
+
+def test_a_function_without_right_answers_says_why_in_its_file_and_beside_its_vectors():
+    """Slopes where redundant constraints open have no single value: no test vector can hold them, and that is said."""
+    found = eomgen.generate(MODELS / "four_cranks.toml", ("c",), name="cranks", jacobian=True)
+    texts = found.texts
+    given = json.loads(texts["test_vectors.json"])
+    answers = {"rhs": given, **{name: given[name] for name in ("matrices", "jacobian")}}
+    for name, own in answers.items():
+        assert bool(own["vectors"]) != bool(own.get("untested"))
+        assert bool(own["vectors"]) == ("EOMGEN_SELFTEST" in texts[f"cranks_{name}.c"])
+        assert bool(own["vectors"]) != ("No test vectors: " in texts[f"cranks_{name}.h"])
+    assert not answers["jacobian"]["vectors"]
+    assert any(note.startswith("test vectors of the jacobian: at no state") for note in found.notes)
+    assert "Not here: test vectors of the jacobian" in texts["README.md"]

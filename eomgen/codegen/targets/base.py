@@ -128,6 +128,7 @@ class Description:
         outputs: names of the outputs, () where they are in the order of x.
         blocks: (name, rows, columns) of matrices that are the outputs, one after the other, each row after row.
         columns: of each block the names of its columns; () where it has none, or all.
+        untested: why there are no right answers, "" where there are.
     """
 
     title: str
@@ -138,6 +139,7 @@ class Description:
     outputs: tuple[str, ...] = ()
     blocks: tuple[tuple[str, int, int], ...] = ()
     columns: tuple[tuple[str, ...], ...] = ()
+    untested: str = ""
 
 
 FileContent = str | bytes
@@ -432,6 +434,8 @@ def header(program: Program, description: Description) -> list[str]:
         first = last + 1
     if not description.outputs and not description.blocks:
         lines.append(f"    {result}  {len(program.outputs)} values, in the order of x")
+    if description.untested:
+        lines += ["", f"No test vectors: {description.untested}."]
     return [" ".join(line.split("\n")) for line in lines]
 
 
