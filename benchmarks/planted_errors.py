@@ -14,7 +14,11 @@ copy of the module in memory (no file changes), and the verb and model that use 
     python benchmarks/planted_errors.py                         # all, by the product; a table
     python benchmarks/planted_errors.py --tests                 # what the product did not see also by the tests
     python benchmarks/planted_errors.py --only spring,disc -v   # these, with what was said
-    python benchmarks/planted_errors.py --write docs/planted_errors.md
+    python benchmarks/planted_errors.py --tests --write docs/planted_errors.md        # the table of all, anew
+    python benchmarks/planted_errors.py --tests --new --write docs/planted_errors.md  # its missing rows alone
+
+`--write` puts the rows of what ran into the list of the page and counts them anew; the other rows, and the words
+around both tables, stay as they are.
 """
 
 from __future__ import annotations
@@ -48,6 +52,7 @@ CODE = ""  # a folder of compiled code that runs share; "": each has its own
 VERDICTS = (0, 5)  # exit codes of `verify`: neither says that something is wrong with what it tells
 PATIENCE = 180  # s of one run of a verb; what takes longer counts as refused
 TEST_PATIENCE = 900  # s of the tests of one room
+COUNTS, LISTED = "| room | planted |", "| room | error | verb and model | seen by |"  # how the tables of a page begin
 
 
 @dataclass(frozen=True)
@@ -382,15 +387,48 @@ def judged(chosen: Iterable[Planted], tests: bool, verbose: bool) -> list[tuple[
     return rows
 
 
-def table(rows: Sequence[tuple[Planted, str, str]]) -> str:
-    """Markdown: of every room how many were planted and who saw them."""
-    columns = ["product", *sorted({seen for _, seen, _ in rows} - {"product"})]
+def table(rows: Sequence[tuple[str, str]]) -> str:
+    """Markdown: of every room how many were planted and who saw them; rows are (room, who saw it)."""
+    columns = ["product", *sorted({seen for _, seen in rows} - {"product"})]
     lines = [f"| room | planted | {' | '.join(columns)} |", f"|---|---:|{'---:|' * len(columns)}"]
-    rooms = list(dict.fromkeys(planted.room for planted, _, _ in rows))
-    for room in [*rooms, "all"]:
-        mine = Counter(seen for planted, seen, _ in rows if room in (planted.room, "all"))
+    for room in [*dict.fromkeys(room for room, _ in rows), "all"]:
+        mine = Counter(seen for own, seen in rows if room in (own, "all"))
         lines.append(f"| {room} | {mine.total()} | {' | '.join(str(mine[c]) for c in columns)} |")
     return "\n".join(lines)
+
+
+NEW_PAGE = f"""# Planted errors
+
+Made by `python benchmarks/planted_errors.py --write FILE`; it says what the columns mean.
+
+{COUNTS}
+
+{LISTED}
+"""
+
+
+def listed(page: str) -> dict[str, tuple[str, str, str]]:
+    """{name of an error: (room, verb and model, who saw it)} of the list of a page, in its order."""
+    _, head, below = page.partition(LISTED)
+    rows = re.match(r"(?:\n\|.*)*", below) if head else None
+    cells = [line.strip("| ").split(" | ") for line in rows[0].split("\n")[2:]] if rows else []
+    return {name: (room, run, seen) for room, name, run, seen in cells}
+
+
+def page_with(page: str, rows: Sequence[tuple[Planted, str, str]]) -> str:
+    """The page with the rows of what ran in its list, each in its place or at the end, and with their counts."""
+    found = listed(page) | {p.name: (p.room, f"`{p.run}`", seen) for p, seen, _ in rows}
+    lines = [
+        LISTED,
+        "|---|---|---|---|",
+        *(f"| {room} | {n} | {run} | {seen} |" for n, (room, run, seen) in found.items()),
+    ]
+    counted = table([(room, seen) for room, _, seen in found.values()])
+    for head, text in ((LISTED, "\n".join(lines)), (COUNTS, counted)):
+        if head not in page:
+            raise SystemExit(f"the page has no table that begins with '{head}': nothing is written")
+        page = re.sub(re.escape(head) + r".*(?:\n\|.*)*", lambda _: text, page, count=1)  # noqa: B023
+    return page
 
 
 def main() -> int:
@@ -399,21 +437,24 @@ def main() -> int:
     parser.add_argument("--only", default="", help="names that contain one of these words, separated by commas")
     parser.add_argument("--room", default="", help="only this room")
     parser.add_argument("--tests", action="store_true", help="run the tests of what the product did not see")
-    parser.add_argument("--write", help="a Markdown file for the table")
+    parser.add_argument(
+        "--write", metavar="FILE", help="a Markdown page, in whose tables the rows of what ran stand then"
+    )
+    parser.add_argument("--new", action="store_true", help="only those without a row in the page of --write")
     parser.add_argument("-v", "--verbose", action="store_true")
     given = parser.parse_args()
     words = [word for word in given.only.split(",") if word]
     chosen = [e for e in entries() if (not words or any(w in e.name for w in words)) and given.room in ("", e.room)]
+    page = Path(given.write) if given.write else None
+    before = page.read_text(encoding="utf-8") if page is not None and page.exists() else NEW_PAGE
+    if given.new:
+        chosen = [e for e in chosen if e.name not in listed(before)]
+    page_with(before, [])  # a page without these tables is refused before anything runs
     warm()
     rows = judged(chosen, given.tests, given.verbose)
-    print(table(rows))
-    if given.write:
-        each = [f"| {p.room} | {p.name} | `{p.run}` | {seen} |" for p, seen, _ in rows]
-        requested = " --tests" if given.tests else ""
-        made = f"Made by `python benchmarks/planted_errors.py{requested} --write FILE`; it says what the columns mean."
-        head = ["# Planted errors", "", made, ""]
-        listed = ["", "| room | error | verb and model | seen by |", "|---|---|---|---|", *each, ""]
-        Path(given.write).write_text("\n".join([*head, table(rows), *listed]), encoding="utf-8")
+    print(table([(planted.room, seen) for planted, seen, _ in rows]))
+    if page is not None:
+        page.write_text(page_with(before, rows), encoding="utf-8")
     return int(any(seen not in ("product", "tests", "harmless") for _, seen, _ in rows))
 
 

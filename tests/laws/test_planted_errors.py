@@ -44,3 +44,29 @@ def test_the_product_sees_a_sample_of_planted_errors():
         [sys.executable, "-c", COMMAND, str(COUNT)], cwd=ROOT, capture_output=True, text=True, timeout=900
     )
     assert done.stdout.splitlines() == ["product"] * COUNT, done.stdout + done.stderr
+
+
+def test_a_run_of_some_errors_leaves_the_rows_of_the_others():
+    """--only --write replaces the rows of what ran, adds new ones at the end, counts anew and keeps the words."""
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    from planted_errors import NEW_PAGE, entries, listed, page_with
+
+    first, second, third = entries()[:3]
+    page = page_with(NEW_PAGE, [(first, "product", ""), (second, "product", "")]).replace(
+        "\n\n| room | error", "\n\nWords.\n\n| room | error"
+    )
+    again = page_with(page, [(second, "tests", ""), (third, "product", "")])
+    assert [seen for _, _, seen in listed(again).values()] == ["product", "tests", "product"]
+    assert list(listed(again)) == [first.name, second.name, third.name]
+    assert "| all | 3 | 2 | 1 |" in again and "\n\nWords.\n\n" in again and page_with(again, []) == again
+    with pytest.raises(SystemExit, match="no table"):
+        page_with("# Another page\n", [(first, "product", "")])
+
+
+def test_every_row_of_the_page_is_of_an_error_of_the_list():
+    """A renamed or removed entry leaves no row behind."""
+    sys.path.insert(0, str(ROOT / "benchmarks"))
+    from planted_errors import entries, listed
+
+    page = (ROOT / "docs" / "planted_errors.md").read_text(encoding="utf-8")
+    assert listed(page).keys() <= {planted.name for planted in entries()}
