@@ -20,17 +20,19 @@ from slow_run import beside, usual
 import eomgen
 from eomgen.cli import main
 from eomgen.documents.latex import setter_of
-from eomgen.errors import ExpressionError, UsageError
+from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.judge.alphabet import vocabulary
 from eomgen.judge.case import Case
-from eomgen.judge.diagnosis import fitting, in_other_units, samples_of
+from eomgen.judge.diagnosis import Mistake, fitting, in_other_units, samples_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
+from eomgen.judge.model_edits import ModelEdit, ModelEdits
 from eomgen.judge.terms import Products, powers_of
 from eomgen.judge.truth import other_models
 from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.print.text import to_text
 
 SAMPLE = ("simple_pendulum", "cart_pole", "elastic_pendulum", "seeds/ch22_p3", "furuta_pendulum")
@@ -994,3 +996,30 @@ def test_a_term_that_is_a_number_alone_has_its_unit_by_the_values_of_the_file(mo
     assert found.verdict == verdict, found
     if verdict == "right":
         assert "the values of the file: " in found.up_to
+
+
+@each(
+    "raised, hidden",
+    [
+        (DerivationError("no way"), True),
+        (NoValue("0/0"), True),
+        (ZeroDivisionError(), True),
+        (KeyError("x"), False),
+        (ValueError("x"), False),
+        (AssertionError(), False),
+        (StopIteration(), False),
+    ],
+)
+def test_a_changed_model_without_an_answer_is_passed_over_and_a_mistake_of_ours_is_not(raised, hidden):
+    """A change of the file may leave no model, or 0/0 in it; any other exception is a fault of ours, and loud."""
+
+    def is_right(model):
+        raise raised
+
+    edit = ModelEdit(Mistake("", "", (0,), 0.0), eomgen.loads(TURNED), {})
+    edits = ModelEdits(lambda: [edit], (), is_right)
+    if hidden:
+        assert edits.explained(1) == []
+    else:
+        with pytest.raises((type(raised), RuntimeError)):  # a StopIteration inside a generator is a RuntimeError
+            edits.explained(1)

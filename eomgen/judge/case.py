@@ -282,7 +282,7 @@ class Case:
         return {name: exact(x) for name, x in exact_parameters(self.model).items() if not isinstance(x, float)}
 
     def _values_in(self, scalars: ScalarRow, values: Mapping[str, Any]) -> dict[Node, Scalar]:
-        """Those of values whose parameters stand in scalars."""
+        """Values of the parameters that stand in scalars."""
         parameters = self.system.symbols.parameters
         return {
             x: values[n] for n, x in parameters.items() if n in values and any(depends_on(y, (x,)) for y in scalars)

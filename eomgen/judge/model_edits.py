@@ -41,7 +41,6 @@ from eomgen.symbolic.print import to_text
 MOST = 80  # models that are derived
 EDITED = ("bodies", "forces", "constraints")  # tables of the file whose values are changed
 MOST_STATED = 2  # changes that are stated: the first, and one that explains the equation as well
-DEGENERATE = (ArithmeticError, AssertionError, KeyError, StopIteration, ValueError)  # rods of length 0 and the like
 MOST_HELD = 6  # coordinates of a model that are held, one by one
 SHAPES = (  # I / (m r^2)
     (Fraction(1), "a thin hoop"),
@@ -104,7 +103,7 @@ class ModelEdits:
         return ""
 
     def _explains(self, edit: ModelEdit) -> bool:
-        with suppress(EomgenError, *DEGENERATE):
+        with suppress(EomgenError, ArithmeticError):  # there is no such model, or it has no value: a rod of length 0
             return self.is_right(edit.model)
         return False
 
