@@ -22,7 +22,7 @@ from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics import Scope, shorter, with_speeds_named
 from eomgen.mechanics.state import Split
 from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations, order, substituted
-from eomgen.symbolic.numeric import RANK, NoValue, divisor, lengths_of, rank
+from eomgen.symbolic.numeric import RANK, NoValue, dense, rank
 from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]
@@ -235,12 +235,12 @@ class _LinearRows:
 
         Measured by |J_d|^2 / |J_d^T J_d of all rows| at states far from one another that satisfy the constraints.
         """
-        lengths = lengths_of(self.numbers, 1, keepdims=True)
+        lengths = dense.lengths_of(self.numbers, 1, keepdims=True)
         rows, shares = [*self.rows, *sharing], []
         for seed in range(FAR_STATES):
             with suppress(DerivationError, MissingValues, NoValue, ZeroDivisionError):
                 state = generic_state(self.constraints, seed, spreads=FAR)
-                J = (rows_where_closed(self.constraints, state) / divisor(lengths))[rows]
+                J = (rows_where_closed(self.constraints, state) / dense.divisor(lengths))[rows]
                 J_d = J[:, self.dependent]
                 whole = np.linalg.det(J_d.T @ J_d)
                 if whole > RANK and rank(J) == len(self.rows):  # on another branch they need not follow

@@ -19,9 +19,6 @@ from eomgen.symbolic.numeric.dense import balanced as balanced
 # The entries of rows of 50 digits at a place that Newton's method closed; those that are only left of 0 are 0
 from eomgen.symbolic.numeric.dense import closed_entries as closed_entries
 
-# The lengths of rows, to divide these by; infinite of rows that are rounding
-from eomgen.symbolic.numeric.dense import divisor as divisor
-
 # True if a row of numbers of 50 digits is a combination of others (`arithmetic.follows` in the reals)
 from eomgen.symbolic.numeric.dense import follows_in_digits as follows_in_digits
 
