@@ -383,7 +383,7 @@ READERS = {  # classes beside `Study` that cache more than six things: each numb
     "equations.Equations": 7,
     "generated.Generated": 8,
     "judge.balances.Balances": 11,
-    "judge.case.Case": 11,
+    "judge.case.Case": 12,
     "mechanics.equilibrium.places._Search": 8,
     "mechanics.equilibrium.search._Search": 11,
     "mechanics.free_bodies.friction._WithFriction": 8,
