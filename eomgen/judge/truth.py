@@ -176,7 +176,7 @@ def says_nothing(case: Case, written: HandEquation) -> bool:
         return known.setdefault(str(call), graph.symbol(f"({call})"))
 
     own = case.system.scope.names
-    plain = {name for name, x in own.items() if type(x) is Node and x.op in ("symbol", "pi")}
+    plain = {name for name, x in own.items() if type(x) is Node and x.op == "symbol" and x.name == name}
     names = {name: graph.symbol(f"({name})") for name in written.names - plain - {"t", "pi"}}
     scalar = case.evaluated(written.difference, {**own, **names}, opaque)
     found = is_zero_everywhere(case.system, scalar)

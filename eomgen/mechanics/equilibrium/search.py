@@ -20,7 +20,7 @@ from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
 from eomgen.mechanics.free_bodies import Indeterminate
-from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion, locks_of, start_values
+from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion, locks_of, start_values, with_unit_quaternions
 from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.start import known_exactly, shown_numbers, values_of_parameters
 from eomgen.mechanics.state import Doubles
@@ -219,7 +219,7 @@ class _Search:
         """Static equations without the coordinates on which none depends."""
         found, scope = self.whole.without(self.whole.indifferent), self.system.scope
         idle = unheld(found) if self._slides else ()
-        return found.holding(start_values(scope, idle)) if idle else found
+        return found.holding(with_unit_quaternions(scope, start_values(scope, idle))) if idle else found
 
     @property
     def _indifferent(self) -> tuple[Node, ...]:
@@ -259,7 +259,7 @@ class _Search:
     def _fixed(self) -> dict[Node, Scalar]:
         """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
         scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
-        fixed = start_values(scope, (q for q in scope.symbols.q if q not in free))
+        fixed = with_unit_quaternions(scope, start_values(scope, (q for q in scope.symbols.q if q not in free)))
         return fixed | {q: self._guess.exact(q) for q in self._chosen.coordinates}
 
     @cached_property

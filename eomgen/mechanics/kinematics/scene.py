@@ -260,13 +260,15 @@ def _written(scope: Scope, scalar: Scalar) -> Expression:
 
 
 def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
-    """Start values with every quaternion over its norm.
+    """Start values with every quaternion over its norm that stands in them as a whole.
 
     Raises:
         ModelError: one is 0.
     """
     found = dict(start)
     for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
+        if not start.keys() >= {*four}:
+            continue
         norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
         if is_zero(norm):
             raise no_orientation(part.body)
