@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from eomgen import disk_cache
+from eomgen import disk_cache, verbs
 from eomgen.cli import main
-from eomgen.verbs import derive, kept_derivations
+from eomgen.verbs import kept_derivations
 
 MODEL = (Path(__file__).parents[2] / "models" / "simple_pendulum.toml").read_text(encoding="utf-8")
 
@@ -29,8 +29,8 @@ def place(tmp_path, monkeypatch):
 @pytest.fixture
 def reported(tmp_path, capsys, monkeypatch):
     """(what `eomgen derive` of a text tells, whether it was derived for that)."""
-    made, real = [], derive.derive_document
-    monkeypatch.setattr(derive, "derive_document", lambda *of, **how: (made.append(of), real(*of, **how))[1])
+    made, real = [], verbs.derive_document
+    monkeypatch.setattr(verbs, "derive_document", lambda *of, **how: (made.append(of), real(*of, **how))[1])
 
     def run(text: str, *options: str) -> tuple[str, bool]:
         made.clear()
