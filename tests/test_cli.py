@@ -16,6 +16,7 @@ from click.testing import CliRunner
 from each import each
 
 import eomgen
+import eomgen.verbs
 from eomgen import equations, pipeline
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
@@ -239,6 +240,7 @@ def test_a_missing_package_is_exit_code_4(monkeypatch):
     monkeypatch.setitem(sys.modules, "numpy", None)
     with monkeypatch.context() as patch:
         patch.delitem(sys.modules, "eomgen.verbs.check")
+        patch.delitem(vars(eomgen.verbs), "check_document", raising=False)
         patch.delitem(sys.modules, "eomgen.mechanics.constraints.rank", raising=False)
         result = run("check", PENDULUM)
     assert result.exit_code == 4
