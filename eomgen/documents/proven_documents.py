@@ -241,13 +241,13 @@ def _numberless(statement: Statement) -> Iterator[str]:
         yield side_text(statement.sides[0])
     elif isinstance(statement, Grid):
         for row in statement.rows:
-            values = [k for k, cell in enumerate(row) if _is_no_number(cell) and not _is_missing(cell)]
-            yield from (cell_text(row[max(k - 1, 0)]) for k in values)
+            at = [k for k, cell in enumerate(row) if _is_no_number(cell) and not _is_missing(cell)]
+            yield from (cell_text(row[max(k - 1, 0)]) for k in at)
 
 
 def _is_missing(cell: Any) -> bool:
     """True for nan in a table: what has no value at an instant of a run, as a reaction that is indeterminate."""
-    return cell == "nan" or cell != cell
+    return cell == "nan" or (isinstance(cell, float) and math.isnan(cell))
 
 
 def _is_no_number(part: Any) -> bool:
