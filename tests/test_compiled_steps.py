@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +12,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.codegen.build import compiler
+from eomgen.simulation import solvers
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.contacts import ContactSignals, divisors
 from eomgen.simulation.integrator import Stepping, march
@@ -208,3 +211,12 @@ def test_a_name_that_the_march_does_not_have_is_no_field_of_it():
     """A struct of C takes what stands in it, and refuses the rest: a value that C never reads would be lost."""
     with pytest.raises(AttributeError):
         March().n_spheres = 1  # type: ignore[attr-defined]
+
+
+def test_steps_are_followed_in_as_many_pieces_in_c_and_in_python():
+    text = resources.files("eomgen.codegen").joinpath("dop853_pieces.c").read_text(encoding="utf-8")
+    constants = dict(re.findall(r"#define DOP853_(MISSED|PIECES) +([\d.]+)", text))
+    assert {name: float(x) for name, x in constants.items()} == {
+        "MISSED": solvers.MISSED,
+        "PIECES": solvers.MOST_PIECES,
+    }

@@ -37,12 +37,11 @@ from eomgen.simulation.many_runs import (
     library_of_march,
 )
 from eomgen.simulation.phase_model import ExactSlope
-from eomgen.simulation.solvers import AUTO, SEEN, TAYLOR, LateSlope, stiff_words
+from eomgen.simulation.solvers import AUTO, MOST_PIECES, SEEN, TAYLOR, LateSlope, stiff_words
 from eomgen.symbolic.expression import Node, order
 from eomgen.symbolic.numeric import FLOAT, SOLVED, Arithmetic
 
 COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
-MOST_PIECES = 8  # of a step, as dop853_pieces.c
 FEW = 8  # steps in the first call
 A_CALL = 0.03  # [s] of a call: after it Python looks whether somebody has lost patience
 BY_SERIES = 2  # what dense_of returns

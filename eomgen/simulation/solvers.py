@@ -143,7 +143,7 @@ def put_state(solver: Any, x: np.ndarray) -> None:
         solver.D[0] = x
 
 
-MISSED, PIECES = 10.0, 8  # as dop853_pieces.c has them
+MISSED, MOST_PIECES = 10.0, 8  # as dop853_pieces.c has them: a test compares
 
 
 def _accurate_between(solver: Any, dense_output: Callable[[], Any]) -> Callable[[Any], np.ndarray]:
@@ -158,7 +158,7 @@ def _accurate_between(solver: Any, dense_output: Callable[[], Any]) -> Callable[
     h, pieces = solver.t - solver.t_old, 1
     with np.errstate(all="ignore"):
         missed = _missed(solver, whole, 0.3)
-        while missed > MISSED and pieces < PIECES:
+        while missed > MISSED and pieces < MOST_PIECES:
             missed, pieces = missed / 256, 2 * pieces
         if pieces == 1:
             return whole  # type: ignore[no-any-return]
