@@ -36,7 +36,7 @@ from eomgen.cli_options import (
     with_values,
     words,
 )
-from eomgen.symbolic.numeric import RUN
+from eomgen.symbolic.numeric import tolerances
 
 VERB = partial(click.command, cls=Verb)
 
@@ -49,8 +49,8 @@ VERB = partial(click.command, cls=Verb)
 @PLOT
 @TIME
 @with_values
-@click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of the run.")
-@click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of the run.")
+@click.option("--rtol", type=float, default=tolerances.RUN, show_default=True, help="Relative tolerance of the run.")
+@click.option("--atol", type=float, default=tolerances.RUN, show_default=True, help="Absolute tolerance of the run.")
 @click.option(
     "--method",
     default="auto",
@@ -158,8 +158,8 @@ def simulate_command(
 )
 @click.option("--critical", default="", metavar="EXPR", help="Find where it changes sign along the first range.")
 @TIME
-@click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of a run.")
-@click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of a run.")
+@click.option("--rtol", type=float, default=tolerances.RUN, show_default=True, help="Relative tolerance of a run.")
+@click.option("--atol", type=float, default=tolerances.RUN, show_default=True, help="Absolute tolerance of a run.")
 @click.option(
     "--method", default="DOP853", show_default=True, metavar="NAME", help="Integration method, as of simulate."
 )

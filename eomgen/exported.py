@@ -30,7 +30,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import FLOAT, ROUNDING, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 STANDING = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]  # p, R of the ground
 G = 9.81  # of what reads URDF, downward along z [m/s^2]
@@ -171,7 +171,7 @@ class _Writing:
             )
         (factor,) = self.numbers(gradient(link.s[0], (own[0],)), where)
         uses = [each.name for each in self.system.motion.links if depends_on_any(each.s, own[:1])]
-        if abs(abs(factor) - 1) > ROUNDING:
+        if abs(abs(factor) - 1) > tolerances.ROUNDING:
             what = f"URDF has no joint that goes {factor:g} times its coordinate: '{own[0].name}'"
             raise DerivationError(what, where, "give it a coordinate of its own, and an `equation` between the two")
         if len(uses) > 1:
@@ -262,7 +262,7 @@ class _Writing:
         fields = self.numbers(self.system.loads.fields, "forces")
         applied = self.system.loads.applied
         weight = [x.name for x in applied if all(isinstance(load, UniformField) for load in x.loads or (None,))]
-        usual = fields[:2] == [0.0, 0.0] and abs(fields[2] + G) < ROUNDING
+        usual = fields[:2] == [0.0, 0.0] and abs(fields[2] + G) < tolerances.ROUNDING
         forces = [name for name in self.system.scope.model.forces if name not in weight or not usual]
         for what, names in (("forces", forces), ("constraints", constraints)):
             if names:
@@ -298,6 +298,6 @@ def _angles(R: Sequence[float]) -> list[float]:
     Near a pitch of 90 degrees roll and yaw turn about one axis: yaw is that of R Rx^T, so it makes up for the roll.
     """
     pitch, across = math.atan2(-R[6], math.hypot(R[0], R[3])), math.hypot(R[7], R[8])
-    roll = math.atan2(R[7], R[8]) if across > ROUNDING else 0.0
+    roll = math.atan2(R[7], R[8]) if across > tolerances.ROUNDING else 0.0
     s, c = math.sin(roll), math.cos(roll)
     return [roll, pitch, math.atan2(s * R[2] - c * R[1], c * R[4] - s * R[5])]

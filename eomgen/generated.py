@@ -69,7 +69,7 @@ from eomgen.proof import (
 from eomgen.questions import pulling
 from eomgen.simulation import paths_of
 from eomgen.symbolic.expression import Scalar
-from eomgen.symbolic.numeric import BEST, RUN, SINGLE, doing
+from eomgen.symbolic.numeric import doing, tolerances
 from eomgen.version import __version__
 
 NOT_SINGLE = (
@@ -127,7 +127,7 @@ class Generated:
         for place in (next(iter(supply), None) for _, supply in consistent_states(system)):
             if place is not None:
                 x, p = ([float(place.state[s]) for s in group] for group in groups)
-                x = [0.0 if abs(each) < BEST else each for each in x]  # what Newton's method left of 0
+                x = [0.0 if abs(each) < tolerances.BEST else each for each in x]  # what Newton's method left of 0
                 found.append((float(place.state[symbols.t]), x, p))
         return found
 
@@ -272,7 +272,9 @@ class Generated:
         if not self.integrator:
             return {}
         x0, p0 = (None if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
-        return integrator_files(stem_of(self.stem), self.motion[0], x0, p0, SINGLE if self.float32 else RUN)
+        return integrator_files(
+            stem_of(self.stem), self.motion[0], x0, p0, tolerances.SINGLE if self.float32 else tolerances.RUN
+        )
 
     def write(self, directory: str | Path) -> list[Path]:
         """Writes the files, all of them or none.

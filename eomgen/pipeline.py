@@ -17,7 +17,7 @@ from eomgen.mechanics.kinematics import ContactModes
 from eomgen.model import ModelOrPath, Values, WrittenEquation, left_tables, model_at, refuse_motion, with_inputs
 from eomgen.study import Study, study_of, study_of_modes
 from eomgen.symbolic.expression import Typed
-from eomgen.symbolic.numeric import RUN, doing, growing
+from eomgen.symbolic.numeric import doing, growing, tolerances
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
     from eomgen.model import Model
@@ -79,8 +79,8 @@ def inverse_dynamics(
 def simulator(
     model: ModelOrPath,
     *,
-    rtol: float = RUN,
-    atol: float = RUN,
+    rtol: float = tolerances.RUN,
+    atol: float = tolerances.RUN,
     target: str | None = None,
     method: str = "auto",
     stabilization: str = "projection",
@@ -105,8 +105,8 @@ def simulate_many(
     start: Mapping[str, Any] | None = None,
     inputs: Mapping[str, Any] | None = None,
     samples: int | Sequence[Typed] = 101,
-    rtol: float = RUN,
-    atol: float = RUN,
+    rtol: float = tolerances.RUN,
+    atol: float = tolerances.RUN,
     method: str = "auto",
     target: str | None = None,
     threads: int = 1,
@@ -137,8 +137,8 @@ def simulate(
     parameters: Values | None = None,
     start: Values | None = None,
     inputs: Mapping[str, Any] | None = None,
-    rtol: float = RUN,
-    atol: float = RUN,
+    rtol: float = tolerances.RUN,
+    atol: float = tolerances.RUN,
     target: str | None = None,
     samples: int | Sequence[Typed] | None = None,
     method: str = "auto",

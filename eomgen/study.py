@@ -55,7 +55,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, Work, evaluate, growing, number_of, numbers_of
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate, growing, number_of, numbers_of, tolerances
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, general_solution
 
@@ -407,7 +407,7 @@ class Study:
         floats = dict(zip(exact, numbers_of(exact.values()), strict=True))
         rounded = evaluate(tuple(closed), floats, FLOAT)
         pairs = zip(found, rounded, strict=True)
-        return [math.isclose(x, y, rel_tol=COMPUTED, abs_tol=COMPUTED) for x, y in pairs]
+        return [math.isclose(x, y, rel_tol=tolerances.COMPUTED, abs_tol=tolerances.COMPUTED) for x, y in pairs]
 
     def at(self, formula: Expression, state: Mapping[Node, Any]) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.

@@ -16,8 +16,8 @@ from eomgen.cli import main
 from eomgen.documents import rendered
 from eomgen.symbolic.exact.book_forms import book_form
 from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import MET_AT_50
 from eomgen.symbolic.print.text import text_size, to_text
 
 pytestmark = pytest.mark.slow
@@ -189,7 +189,7 @@ def test_what_is_too_long_to_be_printed_has_its_value_however_it_is_written():
         (modes.conditions.expressions, came.conditions.expressions),
     ):
         values = [evaluate(x, trial, fifty_digits()) for x in (one, other)]
-        assert all(abs(a - b) < MET_AT_50 * abs(a) for a, b in zip(*values, strict=True))
+        assert all(abs(a - b) < tolerances.MET_AT_50 * abs(a) for a, b in zip(*values, strict=True))
         assert sum(map(text_size, one)) < sum(map(text_size, other))
     assert rendered(replace(shortest, modes=came).document, "text") == rendered(shortest.document, "text")
 

@@ -10,10 +10,9 @@ import pytest
 
 from eomgen.symbolic.expression.derivatives import gradient, jacobian
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.numeric import sure_digits
+from eomgen.symbolic.numeric import sure_digits, tolerances
 from eomgen.symbolic.numeric.arithmetic import balls
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, solved_quickly, sums_of_products
-from eomgen.symbolic.numeric.tolerances import MET_AT_50
 
 NUMBER = fifty_digits().number
 BY_MPMATH = replace(fifty_digits(), quickly=None)
@@ -35,7 +34,7 @@ def test_a_value_by_balls_is_that_by_mpmath():
     state = {x: NUMBER(1) / 3, y: NUMBER(-7) / 11}
     (quick,), (slow,) = evaluate([total], state, fifty_digits()), evaluate([total], state, BY_MPMATH)
     assert type(quick) is type(slow)
-    assert abs(quick - slow) < MET_AT_50 * abs(slow)
+    assert abs(quick - slow) < tolerances.MET_AT_50 * abs(slow)
 
 
 def test_what_has_no_value_is_refused_by_balls_too():
@@ -100,7 +99,11 @@ def test_sums_of_products_by_balls_are_those_by_mpmath(monkeypatch):
     monkeypatch.setattr(sure_digits, "ROWS", 10)  # too few to be handed over
     for one, other in zip(quick, sums_of_products(rows, columns), strict=True):
         for (sum_, size), (own, own_size) in zip(one, other, strict=True):
-            assert abs(sum_ - own) <= MET_AT_50 * size and abs(size - own_size) <= MET_AT_50 * size and size > 0
+            assert (
+                abs(sum_ - own) <= tolerances.MET_AT_50 * size
+                and abs(size - own_size) <= tolerances.MET_AT_50 * size
+                and size > 0
+            )
 
 
 def test_equations_by_balls_are_solved_and_singular_ones_are_not():
@@ -111,7 +114,7 @@ def test_equations_by_balls_are_solved_and_singular_ones_are_not():
     x = solved_quickly(rows)
     assert x is not None
     left = [sum(a * y for a, y in zip(row, x, strict=False)) - row[-1] for row in rows]
-    assert max(map(abs, left)) < MET_AT_50
+    assert max(map(abs, left)) < tolerances.MET_AT_50
     assert solved_quickly([*rows[:-1], [2 * a for a in rows[0]]]) is None
     assert solved_quickly(rows[:3]) is None
 
@@ -139,4 +142,4 @@ def test_a_jacobian_by_rows_is_that_by_columns():
             (value,) = evaluate([found[i][j]], state, BY_MPMATH)
             cosines = evaluate([graph.call("cos", sum(angles[: m + 1])) for m in range(n)], state, BY_MPMATH)
             expected = sum((1 + m + i) * cosines[m] for m in range(max(i, j), n))
-            assert abs(value - expected) < MET_AT_50 * 1000
+            assert abs(value - expected) < tolerances.MET_AT_50 * 1000

@@ -167,9 +167,9 @@ class _Reader:
         words = self._language.words
         match x:
             case ast.Name(id=name):
-                limit = vars(tolerances).get(name)
-                spelled = words.get(name) or self._language.spelled(name)
-                return self._language.real(limit) if limit else spelled, ATOM
+                return words.get(name) or self._language.spelled(name), ATOM
+            case ast.Attribute(value=ast.Name(id="tolerances"), attr=name):
+                return self._language.real(vars(tolerances)[name]), ATOM
             case ast.Constant(value=value):
                 return self._language.real(value) if isinstance(value, float) else repr(value), ATOM
             case ast.Subscript(value=ast.Name(id=array), slice=index):

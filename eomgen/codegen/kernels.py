@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.symbolic.numeric import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED, SURE_PIVOT
+from eomgen.symbolic.numeric import tolerances
 
 Int = int
 Real = float
@@ -142,7 +142,7 @@ def solve_by(
 
 def solve_plain(M: Work, f: Work) -> None:
     """f becomes a of M a = f (upper triangle), M its factors; all nan where it is not positive definite."""
-    done = factored(0, ROUNDING, M)
+    done = factored(0, tolerances.ROUNDING, M)
     if done == 0:
         for i in range(N):
             M[i * N + i] = nan
@@ -199,7 +199,7 @@ def backward(w: Int, L: Reals, y: Work) -> None:
 def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
     """L and D of M (0), or where M is not relied on without the rows, of M + J^T W J (1); -1 of neither."""
     laid(M, L)
-    done = factored(0, DEGENERATE, L)
+    done = factored(0, tolerances.DEGENERATE, L)
     if done == 1:
         return 0
     for j in range(N):
@@ -212,7 +212,7 @@ def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
         for e in range(START[m], last):
             for h in range(e, last):
                 L[REACH[e] * N + REACH[h]] += weight[m] * J[m * N + REACH[e]] * J[m * N + REACH[h]]
-    with_constraints = factored(1, ROUNDING, L)
+    with_constraints = factored(1, tolerances.ROUNDING, L)
     if with_constraints == 1:
         return 1
     return -1
@@ -255,7 +255,7 @@ def invert(size: Work) -> None:
         if size[m] > nothing[0]:
             nothing[0] = size[m]
     for m in range(K):
-        if size[m] > ROUNDING_SQUARED * nothing[0]:
+        if size[m] > tolerances.ROUNDING_SQUARED * nothing[0]:
             size[m] = 1.0 / size[m]
         else:
             size[m] = 0.0
@@ -316,7 +316,7 @@ def eliminated(w: Int, S: Work, order: Places) -> Int:
     invert(whole)
     for c in range(K):
         share = S[c * K + c] * whole[c]
-        if share > SURE_PIVOT:
+        if share > tolerances.SURE_PIVOT:
             first = NEXT[w * (K + 1) + c]
             last = NEXT[w * (K + 1) + c + 1]
             for e in range(count[1]):
@@ -327,14 +327,14 @@ def eliminated(w: Int, S: Work, order: Places) -> Int:
             order[count[0]] = c
             count[0] += 1
         else:
-            if share > PIVOT:
+            if share > tolerances.PIVOT:
                 late[count[1]] = c
                 count[1] += 1
                 cleared(w, c, S, column)
     order[K] = count[0]
     for k in range(count[0], K):
         count[2] = -1
-        best[0] = PIVOT
+        best[0] = tolerances.PIVOT
         for e in range(count[1]):
             m = late[e]
             if S[m * K + m] * whole[m] > best[0]:

@@ -31,7 +31,7 @@ from eomgen.model import (
     with_values,
 )
 from eomgen.symbolic.expression import depends_on, tangent
-from eomgen.symbolic.numeric import OPEN_GAP, RANK, SHARE, of_one_length
+from eomgen.symbolic.numeric import of_one_length, tolerances
 
 _Made = TypeVar("_Made")
 
@@ -272,7 +272,7 @@ def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray,
     left = _left(J.reshape(len(rows), len(names)))
     if len(left) and len(rows) - len(left) < rank_of_constraints(system.constraints):
         return Accelerations(dict.fromkeys(names), dict.fromkeys(rows))
-    single = np.max(np.abs(left), axis=0, initial=0.0) < SHARE
+    single = np.max(np.abs(left), axis=0, initial=0.0) < tolerances.SHARE
     return Accelerations(
         {name: _number(value) for name, value in zip(names, a, strict=True)},
         {name: _number(value) if one else None for name, value, one in zip(rows, lam, single, strict=True)},
@@ -284,7 +284,7 @@ def _left(J: np.ndarray) -> np.ndarray:
     if not J.size or not np.all(np.isfinite(J)):
         return np.eye(len(J))
     U, sizes, _ = np.linalg.svd(of_one_length(J))
-    left: np.ndarray = U[:, int(np.sum(sizes > RANK)) :].T
+    left: np.ndarray = U[:, int(np.sum(sizes > tolerances.RANK)) :].T
     return left
 
 
@@ -373,7 +373,7 @@ class GivenMotion:
         if gaps:
             program = program_of(gaps, symbols, inputs=self.system.inputs)
             open_ = np.abs(compiled(program, "numpy").many(self.t, found, self.p))
-            if not np.max(open_, initial=0.0) <= OPEN_GAP:
+            if not np.max(open_, initial=0.0) <= tolerances.OPEN_GAP:
                 raise UsageError(
                     f"the motion opens the constraints by {np.max(open_):.3g}", fix="give one that they allow"
                 )

@@ -20,7 +20,7 @@ from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileC
 from eomgen.errors import DerivationError
 from eomgen.files import json_text
 from eomgen.symbolic.expression import Fraction, Node
-from eomgen.symbolic.numeric import COMPUTED, SINGLE, SINGLE_ROUNDING, SOLVED, Arithmetic, evaluate, fifty_digits
+from eomgen.symbolic.numeric import Arithmetic, evaluate, fifty_digits, tolerances
 from eomgen.version import SCHEMA_VERSION
 
 TRIES = 60
@@ -142,7 +142,7 @@ def _is_left_open(solve: Solve, entries: Sequence[Any], found: Mapping[Node, Any
     a = [found[x] for x in solve.unknowns[:n]]
     for i, due in enumerate(g):
         terms: list[Any] = [x * y for x, y in zip(J[i * n : (i + 1) * n], a, strict=True)]
-        if abs(sum(terms, start=-due)) > COMPUTED * max(map(abs, (*terms, due))):
+        if abs(sum(terms, start=-due)) > tolerances.COMPUTED * max(map(abs, (*terms, due))):
             return True
     return False
 
@@ -155,7 +155,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)
-    return TestVector(t, x, p, inputs if with_inputs and inputs else None, (), SOLVED, a)
+    return TestVector(t, x, p, inputs if with_inputs and inputs else None, (), tolerances.SOLVED, a)
 
 
 def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestVector | None:
@@ -166,9 +166,9 @@ def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestV
     known = [(a, b) for a, b in zip(found, result, strict=True) if b == b]
     largest = max(1.0, *(abs(b) for _, b in known)) if known else 1.0
     error = max((abs(a - b) for a, b in known), default=0.0) / largest
-    if not error < COMPUTED or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
+    if not error < tolerances.COMPUTED or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
         return None
-    return replace(state, result=result, tolerance=float(max(SOLVED, 10 * error)))
+    return replace(state, result=result, tolerance=float(max(tolerances.SOLVED, 10 * error)))
 
 
 def _exact(program: Program, state: TestVector) -> dict[Node, Fraction]:
@@ -209,7 +209,7 @@ def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[Tes
     rhs, rng = compiled(program, "numpy"), random.Random(1)
 
     def beside(values: Sequence[float]) -> list[float]:
-        return [x * (1 + rng.choice((-1, 1)) * SINGLE_ROUNDING) for x in values]
+        return [x * (1 + rng.choice((-1, 1)) * tolerances.SINGLE_ROUNDING) for x in values]
 
     def measured(v: TestVector) -> TestVector:
         size = max([1.0, *(abs(y) for y in v.result if y == y)])
@@ -219,7 +219,9 @@ def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[Tes
             far = max([far, *(abs(a - b) for a, b in zip(found, v.result, strict=True) if a == a and b == b)])
         x, a, p, result = map(_in_range, (v.x, v.a, v.p, v.result))
         inputs = None if v.inputs is None else _in_range(v.inputs)
-        return replace(v, x=x, a=a, p=p, inputs=inputs, result=result, tolerance=float(SINGLE + GROWN * far / size))
+        return replace(
+            v, x=x, a=a, p=p, inputs=inputs, result=result, tolerance=float(tolerances.SINGLE + GROWN * far / size)
+        )
 
     return tuple(map(measured, vectors))
 

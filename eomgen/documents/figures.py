@@ -22,7 +22,7 @@ from eomgen.model import OUTPUT
 from eomgen.proof import DrawnPanel, panels_of
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import Unit
-from eomgen.symbolic.numeric import SMALLEST_PLAIN
+from eomgen.symbolic.numeric import tolerances
 
 FORMATS = (".png", ".svg", ".pdf")
 STYLE: dict[Any, Any] = {
@@ -165,7 +165,7 @@ def scale_of(values: Iterable[float]) -> Scale:
 def figures(value: float) -> str:
     """A number with four figures, without a power of ten where it has less than eight digits: 12340, 0.05."""
     text = f"{value:.{FIGURES}g}"
-    return f"{float(text):.10f}".rstrip("0").rstrip(".") if SMALLEST_PLAIN <= abs(value) < 1e8 else text
+    return f"{float(text):.10f}".rstrip("0").rstrip(".") if tolerances.SMALLEST_PLAIN <= abs(value) < 1e8 else text
 
 
 # -------- plots -----------------------------------------------------------------------------------------------

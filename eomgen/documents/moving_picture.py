@@ -46,7 +46,7 @@ from eomgen.scene import (
     swing_of,
 )
 from eomgen.simulation import Trajectory
-from eomgen.symbolic.numeric import COMPUTED, WIDE_STEP
+from eomgen.symbolic.numeric import tolerances
 
 WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inch]
 SPARSE = 5  # frames of which one is looked at for the shape of the page
@@ -305,7 +305,7 @@ class Movie:
         found = np.ones(len(self.times), dtype=bool)
         for path in (stroke.path for stroke in self.drawing.strokes if stroke.path.size):
             away = np.abs(path - path[:1]).reshape(len(path), -1)
-            found &= ~(np.nan_to_num(away) > COMPUTED * self.drawing.sizes.extent).any(axis=1)
+            found &= ~(np.nan_to_num(away) > tolerances.COMPUTED * self.drawing.sizes.extent).any(axis=1)
         return found
 
 
@@ -316,7 +316,7 @@ def frame_times(end: float, fps: float, speed: float) -> np.ndarray:
         UsageError: a rate or speed that no picture has, too many frames, no second one.
     """
     refuse_rates(fps, speed)
-    count = np.floor(end * fps / speed * (1 + COMPUTED)) + 1
+    count = np.floor(end * fps / speed * (1 + tolerances.COMPUTED)) + 1
     if count > MOST_FRAMES:
         what = f"{count:g} frames are more than {MOST_FRAMES}"
         raise UsageError(what, fix="take a shorter --time, fewer frames with --fps, or a larger --speed")
@@ -420,9 +420,9 @@ def reference_state(modes: Modes) -> DrawnState:
 
 def swing(scene: Scene, at: DrawnState, swung: np.ndarray) -> float:
     """Amplitude of a mode's picture: the body that moves most moves by a part of the picture."""
-    states = np.vstack([at.x[None, :], at.x + WIDE_STEP * swung])
+    states = np.vstack([at.x[None, :], at.x + tolerances.WIDE_STEP * swung])
     numbers = SceneNumbers(scene, frames_along(scene, np.full(len(states), at.t), states, at.p))
-    return swing_of(numbers, WIDE_STEP)
+    return swing_of(numbers, tolerances.WIDE_STEP)
 
 
 def virtual_movie(found: VirtualDisplacement, frames: int) -> Movie:

@@ -20,7 +20,7 @@ from eomgen.documents.texts_read import json_read_back, text_read_back
 from eomgen.errors import ExpressionError, NumberBeyond
 from eomgen.proof import Certificate, Check, Tally, differing
 from eomgen.symbolic.expression import LONGEST, Expression, Graph, Node, Scalar, order, parse, parse_unit, symbols_of
-from eomgen.symbolic.numeric import COMPUTED, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
 
 NAME = "formulas, read back as they are printed, are what they stand for"
@@ -155,7 +155,7 @@ def _unlike(found: Scalar, meant: Scalar) -> str:
             a, b = evaluate((found, meant), state, arithmetic)
         except (NoValue, ZeroDivisionError):
             continue
-        same = abs(a - b) <= COMPUTED * (abs(a) + abs(b)) + ZERO_AT_50
+        same = abs(a - b) <= tolerances.COMPUTED * (abs(a) + abs(b)) + tolerances.ZERO_AT_50
         return "" if same else f"{float(a):.10g} against {float(b):.10g}"
     raise NoValue("at none of the states tried it has a value")
 

@@ -64,7 +64,7 @@ from eomgen.proof import (
     unlike_words,
 )
 from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, order, parse, sampled_of
-from eomgen.symbolic.numeric import COMPUTED, READ_BACK, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import READ_BACK, NoValue, evaluate, fifty_digits, tolerances
 
 NAME = "the page, read back, says what was found"
 HOW = "a reader of its own, 50 digits"
@@ -476,7 +476,7 @@ def _valueless(todo: Sequence[InNumbers], state: Mapping[str, Any]) -> Iterator[
             continue
         if right != right:
             yield each
-        elif abs(found - right) > COMPUTED * (abs(found) + abs(right)) + ZERO_AT_50:
+        elif abs(found - right) > tolerances.COMPUTED * (abs(found) + abs(right)) + tolerances.ZERO_AT_50:
             raise Unlike(f"{where}: {float(found):.10g} stands there for {float(right):.10g}")
 
 

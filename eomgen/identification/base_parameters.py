@@ -60,17 +60,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
     transposed,
 )
-from eomgen.symbolic.numeric import (
-    FOLLOWS_AT_50,
-    PRIME,
-    PRIME_FIELD,
-    ROUNDED_AWAY,
-    NoMeaning,
-    NoValue,
-    Work,
-    evaluate,
-    fifty_digits,
-)
+from eomgen.symbolic.numeric import PRIME, PRIME_FIELD, NoMeaning, NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
 from eomgen.symbolic.solve import LinearSystem, Pivots, sparse_solution
 
@@ -185,7 +175,7 @@ def _polynomials(
 def _agree(number: Any, terms: LengthTerms, values: Mapping[str, Any]) -> bool:
     """True if the value of a polynomial is this number."""
     value = sum((in_50_digits(factor) * prod(values[name] for name in names) for factor, names in terms), start=0)
-    return bool(abs(value - number) <= FOLLOWS_AT_50 * (1 + abs(number)))
+    return bool(abs(value - number) <= tolerances.FOLLOWS_AT_50 * (1 + abs(number)))
 
 
 def _sampled(
@@ -296,9 +286,9 @@ def _numbers(
     largest = max(sizes, default=0)
     scaled = np.array(W, dtype=object)
     for j, size in enumerate(sizes):
-        scaled[:, j] = scaled[:, j] / size if size > ROUNDED_AWAY * largest else 0 * scaled[:, j]
+        scaled[:, j] = scaled[:, j] / size if size > tolerances.ROUNDED_AWAY * largest else 0 * scaled[:, j]
     stay, K = echelon_in_digits(scaled)
-    follow = [order[j] for j, size in enumerate(sizes) if j not in stay and size > ROUNDED_AWAY * largest]
+    follow = [order[j] for j, size in enumerate(sizes) if j not in stay and size > tolerances.ROUNDED_AWAY * largest]
     numbers = {(order[i], order[j]): x * sizes[j] / sizes[i] for (i, j), x in K.items()}
     return Dependence([order[i] for i in stay], follow, numbers, state)
 
@@ -388,7 +378,7 @@ def by_transfers(
         for i, share in solved.shares.get(j, {}).items():
             form = simplest(-share, Work.VALUE)
             (value,) = evaluate((form,), here, fifty_digits())
-            if abs(value - in_50_digits(K.get((i, j), 0))) > FOLLOWS_AT_50 * (1 + abs(value)):
+            if abs(value - in_50_digits(K.get((i, j), 0))) > tolerances.FOLLOWS_AT_50 * (1 + abs(value)):
                 return {}
             texts[i, j] = to_text(form)
     return texts if texts.keys() == K.keys() else {}
@@ -403,7 +393,7 @@ def _of_columns(transfers: Iterable[Transfer], place: Mapping[str, int]) -> Iter
 def _vanishes(W: np.ndarray, by: Sequence[Any]) -> bool:
     """True if a combination of columns is 0."""
     terms = W * np.array(by, dtype=object)
-    return not terms.size or max(map(abs, terms.sum(axis=1))) <= FOLLOWS_AT_50 * max(map(abs, terms.flat))
+    return not terms.size or max(map(abs, terms.sum(axis=1))) <= tolerances.FOLLOWS_AT_50 * max(map(abs, terms.flat))
 
 
 def number_text(x: Any) -> str:
@@ -417,7 +407,7 @@ def _plain(x: Any) -> Fraction | None:
     if isinstance(x, Fraction | int):
         return Fraction(x)
     near = Fraction(float(x)).limit_denominator(LARGEST_PLAIN)
-    return near if abs(x - x.context.mpf(near.numerator) / near.denominator) <= FOLLOWS_AT_50 else None
+    return near if abs(x - x.context.mpf(near.numerator) / near.denominator) <= tolerances.FOLLOWS_AT_50 else None
 
 
 # -------- transfers -------------------------------------------------------------------------------------------
@@ -534,7 +524,9 @@ def _shared(system: System, states: Sequence[State]) -> Iterator[SharedPoint]:
 
 def _seen(scalars: Sequence[Scalar], states: Sequence[State]) -> tuple[tuple[int, ...], ...]:
     """Values of scalars at each state, as whole multiples of their sure accuracy."""
-    return tuple(tuple(int(x / FOLLOWS_AT_50 + 0.5) for x in evaluate(scalars, s, fifty_digits())) for s in states)
+    return tuple(
+        tuple(int(x / tolerances.FOLLOWS_AT_50 + 0.5) for x in evaluate(scalars, s, fifty_digits())) for s in states
+    )
 
 
 def _alike(system: System, states: Sequence[State]) -> Iterator[Transfer]:

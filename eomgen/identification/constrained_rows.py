@@ -13,7 +13,7 @@ from eomgen.mechanics.constraints import gaps_of, generic_state, movable, norms_
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import values_of_parameters
 from eomgen.symbolic.expression import Fraction, ScalarRow, State, jacobian
-from eomgen.symbolic.numeric import FOLLOWS_AT_50, ROUNDED_AWAY, evaluate, fifty_digits
+from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 MORE = 6  # beyond its columns
 QUIET = 2  # states in succession that must add no independent row: then no state does
@@ -36,7 +36,7 @@ def sampled_rows(
     for state, along in constrained_states(system, Random(seed)):
         parts.append(columns_along(system, rows, columns, state, along))
         have += len(along)
-        least = ROUNDED_AWAY * max(map(abs, parts[-1].flat), default=0)
+        least = tolerances.ROUNDED_AWAY * max(map(abs, parts[-1].flat), default=0)
         new = [reduced.takes({j: x for j, x in enumerate(row) if abs(x) > least}) for row in parts[-1]]
         quiet = 0 if any(new) else quiet + 1
         reported_apart = len(reduced.rows) == len(columns) or quiet >= QUIET
@@ -117,7 +117,7 @@ class Reduced:
                 for j, x in other.items():
                     left[j] = left.get(j, 0) - factor * x
         pivot = max(left, key=lambda j: abs(left[j]), default=-1)
-        if pivot < 0 or abs(left[pivot]) <= FOLLOWS_AT_50 * max(map(abs, row.values()), default=0):
+        if pivot < 0 or abs(left[pivot]) <= tolerances.FOLLOWS_AT_50 * max(map(abs, row.values()), default=0):
             return False
         size = left.pop(pivot)
         self.rows[pivot] = {j: x / size for j, x in left.items()}
@@ -135,8 +135,8 @@ def echelon_in_digits(W: np.ndarray, right: np.ndarray | None = None) -> tuple[l
     for j in range(width):
         r = len(kept)
         pivot = max(range(r, len(left)), key=lambda i: abs(left[i, j]), default=None)
-        if pivot is None or not abs(left[pivot, j]) > FOLLOWS_AT_50:
-            K |= {(kept[i], j): left[i, j] for i in range(r) if abs(left[i, j]) > FOLLOWS_AT_50}
+        if pivot is None or not abs(left[pivot, j]) > tolerances.FOLLOWS_AT_50:
+            K |= {(kept[i], j): left[i, j] for i in range(r) if abs(left[i, j]) > tolerances.FOLLOWS_AT_50}
             continue
         left[[r, pivot]] = left[[pivot, r]]
         left[r] = left[r] / left[r, j]

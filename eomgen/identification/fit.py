@@ -32,15 +32,7 @@ from eomgen.model import ModelOrPath, model_at
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate, Check, checked
 from eomgen.symbolic.expression import Symbols, substituted
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    FLOAT,
-    LEAST_DENSITY,
-    NEARLY_A_POINT,
-    RANK_NEARBY,
-    TOWARD_THE_MODEL,
-    evaluate,
-)
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 Data = Mapping[str, Any]
 
@@ -263,7 +255,7 @@ def _along(J: np.ndarray, size: int) -> np.ndarray:
     if not len(J):
         return np.eye(size)
     _, s, Vt = np.linalg.svd(J)
-    rank = int(np.sum(s > RANK_NEARBY * s[0])) if len(s) and s[0] else 0
+    rank = int(np.sum(s > tolerances.RANK_NEARBY * s[0])) if len(s) and s[0] else 0
     basis: np.ndarray = Vt[rank:]
     return basis
 
@@ -296,7 +288,7 @@ def _consistent(
     parts = [{n.split("(")[0]: own[n] for n in found.parameters if _of_body(n, [body])} for body in bodies]
     begin = [numbers_of(part, size) for part in parts]
     width = len(begin[0]) if begin else 0
-    rest = np.log([max(abs(own[name]), LEAST_DENSITY) for name in alone])
+    rest = np.log([max(abs(own[name]), tolerances.LEAST_DENSITY) for name in alone])
     z0 = np.concatenate([*begin, rest])
     triangle: Any = np.linalg.qr(np.column_stack([scaled, b]), mode="r")
     R, d = triangle[:, :-1], triangle[:, -1]
@@ -309,7 +301,7 @@ def _consistent(
             made |= {f"{name}({body})": x for name, x in part.items()}
         return made | {n: signs[n] * float(x) for n, x in zip(alone, np.exp(z[len(bodies) * width :]), strict=True)}
 
-    weight = TOWARD_THE_MODEL * max(1.0, float(np.linalg.norm(d)))
+    weight = tolerances.TOWARD_THE_MODEL * max(1.0, float(np.linalg.norm(d)))
 
     def left(z: np.ndarray) -> np.ndarray:
         made = values(z)
@@ -330,9 +322,11 @@ def _begun_checked(found: Regressor) -> Check:
     for body in (name[2:-1] for name in found.parameters if name.startswith("m(")):
         part = {n.split("(")[0]: own[n] for n in found.parameters if _of_body(n, [body])}
         again, largest = parameters_of(numbers_of(part, size), size), max(map(abs, part.values()))
-        if _least_extent(part, size) > NEARLY_A_POINT * largest:
+        if _least_extent(part, size) > tolerances.NEARLY_A_POINT * largest:
             wrong += [
-                f"{n}({body}) is {again[n]:.6g}" for n, x in part.items() if abs(again[n] - x) > CARRIED * largest
+                f"{n}({body}) is {again[n]:.6g}"
+                for n, x in part.items()
+                if abs(again[n] - x) > tolerances.CARRIED * largest
             ]
     return checked("the search for bodies begins at those of the model", "; ".join(wrong[:2]), "floating point")
 
@@ -391,7 +385,7 @@ def parameters_of(z: np.ndarray, size: int) -> dict[str, float]:
 
 def numbers_of(own: Mapping[str, float], size: int) -> np.ndarray:
     """z of a body; of one without extent that of a small one."""
-    m = float(max(own["m"], LEAST_DENSITY))
+    m = float(max(own["m"], tolerances.LEAST_DENSITY))
     h = np.array([own[name] for name in MOMENTS[:size]])
     if size == 2:
         center = h / m
@@ -403,7 +397,7 @@ def numbers_of(own: Mapping[str, float], size: int) -> np.ndarray:
         Sigma = np.trace(I) / 2 * np.eye(3) - I
     about_center = Sigma - np.outer(h, h) / m
     values, axes = np.linalg.eigh(about_center)
-    least = LEAST_DENSITY * max(float(np.abs(values).max()), m * LEAST_DENSITY)
+    least = tolerances.LEAST_DENSITY * max(float(np.abs(values).max()), m * tolerances.LEAST_DENSITY)
     Sigma = axes @ np.diag(np.maximum(values, least)) @ axes.T + np.outer(h, h) / m
     J = np.block([[Sigma, h[:, None]], [h[None, :], np.array([[m]])]])
     L = np.linalg.cholesky(J)

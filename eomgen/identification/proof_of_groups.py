@@ -29,7 +29,7 @@ from eomgen.mechanics.start import values_of_parameters
 from eomgen.proof import Certificate, Check, PhaseMotion, Tally, TriedState, attempted, checked, first_wrong
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Fraction, ScalarRow, parse, substituted
-from eomgen.symbolic.numeric import COMPUTED, FOLLOWS_AT_50, RANK, RANK_NEARBY, evaluate, fifty_digits
+from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ
@@ -95,7 +95,7 @@ def _another_force(found: LinearForces, state: Any, along: np.ndarray, rng: Rand
     for row in Y:
         whole, short = sum(row * pi), sum(row[leads] * base)
         size = sum(map(abs, row * pi))
-        if abs(whole - short) > COMPUTED * size:
+        if abs(whole - short) > tolerances.COMPUTED * size:
             return f"{float(short):.10g} for {float(whole):.10g}"
     return ""
 
@@ -124,13 +124,13 @@ def _rank(W: np.ndarray) -> int:
     """Number of independent columns: by doubles where these decide it, else by orthogonalization with 50 digits."""
     columns = [column / max(map(abs, column)) for column in W.T if any(column)]
     values = np.linalg.svd(np.array(columns, dtype=float), compute_uv=False) if columns else np.zeros(0)
-    if len(columns) == W.shape[1] and all(values > RANK * values[0]):
+    if len(columns) == W.shape[1] and all(values > tolerances.RANK * values[0]):
         return len(columns)
     rank = 0
     while columns:
         squares = [column.dot(column) for column in columns]
         longest = max(range(len(columns)), key=squares.__getitem__)
-        if squares[longest] <= FOLLOWS_AT_50**2:
+        if squares[longest] <= tolerances.FOLLOWS_AT_50**2:
             break
         rank += 1
         along, square = columns.pop(longest), squares[longest]
@@ -143,7 +143,7 @@ def _misread(found: LinearForces, group: Group) -> str:
     read = tuple(scope.value(parse(text)) for text in group.terms.values())
     values = evaluate(read, values_of_parameters(scope, None), fifty_digits())
     for (parameter, text), value in zip(group.terms.items(), values, strict=True):
-        if abs(value - group.numbers[parameter]) > COMPUTED * (1 + abs(value)):
+        if abs(value - group.numbers[parameter]) > tolerances.COMPUTED * (1 + abs(value)):
             return f"{text} of {parameter} is {float(value):.10g}, not {group.numbers[parameter]:.10g}"
     return ""
 
@@ -152,7 +152,11 @@ def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
     """Check of least squares: the residual is orthogonal to every column."""
     left, size = b - W @ beta, np.linalg.norm(W, axis=0) * (np.linalg.norm(b) + np.linalg.norm(W @ beta))
     worst = float(np.max(np.abs(W.T @ left) / np.where(size > 0, size, 1), initial=0.0))
-    wrong = "" if worst <= COMPUTED else f"the residual of the forces is not orthogonal to a column, by {worst:.1e}"
+    wrong = (
+        ""
+        if worst <= tolerances.COMPUTED
+        else f"the residual of the forces is not orthogonal to a column, by {worst:.1e}"
+    )
     return checked(
         "the residual of the fit is orthogonal to the columns of the base parameters",
         wrong,
@@ -195,10 +199,12 @@ def _left_otherwise(motion: PhaseMotion, samples: StackedSamples, k: int) -> str
     W, b = samples.rows[k]
     due, size = W @ samples.pi - b, 1 + float(np.max(terms, initial=0.0))
     if len(here.J):  # the length of the residual along the constraints does not depend on axes
-        along = left - here.J.T @ np.linalg.lstsq(here.J.T, left, rcond=RANK_NEARBY)[0]
+        along = left - here.J.T @ np.linalg.lstsq(here.J.T, left, rcond=tolerances.RANK_NEARBY)[0]
         due, left = np.array([np.linalg.norm(due)]), np.array([np.linalg.norm(along)])
     worst = int(np.argmax(np.abs(due - left)))
-    return "" if abs(due[worst] - left[worst]) <= COMPUTED * size else f"{due[worst]:.9g} for {left[worst]:.9g}"
+    return (
+        "" if abs(due[worst] - left[worst]) <= tolerances.COMPUTED * size else f"{due[worst]:.9g} for {left[worst]:.9g}"
+    )
 
 
 def spread_checked(W: np.ndarray, b: np.ndarray, deviations: np.ndarray, condition: float, residual: float) -> Check:
@@ -215,7 +221,7 @@ def spread_checked(W: np.ndarray, b: np.ndarray, deviations: np.ndarray, conditi
     columns = W / np.linalg.norm(W, axis=0)
     squares = np.linalg.eigvalsh(columns.T @ columns)
     found = float(np.sqrt(squares[-1] / squares[0])) if squares[0] > 0 else math.inf
-    rounding = COMPUTED * float(np.abs(b).max(initial=0.0))
+    rounding = tolerances.COMPUTED * float(np.abs(b).max(initial=0.0))
     wrong = [
         f"{what} is {a:.6g} for {right:.6g}"
         for what, a, right, sure in (

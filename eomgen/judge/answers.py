@@ -27,7 +27,7 @@ from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes
 from eomgen.model import exact_parameters, with_values
 from eomgen.questions import Answer
 from eomgen.symbolic.expression import Expression, Node, Scalar, is_zero, parse
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
 SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing else is looked at
@@ -97,7 +97,7 @@ def _answered(case: Case, written: HandEquation, kind: str, at: Instant) -> Verd
         apart, rounded = abs(left.value - right.value), _rounding(written)
         if rounded is not None and apart <= rounded:
             return Verdict(written.given, kind, RIGHT, f"the rounding of {written.right.text}")
-        if apart <= COMPUTED * max(abs(left.value), abs(right.value), COMPUTED):
+        if apart <= tolerances.COMPUTED * max(abs(left.value), abs(right.value), tolerances.COMPUTED):
             if not written.right.names - {"pi"} and not written.right.calls:
                 return Verdict(written.given, kind, RIGHT, "the values of the file")
             return _by_numbers(case, written, kind, at)
@@ -135,7 +135,9 @@ def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Ve
             continue
         if left.value is None or right.value is None:
             continue
-        if abs(left.value - right.value) > COMPUTED * max(abs(left.value), abs(right.value), COMPUTED):
+        if abs(left.value - right.value) > tolerances.COMPUTED * max(
+            abs(left.value), abs(right.value), tolerances.COMPUTED
+        ):
             text = "it holds with the values of the file alone, and not with others"
             return Verdict(written.given, kind, WRONG, causes=(Cause("other", text, quantity="the value"),))
         tried += 1

@@ -76,7 +76,7 @@ from eomgen.symbolic.expression import (
     times,
     vector_of,
 )
-from eomgen.symbolic.numeric import CARRIED
+from eomgen.symbolic.numeric import tolerances
 
 KNOWN = 1.2  # how much less a balance is believed for each reaction in it that has to be known
 OBLIQUE = 0.6  # the same, along or across a member of a truss
@@ -326,7 +326,7 @@ class Balances:
         requested, seen = self._requested[0], [(each, pushes) for each in free.acting if (pushes := each.on(cut.parts))]
         values = [sum(map(cut.value, pushes), start=0) for _, pushes in seen]
         sizes = np.abs(self._before.flat(values)).max(axis=1, initial=0)
-        there = sizes > CARRIED * sizes.max(initial=0)
+        there = sizes > tolerances.CARRIED * sizes.max(initial=0)
         items = [
             Item(each, pushes, value, is_there, each.symbol in requested and not each.follows)
             for (each, pushes), value, is_there in zip(seen, values, there, strict=True)
@@ -469,7 +469,7 @@ class WrongItems:
             for k in ((1, -1) if not sign else (sign,)) if other.is_size else (1,):
                 apart, size = np.abs(k * near - own).max(), np.abs(near).max()
                 if (
-                    apart > CARRIED * size and size > CARRIED * np.abs(own).max()
+                    apart > tolerances.CARRIED * size and size > tolerances.CARRIED * np.abs(own).max()
                 ):  # what is nothing is stated as missing
                     by, rank = k * other.value - true, other.rank + dear
                     kind, text = (other.kind, other.text) if sign or not other.is_size else ("extra_term", NOTHING)

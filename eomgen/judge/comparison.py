@@ -46,7 +46,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import CARRIED
+from eomgen.symbolic.numeric import tolerances
 
 LONGEST = 3000  # operations of equations that are looked at term by term
 EXTRA = 5.6  # rank of a term of the author that does not belong there
@@ -267,7 +267,7 @@ class Comparison:
             f, *_ = np.linalg.lstsq(matrix.T, values[: n + k], rcond=None)
             found.append(f[:n])
         sizes = np.abs(np.array(found))
-        if not k and np.all(np.sort(sizes, axis=1)[:, :-1] < CARRIED * sizes.max(axis=1, keepdims=True)):
+        if not k and np.all(np.sort(sizes, axis=1)[:, :-1] < tolerances.CARRIED * sizes.max(axis=1, keepdims=True)):
             return None  # it is one of the equations
         return np.array(found).T.reshape(n, samples.places, -1)
 

@@ -39,7 +39,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import CARRIED, Work
+from eomgen.symbolic.numeric import Work, tolerances
 
 # -------- acting ----------------------------------------------------------------------------------------------
 # System -> ActingForces: what acts on its bodies in the plane, each by its name: reactions, loads, inertia forces.
@@ -277,7 +277,9 @@ class FreeBodies:
             link = motion.links[i]
             place = link.pose.point(r)
             numbers = self._numbers(place)
-            near = (x for x in found if np.allclose(numbers, x.numbers, rtol=CARRIED, atol=CARRIED))
+            near = (
+                x for x in found if np.allclose(numbers, x.numbers, rtol=tolerances.CARRIED, atol=tolerances.CARRIED)
+            )
             if (spot := next(near, None)) is None:
                 body = _short(link.name)
                 reported = name if name not in GENERIC else body if is_node(link.name) else f"{body}.{name}"
@@ -324,7 +326,7 @@ class FreeBodies:
         for angle in np.arange(CUTS) * np.pi / CUTS:
             far = [x * np.cos(angle) + y * np.sin(angle) for x, y in places]
             for level in sorted(far)[1:]:
-                yield frozenset(i for i, x in enumerate(far) if x < level - CARRIED)
+                yield frozenset(i for i, x in enumerate(far) if x < level - tolerances.CARRIED)
 
     def _called(self, bodies: frozenset[int]) -> str:
         links = self.system.motion.links
@@ -350,8 +352,8 @@ class FreeBodies:
         for reported, along in own:
             for how, e in (("along", along), ("across", (-along[1], along[0], 0))):
                 numbers = self._numbers(e)
-                numbers = numbers / np.maximum(np.linalg.norm(numbers, axis=0), CARRIED)
-                if all(np.abs(np.sum(numbers * x, axis=0)).min() < 1 - CARRIED for x in known):
+                numbers = numbers / np.maximum(np.linalg.norm(numbers, axis=0), tolerances.CARRIED)
+                if all(np.abs(np.sum(numbers * x, axis=0)).min() < 1 - tolerances.CARRIED for x in known):
                     known.append(numbers)
                     yield f"{how} {reported}", e
         yield from axes

@@ -33,16 +33,10 @@ from eomgen.symbolic.expression import (
     united,
 )
 from eomgen.symbolic.numeric import (
-    CARRIED,
-    CERTAIN_AT_50,
-    CLOSED_AT_50,
-    COMPUTED,
-    ELIMINATED_AT_50,
     FLOAT,
     PIECEWISE,
     PRIME,
     PRIME_FIELD,
-    ZERO_AT_50,
     Ball,
     Choices,
     NoMeaning,
@@ -51,6 +45,7 @@ from eomgen.symbolic.numeric import (
     balls,
     evaluate,
     fifty_digits,
+    tolerances,
 )
 
 STATES = 3
@@ -124,7 +119,7 @@ IN_DIGITS = NumberKind(
     "50 digits",
     lambda x: 1 / x,
     lambda x: x,
-    lambda x, size: abs(x) <= max(ELIMINATED_AT_50 * size, ZERO_AT_50),
+    lambda x, size: abs(x) <= max(tolerances.ELIMINATED_AT_50 * size, tolerances.ZERO_AT_50),
     states=REAL_STATES,
 )
 IN_BALLS = NumberKind(
@@ -247,7 +242,9 @@ def vanish_at(scalars: Sequence[Scalar], numbers: Mapping[Node, float]) -> bool 
     try:
         for f in scalars:
             value, *slopes = evaluate((f, *gradient(f, held)), state, fifty_digits())
-            if abs(value) > CARRIED * sum(abs(state[x] * slope) for x, slope in zip(held, slopes, strict=True)):
+            if abs(value) > tolerances.CARRIED * sum(
+                abs(state[x] * slope) for x, slope in zip(held, slopes, strict=True)
+            ):
                 return False
     except (NoValue, ZeroDivisionError):
         return None
@@ -262,7 +259,9 @@ def vanish_nearly(system: System, scalars: Sequence[Scalar]) -> bool:
             for f in scalars:
                 terms = linear_terms(f)
                 value, *parts = evaluate((f, *(1 if x is None else x for x in terms)), state, arithmetic)
-                if abs(value) > CARRIED * sum(abs(x * k) for x, k in zip(parts, terms.values(), strict=True)):
+                if abs(value) > tolerances.CARRIED * sum(
+                    abs(x * k) for x, k in zip(parts, terms.values(), strict=True)
+                ):
                     return False
         except (NoValue, ZeroDivisionError):
             continue
@@ -380,7 +379,9 @@ def _sure_states(system: System, flat: Sequence[Scalar], *, on_constraints: bool
     _, flat = united(list(flat))
     for state in states_of(system, flat, on_constraints=on_constraints):
         moved = {*system.symbols.q, *system.symbols.u} if on_constraints else set()
-        values = evaluate(flat, {x: (v, v * 0 + (ZERO_AT_50 if x in moved else 0)) for x, v in state.items()}, BALLS)
+        values = evaluate(
+            flat, {x: (v, v * 0 + (tolerances.ZERO_AT_50 if x in moved else 0)) for x, v in state.items()}, BALLS
+        )
         if not any(x != x for x, _ in values):
             yield [SureNumber(each) for each in values]
 
@@ -486,7 +487,7 @@ def _constrained(system: System, state: dict[Node, Any], gaps: Sequence[Scalar])
         except (NoValue, ZeroDivisionError):
             return None
         left = values[: len(gaps)]
-        if max(map(abs, left), default=0) < CLOSED_AT_50:
+        if max(map(abs, left), default=0) < tolerances.CLOSED_AT_50:
             return _at_constrained_speeds(system, state)
         matrix = [values[len(gaps) + k * len(q) : len(gaps) + (k + 1) * len(q)] for k in range(len(gaps))]
         step = _least_step(matrix, left)
@@ -520,7 +521,7 @@ def _least_step(rows: list[NumberRow], left: NumberRow) -> NumberRow | None:
     plain = np.array([[float(x) for x in row] for row in rows])
     for k in range(len(rows)):
         if (
-            np.linalg.matrix_rank(plain[[*kept, k]], tol=COMPUTED * max(1.0, float(np.abs(plain).max())))
+            np.linalg.matrix_rank(plain[[*kept, k]], tol=tolerances.COMPUTED * max(1.0, float(np.abs(plain).max())))
             == len(kept) + 1
         ):
             kept.append(k)
@@ -539,7 +540,7 @@ def _solved(matrix: list[NumberRow], right: NumberRow) -> NumberRow | None:
     n = len(rows)
     for k in range(n):
         best = max(range(k, n), key=lambda i: abs(rows[i][k]))
-        if abs(rows[best][k]) < CERTAIN_AT_50:
+        if abs(rows[best][k]) < tolerances.CERTAIN_AT_50:
             return None
         rows[k], rows[best] = rows[best], rows[k]
         for i in range(n):

@@ -21,7 +21,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.dynamics import System
 from eomgen.symbolic.expression import SECOND, Dimension, Fraction, Node, Scalar, ScalarRow, over
-from eomgen.symbolic.numeric import ARRAYS, CARRIED, COMPUTED, SAME_EIGENVALUE, evaluate
+from eomgen.symbolic.numeric import ARRAYS, evaluate, tolerances
 
 BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
 FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed
@@ -174,13 +174,15 @@ def fitting(ours: np.ndarray, others: np.ndarray, given: int, rows: int) -> np.n
     with np.errstate(all="ignore"):
         largest = np.take_along_axis(ours, places, 1)
         ratios = np.take_along_axis(others, places, 1) / largest
-        first = np.where(np.abs(largest) > COMPUTED * np.abs(ours[:given]).max(), ratios, 0.0)[:, 0]
-        alike = np.all(np.abs(others - ratios * ours) <= CARRIED * np.abs(ratios * largest), axis=1) | (first == 0)
+        first = np.where(np.abs(largest) > tolerances.COMPUTED * np.abs(ours[:given]).max(), ratios, 0.0)[:, 0]
+        alike = np.all(np.abs(others - ratios * ours) <= tolerances.CARRIED * np.abs(ratios * largest), axis=1) | (
+            first == 0
+        )
     factors = np.where(alike, first, np.nan)
     equation, mistakes = factors[given - rows : given], factors[given:].reshape(-1, rows)
     if np.isnan(factors[:given]).any():
         return np.ones(len(mistakes), dtype=bool)
-    same = np.abs(mistakes - equation) <= CARRIED * np.abs(equation)
+    same = np.abs(mistakes - equation) <= tolerances.CARRIED * np.abs(equation)
     fits: np.ndarray = np.all(same | (mistakes == 0) | (equation == 0), axis=1)
     return fits
 
@@ -249,7 +251,11 @@ class Search:
             i = kept[k]
             for y in (-1.0, -2.0):
                 beside = left + y * self._length(i, A[k]) * A[k]
-                for (j,) in self._single(beside, A) if np.linalg.norm(beside) > CARRIED * np.linalg.norm(left) else ():
+                for (j,) in (
+                    self._single(beside, A)
+                    if np.linalg.norm(beside) > tolerances.CARRIED * np.linalg.norm(left)
+                    else ()
+                ):
                     if j != k:
                         yield i, kept[j], y
 
@@ -282,7 +288,11 @@ class Search:
         with np.errstate(all="ignore"):
             A, raw = self._flat(self.C), (self.C / self._size[:, None]).reshape(len(self.C), -1)
         lengths, sizes = np.linalg.norm(A, axis=1), np.linalg.norm(raw, axis=1)
-        kept = [i for i in range(len(A)) if np.isfinite(lengths[i]) and lengths[i] > CARRIED * max(sizes[i], COMPUTED)]
+        kept = [
+            i
+            for i in range(len(A))
+            if np.isfinite(lengths[i]) and lengths[i] > tolerances.CARRIED * max(sizes[i], tolerances.COMPUTED)
+        ]
         return self._flat(self.E), A[kept] / lengths[kept, None], kept
 
     @cached_property
@@ -290,14 +300,16 @@ class Search:
         """Magnitude of the equation at each configuration; 1 where the author may not have divided."""
         if self.D is None:
             return np.ones(len(self.E))
-        sizes: np.ndarray = np.maximum(np.linalg.norm(self.E, axis=1), COMPUTED)
+        sizes: np.ndarray = np.maximum(np.linalg.norm(self.E, axis=1), tolerances.COMPUTED)
         return sizes
 
     def _flat(self, X: np.ndarray) -> np.ndarray:
         """The array without its share along D at each configuration, in one row."""
         X = X / self._size[:, None]
         if self.D is not None:
-            D = self.D / np.maximum(np.linalg.norm(self.D, axis=1, keepdims=True), COMPUTED * COMPUTED)
+            D = self.D / np.maximum(
+                np.linalg.norm(self.D, axis=1, keepdims=True), tolerances.COMPUTED * tolerances.COMPUTED
+            )
             X = X - np.sum(X * D, axis=-1, keepdims=True) * D
         flat: np.ndarray = X.reshape(*X.shape[:-2], -1)
         return flat
@@ -311,7 +323,7 @@ class Search:
     def _single(self, left: np.ndarray, A: np.ndarray) -> Iterator[list[int]]:
         along = A @ left
         for i in np.flatnonzero(
-            np.linalg.norm(left - along[:, None] * A, axis=1) < SAME_EIGENVALUE * np.linalg.norm(left)
+            np.linalg.norm(left - along[:, None] * A, axis=1) < tolerances.SAME_EIGENVALUE * np.linalg.norm(left)
         ):
             yield [int(i)]
 
@@ -321,7 +333,7 @@ class Search:
         free = 1 - G * G
         with np.errstate(all="ignore"):
             explained = (b[:, None] ** 2 + b[None, :] ** 2 - 2 * G * b[:, None] * b[None, :]) / free
-        good = np.triu((free > SAME_EIGENVALUE) & (size - explained < SAME_EIGENVALUE * size), 1)
+        good = np.triu((free > tolerances.SAME_EIGENVALUE) & (size - explained < tolerances.SAME_EIGENVALUE * size), 1)
         found = np.argwhere(good)
         for i, j in found[np.argsort(found.sum(axis=1))][:room]:
             yield [int(i), int(j)]
@@ -331,7 +343,7 @@ class Search:
         for i in range(len(A)):
             rest = A[i + 1 :] - np.outer(A[i + 1 :] @ A[i], A[i])
             lengths = np.linalg.norm(rest, axis=1)
-            kept = np.flatnonzero(lengths > CARRIED)
+            kept = np.flatnonzero(lengths > tolerances.CARRIED)
             if len(kept) < 2:
                 continue
             without = left - (A[i] @ left) * A[i]
@@ -355,9 +367,11 @@ class Search:
         if first is not None:
             target = target - first * columns.pop(0)
         matrix = np.array(columns).T
-        lengths: np.ndarray = np.maximum(np.linalg.norm(matrix, axis=0), COMPUTED * COMPUTED)
+        lengths: np.ndarray = np.maximum(np.linalg.norm(matrix, axis=0), tolerances.COMPUTED * tolerances.COMPUTED)
         y: np.ndarray = np.linalg.lstsq(matrix / lengths, target, rcond=None)[0]
-        if np.linalg.norm(matrix / lengths @ y - target) > CARRIED * max(float(np.linalg.norm(target)), COMPUTED):
+        if np.linalg.norm(matrix / lengths @ y - target) > tolerances.CARRIED * max(
+            float(np.linalg.norm(target)), tolerances.COMPUTED
+        ):
             return None
         y = y / lengths if first is None else np.concatenate([[first], y / lengths])
         y = y[: len(chosen)]
@@ -369,7 +383,7 @@ class Search:
         if self.resisting is not None:
             whole, each = self.resisting
             left = whole + np.tensordot(y, each[list(chosen)], axes=1)
-            if not np.all(np.abs(left) > CARRIED * np.abs(whole)):
+            if not np.all(np.abs(left) > tolerances.CARRIED * np.abs(whole)):
                 return None
         scaled, dear = self._scale(C, y)
         gone = any(x.mistake.open and not x.unit and x.factor == 0 for x in shares)
@@ -386,7 +400,7 @@ class Search:
             np.tensordot(y * np.array(own, dtype=float), C, axes=1) if self.D is None else np.tensordot(y, C, axes=1)
         )
         whole = np.linalg.norm(true + changed, axis=1)
-        return bool(np.all(whole > CARRIED * np.linalg.norm(true, axis=1)))
+        return bool(np.all(whole > tolerances.CARRIED * np.linalg.norm(true, axis=1)))
 
     def _scale(self, C: np.ndarray, y: np.ndarray) -> tuple[str, float]:
         """The factor by which the author multiplied, and its cost."""
@@ -395,9 +409,9 @@ class Search:
         whole = self.E + np.tensordot(y, C, axes=1)
         with np.errstate(all="ignore"):
             sigma = np.sum(whole * self.D, axis=1) / np.sum(self.D * self.D, axis=1)
-        if np.allclose(np.abs(sigma), 1, rtol=CARRIED):
+        if np.allclose(np.abs(sigma), 1, rtol=tolerances.CARRIED):
             return ("", 0.0) if sigma[0] > 0 else ("opposite", TURNED)
-        if np.allclose(sigma, sigma[0], rtol=CARRIED):
+        if np.allclose(sigma, sigma[0], rtol=tolerances.CARRIED):
             known = simple_factor(float(sigma[0])) is not None
             return "constant", 1.2 if known else 2.0
         return "function", 1.0 if np.mean(sigma) > 0 else 1.3
@@ -421,13 +435,13 @@ def _share(mistake: Mistake, y: float, often: Sequence[Fraction | int]) -> Share
     Args:
         often: how often a change may be there.
     """
-    if mistake.name.startswith(WHOLE) and abs(1 + y) < SAME_EIGENVALUE:
+    if mistake.name.startswith(WHOLE) and abs(1 + y) < tolerances.SAME_EIGENVALUE:
         return None  # something else would have to be there in its place
     if not mistake.open:
-        times = next((x for x in often if x and abs(y - x) < SAME_EIGENVALUE), None)
+        times = next((x for x in often if x and abs(y - x) < tolerances.SAME_EIGENVALUE), None)
         return None if times is None else Share(mistake, Fraction(times))
     for name, (number, _) in UNITS.items():
-        if abs(1 + y - number) < SAME_EIGENVALUE * number:
+        if abs(1 + y - number) < tolerances.SAME_EIGENVALUE * number:
             return Share(mistake, Fraction(1), name)
     factor = simple_factor(1 + y)
     if (
@@ -444,7 +458,7 @@ def simple_factor(x: float, largest: int = SIMPLE) -> Fraction | None:
     if not np.isfinite(x) or abs(x) > largest:
         return None
     near = Fraction(x).limit_denominator(largest)
-    return near if abs(float(near) - x) < SAME_EIGENVALUE and abs(near.numerator) <= largest * 2 else None
+    return near if abs(float(near) - x) < tolerances.SAME_EIGENVALUE and abs(near.numerator) <= largest * 2 else None
 
 
 def cost_of(share: Share) -> float:

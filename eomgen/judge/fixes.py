@@ -46,7 +46,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import ARRAYS, COMPUTED, evaluate
+from eomgen.symbolic.numeric import ARRAYS, evaluate, tolerances
 
 MOST_TRIED = 6  # changes that are proven before it is given up
 SHORT = 60  # characters of a place that is stated
@@ -354,7 +354,7 @@ def _needed(difference: Node, node: Node, values: Mapping[Node, np.ndarray]) -> 
 
     with np.errstate(all="ignore"):
         own = at(node, values)
-        size = np.abs(own) + COMPUTED
+        size = np.abs(own) + tolerances.COMPUTED
         x, y = own, own + size / 10
         f, g = (at(difference, {**values, node: each}) for each in (x, y))
         scale = np.abs(f) + np.abs(g)
@@ -365,6 +365,6 @@ def _needed(difference: Node, node: Node, values: Mapping[Node, np.ndarray]) -> 
             g = at(difference, {**values, node: y})
             if not np.all(np.isfinite(g)):
                 return None
-            if np.all(np.abs(g) <= COMPUTED * scale):
+            if np.all(np.abs(g) <= tolerances.COMPUTED * scale):
                 return (own, y) if np.all(np.abs(y) < FARTHEST * size) else None
     return None

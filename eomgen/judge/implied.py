@@ -61,7 +61,7 @@ from eomgen.symbolic.expression import (
     over,
     substituted,
 )
-from eomgen.symbolic.numeric import CARRIED
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.solve import determinant
 
 
@@ -493,7 +493,9 @@ class GivenFrequency:
             for x in FACTORS if mistake.open else (Fraction(1),):
                 y = float(x - 1) if mistake.open else 1.0
                 with np.errstate(all="ignore"):
-                    if np.all(size(square, y, k) < CARRIED) and np.all(size(OTHER * square, y, k) > CARRIED):
+                    if np.all(size(square, y, k) < tolerances.CARRIED) and np.all(
+                        size(OTHER * square, y, k) > tolerances.CARRIED
+                    ):
                         share = Share(mistake, x)
                         found.append(Explanation((share,), 0, cost_of(share) + BY_CHANCE))
         return found

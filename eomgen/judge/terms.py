@@ -29,7 +29,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, Work
+from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import readable_text
 
 MOST_TERMS = 60  # of an equation that is looked at term by term
@@ -487,7 +487,7 @@ class Products:
             inner: it is a factor of a product: a number is one of that.
             forced: it holds accelerations, of which nobody takes the wrong sign.
         """
-        if np.all(np.abs(needed) <= COMPUTED * np.abs(own)):
+        if np.all(np.abs(needed) <= tolerances.COMPUTED * np.abs(own)):
             return [Amended(PRODUCT, 0, "extra_term")]
         with np.errstate(all="ignore"):
             found = list(other_forms(node, own, needed))
@@ -512,7 +512,7 @@ class Products:
         """(which product, how often) the values are at every state."""
         ratios = values / self._known[2]
         first = ratios[:, :1]
-        good = np.all(np.abs(ratios - first) <= CARRIED * np.abs(first), axis=1) & (np.abs(first[:, 0]) > 0)
+        good = np.all(np.abs(ratios - first) <= tolerances.CARRIED * np.abs(first), axis=1) & (np.abs(first[:, 0]) > 0)
         for k in np.flatnonzero(good):
             c = simple_factor(float(first[k, 0]), WELL_KNOWN**2)
             if c and (max(abs(c.numerator), c.denominator) <= WELL_KNOWN or c in SQUARES):
@@ -538,7 +538,7 @@ class Products:
 def other_forms(node: Node, own: np.ndarray, needed: np.ndarray) -> Iterator[Amended]:
     """Its square, its root, its reciprocal."""
     for value, k in ((own * own, Fraction(2)), (np.sqrt(np.abs(own)), Fraction(1, 2)), (1 / own, Fraction(-1))):
-        if np.all(np.abs(value - needed) <= CARRIED * np.abs(needed)):
+        if np.all(np.abs(value - needed) <= tolerances.CARRIED * np.abs(needed)):
             yield Amended(NUMBER, power(node, k), "factor")
 
 

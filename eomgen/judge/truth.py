@@ -38,7 +38,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import ARRAYS, CARRIED, FLOAT, SAME_EIGENVALUE, NoValue, Work, evaluate
+from eomgen.symbolic.numeric import ARRAYS, FLOAT, NoValue, Work, evaluate, tolerances
 from eomgen.symbolic.print import readable_text
 
 # -------- right -----------------------------------------------------------------------------------------------
@@ -478,7 +478,7 @@ def is_of_rest(case: Case, scalar: Scalar) -> bool | None:
         for root in sign_changes(scalar, q, values):
             near = _at((row,), q, values, np.array([root]))[0, 0]
             size = np.nanmax(np.abs(_at((row,), q, values, _grid(values[q]))))
-            if not abs(near) <= SAME_EIGENVALUE * size:
+            if not abs(near) <= tolerances.SAME_EIGENVALUE * size:
                 return False
             seen += 1
     return True if seen else None
@@ -497,7 +497,7 @@ def sign_changes(scalar: Scalar, q: Node, values: dict[Node, float]) -> list[flo
             (x,) = _at((scalar,), q, values, np.array([middle]))[0]
             low, high, first = (middle, high, x) if x * first > 0 else (low, middle, first)
         (left,) = _at((scalar,), q, values, np.array([(low + high) / 2]))[0]
-        if abs(left) <= CARRIED * np.nanmax(np.abs(height)):
+        if abs(left) <= tolerances.CARRIED * np.nanmax(np.abs(height)):
             found.append((low + high) / 2)
     return sorted(found, key=lambda root: abs(root - values[q]))
 

@@ -23,7 +23,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import Node, Scalar, inner, is_zero, over, substituted
-from eomgen.symbolic.numeric import FLOAT, RANK, ROUNDING, Work, dense, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric import FLOAT, Work, dense, evaluate, fifty_digits, floats_of, tolerances
 from eomgen.symbolic.solve import vanishes
 
 # -------- fields ----------------------------------------------------------------------------------------------
@@ -220,7 +220,7 @@ class Split:
     rows: tuple[int, ...]
 
     @classmethod
-    def of(cls, A: np.ndarray, late: Sequence[Any] | None = None, smallest: float = RANK) -> Split:
+    def of(cls, A: np.ndarray, late: Sequence[Any] | None = None, smallest: float = tolerances.RANK) -> Split:
         """The independent rows, and the columns that they determine: the latest first, of those as late the last.
 
         A column that the others nearly make up, against the best of those as late, waits for these.
@@ -234,7 +234,7 @@ class Split:
         return cls(tuple(k for k in range(A.shape[1]) if k not in following), following, rows)
 
     @classmethod
-    def in_order(cls, A: np.ndarray, order: Sequence[int], smallest: float = RANK) -> Split:
+    def in_order(cls, A: np.ndarray, order: Sequence[int], smallest: float = tolerances.RANK) -> Split:
         """The same where columns follow in this order, the first one first."""
         return cls.of(A, [-order.index(k) for k in range(A.shape[1])], smallest)
 
@@ -259,7 +259,7 @@ class Split:
 
 def _determined(A: np.ndarray, late: Sequence[Any], smallest: float) -> tuple[tuple[int, ...], tuple[int, ...]]:
     """(independent rows, columns that they determine)."""
-    scaled = dense.balanced(dense.without_noise(A, ROUNDING, axis=1))[0]
+    scaled = dense.balanced(dense.without_noise(A, tolerances.ROUNDING, axis=1))[0]
     rows = dense.independent_rows(scaled, smallest)
     left = scaled[rows].copy()
     chosen: list[int] = []

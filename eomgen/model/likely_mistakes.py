@@ -20,7 +20,7 @@ from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
 from eomgen.symbolic.expression import Expression, Fraction
-from eomgen.symbolic.numeric import MASSES_APART
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Symbol, symbol_of
 
 
@@ -271,7 +271,7 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
     if not found:
         return
     (least, _), (most, leaf) = min(found, key=lambda pair: pair[0]), max(found, key=lambda pair: pair[0])
-    if most > MASSES_APART * least:
+    if most > tolerances.MASSES_APART * least:
         what = (
             f"{whereabouts(leaf.path)} is {most:g} kg, and the least mass {least:g} kg: {most / least:.0e} times less"
         )

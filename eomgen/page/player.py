@@ -38,7 +38,7 @@ from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, react
 from eomgen.simulation import Configuration, PhaseModel, Trajectory
 from eomgen.study import Study
 from eomgen.symbolic.expression import parse_unit
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, SEVEN_DIGITS, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 from eomgen.version import __version__
 
 # -------- player data -----------------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ class PlayedRun:
         return {
             "name": self.model.name,
             "time": float(run.phases[-1].end),
-            "rtol": CARRIED,
+            "rtol": tolerances.CARRIED,
             "scene": self.drawn[0],
             "names": names,
             "columns": columns,
@@ -275,7 +275,14 @@ def _default_range(value: float, kind: str, *, angular: bool) -> SliderRange:
 
 def _vector(v: TestVector) -> dict[str, Any]:
     result = [value if value == value else None for value in v.result]
-    return {"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs, "result": result, "tolerance": max(v.tolerance, CARRIED)}
+    return {
+        "t": v.t,
+        "x": v.x,
+        "p": v.p,
+        "inputs": v.inputs,
+        "result": result,
+        "tolerance": max(v.tolerance, tolerances.CARRIED),
+    }
 
 
 def _unit(unit: Any) -> dict[str, Any]:
@@ -489,7 +496,7 @@ def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
     if run.energy is not None:
         pairs.append(("T + V", found["T"] + found["V"], float(run.energy[k])))
     size = 1 + max((abs(right) for _, _, right in pairs if np.isfinite(right)), default=0.0)
-    wrong = (f"{name} is {x:.9g} for {y:.9g}" for name, x, y in pairs if abs(x - y) > SEVEN_DIGITS * size)
+    wrong = (f"{name} is {x:.9g} for {y:.9g}" for name, x, y in pairs if abs(x - y) > tolerances.SEVEN_DIGITS * size)
     return next(wrong, "")
 
 
@@ -552,7 +559,7 @@ def _other_column(reported: Mapping[str, Any], right: list[np.ndarray]) -> str:
         return f"{len(found)} columns for {len(right)}"
     for k, (a, b) in enumerate(zip(found, right, strict=True)):
         size = float(np.max(np.abs(b), where=np.isfinite(b), initial=0.0))
-        if len(a) != len(b) or not np.allclose(a, b, 0, SEVEN_DIGITS * size, equal_nan=True):
+        if len(a) != len(b) or not np.allclose(a, b, 0, tolerances.SEVEN_DIGITS * size, equal_nan=True):
             return f"column {k + 1}"
     return ""
 
@@ -562,7 +569,10 @@ def _other_value(each: Mapping[str, Any], right: float | None) -> str:
 
 
 def _other_slider(each: Mapping[str, Any], known: Mapping[str, float]) -> str:
-    if not each["min"] - COMPUTED <= each["value"] <= each["max"] + COMPUTED or each["min"] == each["max"]:
+    if (
+        not each["min"] - tolerances.COMPUTED <= each["value"] <= each["max"] + tolerances.COMPUTED
+        or each["min"] == each["max"]
+    ):
         return f"{each['value']:.6g} is not between {each['min']:.6g} and {each['max']:.6g}"
     return _other_value(each, known.get(each["name"]))
 

@@ -35,7 +35,7 @@ from eomgen.proof import (
 )
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import parse_unit
-from eomgen.symbolic.numeric import NINE_DIGITS, NoValue
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 CURVES = "curves and tables of the report, read back, are those of the run"
 BY_AXES = "by the numbers at their axes and the names of columns"
@@ -251,6 +251,8 @@ def _unlike_table(run: Trajectory, content: bytes, columns: Sequence[str]) -> st
         return f"columns {', '.join(columns)}"
     for name, column in columns_reported(content).items():
         size = float(np.max(np.abs(right[name]), where=np.isfinite(right[name]), initial=0.0))
-        if len(column) != len(run.t) or not np.allclose(column, right[name], 0, NINE_DIGITS * size, equal_nan=True):
+        if len(column) != len(run.t) or not np.allclose(
+            column, right[name], 0, tolerances.NINE_DIGITS * size, equal_nan=True
+        ):
             return name
     return ""

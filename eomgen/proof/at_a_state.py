@@ -41,16 +41,7 @@ from eomgen.symbolic.expression import (
     parse,
     substituted,
 )
-from eomgen.symbolic.numeric import (
-    BESIDE_A_PLACE,
-    COMPUTED,
-    RANK_NEARBY,
-    ROUNDING,
-    SAME_PLACE,
-    NoValue,
-    evaluate,
-    fifty_digits,
-)
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times the change between nearby states, by which a number may be wrong
@@ -125,7 +116,7 @@ class NumericState:
 
         found, size = value_with(least), np.abs(least).max(initial=0.0) or 1.0
         others = [value_with(least + size * column) for column in added.T]
-        if any(abs(x - found) > COMPUTED * size for x in others):
+        if any(abs(x - found) > tolerances.COMPUTED * size for x in others):
             raise NoValue(f"the equilibrium of the bodies does not determine '{formula.text}'")
         return found
 
@@ -164,7 +155,7 @@ class NumericState:
         if not any(FUNCTIONS[call.name].source == BALANCE for call in formula.calls):
             return 0.0
         forces = evaluate(tuple(self.equations.forcing), self.values, fifty_digits()) or self._applied
-        return ROUNDING * max((abs(float(x)) for x in forces), default=0.0)
+        return tolerances.ROUNDING * max((abs(float(x)) for x in forces), default=0.0)
 
     @property
     def _applied(self) -> list[Any]:
@@ -202,15 +193,17 @@ class NumericState:
         if not any(depends_on(x.args[0], symbols.u) for x in signs):
             return False
         apart = []
-        for away in (COMPUTED, COMPUTED * BESIDE_A_PLACE):
+        for away in (tolerances.COMPUTED, tolerances.COMPUTED * tolerances.BESIDE_A_PLACE):
             sides = ({**self.values, **{u: self.values[u] + sign * away for u in symbols.u}} for sign in (1, -1))
             first, last = (evaluate(self.equations.forcing, side, digits) for side in sides)
             apart.append([abs(x - y) for x, y in zip(first, last, strict=True)])
-        return any(near > COMPUTED and 2 * near > far for far, near in zip(*apart, strict=True))
+        return any(near > tolerances.COMPUTED and 2 * near > far for far, near in zip(*apart, strict=True))
 
     def nearby(self) -> tuple[NumericState, NumericState]:
         """Two states that differ from it by rounding errors of several steps in doubles."""
-        turns = {node: (-1) ** k * COMPUTED * (1 + abs(x)) for k, (node, x) in enumerate(self.numbers.items())}
+        turns = {
+            node: (-1) ** k * tolerances.COMPUTED * (1 + abs(x)) for k, (node, x) in enumerate(self.numbers.items())
+        }
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
@@ -229,7 +222,7 @@ def balanced_least(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndar
         *entries, right = evaluate((*row.values(), needed), known, fifty_digits())
         A[i, list(row)], b[i] = [float(x) for x in entries], float(right)
     U, sizes, V = np.linalg.svd(A)
-    rank = int(np.sum(sizes > RANK_NEARBY * max(sizes, default=0.0)))
+    rank = int(np.sum(sizes > tolerances.RANK_NEARBY * max(sizes, default=0.0)))
     return V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank]), V[rank:].T
 
 
@@ -286,7 +279,7 @@ def off_by(found: float, right: float, near: list[float]) -> str:
     """
     change = max(abs(x - right) for x in near)
     off = abs(found - right)
-    if off <= AWAY * change <= SAME_PLACE * (1 + abs(right)):
+    if off <= AWAY * change <= tolerances.SAME_PLACE * (1 + abs(right)):
         return ""
     if off <= AWAY * change:
         raise NoValue("the state is next to a singular position, and doubles say too little of it")

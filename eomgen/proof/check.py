@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.numeric import COMPUTED, SOLVED, NoValue
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 Status = Literal["holds", "fails", "unchecked"]
 MARKS: dict[Status, str] = {"holds": "ok  ", "fails": "FAIL", "unchecked": "?   "}
@@ -56,9 +56,9 @@ def attempted(name: str, how: str, wrong: Callable[[], str]) -> Check:
         return unchecked(name, str(error) or "no value", how)
 
 
-def differing(found: float, right: float, share: float = COMPUTED) -> str:
+def differing(found: float, right: float, share: float = tolerances.COMPUTED) -> str:
     """Difference of two numbers in words, where it is more than a share of the larger; ""."""
-    if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
+    if abs(found - right) <= share * max(abs(found), abs(right)) + tolerances.SOLVED:
         return ""
     return f"{found:.10g} for {right:.10g}"
 

@@ -37,7 +37,7 @@ from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, Values, slack_name, sliding_velocity
 from eomgen.symbolic.expression import Scalar, State, apply
-from eomgen.symbolic.numeric import CARRIED, OPEN_GAP, SUMMED, UNBALANCED, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
 
@@ -97,7 +97,7 @@ class _Seen:
 
     def _least(self, what: str, values: np.ndarray, size: float, unit: str) -> str:
         least = float(np.min(values, initial=0.0))
-        return f"{what} {-least:.3g} {unit}" if least < -OPEN_GAP * size else ""
+        return f"{what} {-least:.3g} {unit}" if least < -tolerances.OPEN_GAP * size else ""
 
     def _along(self, scalar: Scalar) -> np.ndarray:
         t, x = self.track
@@ -162,7 +162,7 @@ def _misplaced(phase: Phase, apart: System) -> str:
         for link in own.motion.links:
             there = evaluate(apart.motion.link(link.name).pose.p, known, fifty_digits())
             gap = max(abs(x - y) for x, y in zip(evaluate(link.pose.p, here, fifty_digits()), there, strict=True))
-            if gap > OPEN_GAP * (1 + max(map(abs, there))):
+            if gap > tolerances.OPEN_GAP * (1 + max(map(abs, there))):
                 return f"'{link.name}' is {float(gap):.3g} m from where it is in all phases"
     return ""
 
@@ -207,7 +207,7 @@ class _Bodies:
         q = len(self.system.symbols.q)
         early, late = self._state(self._end), self._state(self._begin)
         size = max(1.0, float(np.max(np.abs([early, late]))))
-        if np.max(np.abs(early[:q] - late[:q]), initial=0.0) > OPEN_GAP * size:
+        if np.max(np.abs(early[:q] - late[:q]), initial=0.0) > tolerances.OPEN_GAP * size:
             return "a coordinate jumps"
         pushes, frees = [], [J for J, _ in self._rows_at(self.system.constraints.closing, late)]
         for name, rows in self._rows.items():
@@ -215,11 +215,11 @@ class _Bodies:
             speeds = [v for _, v in found]
             if not self._touches(name, rows):
                 continue
-            if speeds[0] < -OPEN_GAP * size:
+            if speeds[0] < -tolerances.OPEN_GAP * size:
                 return f"'{name}' is still approached with {-speeds[0]:.3g} m/s"
-            if speeds[0] <= OPEN_GAP * size:
+            if speeds[0] <= tolerances.OPEN_GAP * size:
                 pushes.append(found[0][0])
-                frees += [J for J, v in found[1:] if abs(v) <= OPEN_GAP * size]
+                frees += [J for J, v in found[1:] if abs(v) <= tolerances.OPEN_GAP * size]
         return self._left(pushes, frees, early, late)
 
     def _left(self, pushes: list[np.ndarray], frees: list[np.ndarray], early: np.ndarray, late: np.ndarray) -> str:
@@ -232,14 +232,14 @@ class _Bodies:
         P = self._momenta(late, speeds)
         M = units[:-1] - units[-1]
         found, V = np.linalg.eigh((M + M.T) / 2)
-        held = found > SUMMED * max(found, default=0.0)
+        held = found > tolerances.SUMMED * max(found, default=0.0)
         whiten = (V[:, held] / np.sqrt(found[held])).T
         rows = [*pushes, *frees, *(-J for J in frees)]
         columns = np.array(rows).reshape(len(rows), n) @ whiten.T
         change = whiten @ (P[1] - P[0])
         left = nnls(columns.T, change)[1] if len(columns) else float(np.linalg.norm(change))
         fastest = max(1.0, float(np.max(np.abs(speeds), initial=0.0)))
-        if left > UNBALANCED * fastest * float(np.sqrt(np.trace(M))):
+        if left > tolerances.UNBALANCED * fastest * float(np.sqrt(np.trace(M))):
             return f"no impulses that only push give the change of momentum: {left:.3g} sqrt(J) are left"
         return ""
 
@@ -272,7 +272,7 @@ class _Bodies:
         gap = self._end.get(slack_name(name), 0.0)
         if rows[0].gap is not None:
             gap = float(self._numbers((rows[0].gap,), self._state(self._end)[None])[0, 0])
-        return abs(gap) <= OPEN_GAP
+        return abs(gap) <= tolerances.OPEN_GAP
 
     def _rows_at(self, rows: Sequence[Row], state: np.ndarray) -> list[tuple[np.ndarray, float]]:
         """(J, J u + sigma) of each row."""
@@ -341,7 +341,7 @@ def other_friction(system: System, state: State) -> str:
             bool(system.modes.get(name, CLOSED).sense) or along != 0
         )  # in a phase it slides one way, also from rest
         due = [_declared(proof, law, along, slides) for law in _laws(system, name)]
-        if all(abs(abs(found) - x) > ZERO_AT_50 * (1 + x) for x in due):
+        if all(abs(abs(found) - x) > tolerances.ZERO_AT_50 * (1 + x) for x in due):
             return f"the friction of '{name}' is {float(abs(found)):.10g} times its normal force, not as declared"
     return ""
 
@@ -387,11 +387,11 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
         return ""
     rows = {name: rows_of_constraint(free.motion, name)[0] for name in ending}
     gaps = [row.gap for row in rows.values() if row.gap is not None]
-    if any(abs(x) > CARRIED for x in evaluate(gaps, known, fifty_digits())):
+    if any(abs(x) > tolerances.CARRIED for x in evaluate(gaps, known, fifty_digits())):
         return ""  # it does not begin in contact: another check says where it does
     rates = evaluate([row.velocity for row in rows.values()], known, fifty_digits())
     for name, rate in zip(rows, rates, strict=True):
-        if rate > CARRIED * (1 + max(map(abs, rates))):
+        if rate > tolerances.CARRIED * (1 + max(map(abs, rates))):
             return f"'{name}' is closed, and opens with {float(rate):.6g} m/s where the motion starts"
     return ""
 
@@ -418,6 +418,6 @@ def pushing_otherwise(equations: EquationsOfMotion, start: State, moving: Callab
         except DerivationError:
             continue
         (N,) = evaluate((normal,), moving(start), fifty_digits())
-        if mode.push * N < -CARRIED * (1 + abs(N)):
+        if mode.push * N < -tolerances.CARRIED * (1 + abs(N)):
             return f"'{name}' pushes with {float(N):.6g} at the start, and its friction is that of the other sign"
     return ""

@@ -64,7 +64,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
 # System, state -> whether all that is applied acts as its fields declare it, in numbers: no load is looked at twice.
@@ -126,7 +126,7 @@ def working_otherwise(equations: EquationsOfMotion, state: State) -> str:
     stated = sum((x * y for x, y in zip(Q, d, strict=True)), start=0)
     works = proof.works(proof.turned(d))
     due, size = sum(works, start=0), 1 + sum(map(abs, works)) + sum(abs(x * y) for x, y in zip(Q, d, strict=True))
-    if abs(stated - due) <= DIFFERENCE_AT_50 * size:
+    if abs(stated - due) <= tolerances.DIFFERENCE_AT_50 * size:
         return ""
     return f"Q does the work {float(stated):.10g} for {float(due):.10g} of all that is declared"
 
@@ -327,14 +327,14 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
     if _turns(link, effort.variable) and k != 0:
         stretch = _by_whole_turns(stretch, (drive - c * rate - stated) / k)
     left, energy = stated - (drive - c * rate - k * stretch), k * stretch * stretch / 2
-    if abs(left) > ZERO_AT_50 * (1 + abs(stated)):
+    if abs(left) > tolerances.ZERO_AT_50 * (1 + abs(stated)):
         return "pushes otherwise than its drive, rate and place say"
     return _energy(V, energy)
 
 
 def _energy(stated: Any, due: Any) -> str:
     """Message if a stated energy differs from the due one; ""."""
-    same = abs(stated - due) <= ZERO_AT_50 * (1 + abs(due))
+    same = abs(stated - due) <= tolerances.ZERO_AT_50 * (1 + abs(due))
     return "" if same else f"has the energy {float(stated):.10g} for {float(due):.10g}"
 
 
@@ -551,7 +551,7 @@ class _Strung(InNumbers):
             if body := pushed_otherwise(stated, due, size):
                 return f"pulls '{body}' otherwise than it runs"
             given_out: Any = sum((self._lengthening(*strand) for strand in rope), start=0)
-            if self._rigid and row.pushes and abs(given_out + self.one(row.velocity)) > ZERO_AT_50 * size:
+            if self._rigid and row.pushes and abs(given_out + self.one(row.velocity)) > tolerances.ZERO_AT_50 * size:
                 return "does not stay as long as it is"
         return self._wrong_length
 
@@ -564,7 +564,7 @@ class _Strung(InNumbers):
         first, second = (stop.center for stop in self._stops)
         apart: Numbers = minus(second, first)
         square: Any = dot(apart, apart)
-        wrong = abs(square - declared**2) > COMPUTED * (1 + square)
+        wrong = abs(square - declared**2) > tolerances.COMPUTED * (1 + square)
         return f"is {float(square) ** 0.5:.10g} long for {float(declared):.10g}" if wrong else ""
 
     @cached_property

@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.model import Model, exact_parameters, leaves_of
 from eomgen.proof.check import Check, checked, first_wrong
 from eomgen.symbolic.expression import DeclaredSamples, Expression, Fraction, Sampled
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 SIZES = {  # of one of it, in SI
     **{"1": 1, "m": 1, "km": 1e3, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "kg": 1, "g": 1e-3, "t": 1e3, "s": 1, "ms": 1e-3},
@@ -77,7 +77,7 @@ def _table(found: Mapping[str, Any], name: str) -> Iterator[tuple[str, Any]]:
 
 
 def _apart(name: str, found: float, due: float) -> str:
-    same = abs(found - due) <= COMPUTED * abs(due)
+    same = abs(found - due) <= tolerances.COMPUTED * abs(due)
     return "" if same else f"the file's number of '{name}' is {due:.10g} in SI, and {found:.10g} was read"
 
 
@@ -170,7 +170,7 @@ def _wrong(law: tuple[Sampled, DeclaredSamples]) -> str:
     found = np.array([float(function.spline.at(t)) for t in places])
     away = abs(found - due)
     k = int(np.argmax(away))
-    if away[k] <= COMPUTED * (1 + abs(due).max()):
+    if away[k] <= tolerances.COMPUTED * (1 + abs(due).max()):
         return ""
     return f"{found[k]:.10g} at t = {float(places[k]):.6g} s for {due[k]:.10g}"
 

@@ -34,17 +34,14 @@ from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
 from eomgen.symbolic.numeric import (
-    DIFFERENCE_AT_50,
     FLOAT,
-    MET_AT_50,
-    SOLVED,
-    ZERO_AT_50,
     NoValue,
     evaluate,
     fifty_digits,
     follows_in_digits,
     rank,
     solved_quickly,
+    tolerances,
 )
 
 MOST = 60  # speeds, of which the differences are taken
@@ -181,7 +178,7 @@ def _by_differences(constraints: Constraints, state: State, found: Freedom) -> s
     scope = constraints.motion.scope
     still = [row for row in constraints.rows if row.identical and row.gap is not None]
     for row, line in zip(still, _lines(constraints, still, state), strict=True):
-        if max(map(abs, line), default=0.0) > DIFFERENCE_AT_50:
+        if max(map(abs, line), default=0.0) > tolerances.DIFFERENCE_AT_50:
             return f"row {row.number} of '{row.constraint}' restricts the motion, and is reported only to react"
     rows = [row for row in constraints.rows if not row.identical]
     J = {(row.constraint, row.number): line for row, line in zip(rows, _lines(constraints, rows, state), strict=True)}
@@ -254,7 +251,7 @@ def open_at_start(system: System, state: State) -> str:
     begun = {**state, **_declared_start(system.scope, state)}
     kept = rows_that_stay(system)
     for (row, _), gap in zip(kept, evaluate([gap for _, gap in kept], begun, fifty_digits()), strict=True):
-        if abs(gap) > ZERO_AT_50 * (1 + max(map(abs, begun.values()))):
+        if abs(gap) > tolerances.ZERO_AT_50 * (1 + max(map(abs, begun.values()))):
             return f"'{row.constraint}' is open by {float(gap):.10g} where it starts"
     return ""
 
@@ -280,7 +277,7 @@ def pulled_at_start(system: System) -> str:
     state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     state |= {node: start.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
     for applied in springs_of_the_start(system):
-        if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > SOLVED:
+        if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > tolerances.SOLVED:
             return f"forces.{applied.name} is not slack where the motion starts"
     return ""
 
@@ -330,7 +327,7 @@ def solved_nearby(rows: Sequence[Sequence[Any]]) -> DigitRow | None:
     while columns and left:
         i, k = max(((i, k) for i in range(len(left)) for k in columns), key=lambda at: abs(left[at[0]][at[1]]))
         row = left.pop(i)
-        if abs(row[k]) < ZERO_AT_50:
+        if abs(row[k]) < tolerances.ZERO_AT_50:
             return None
         columns.remove(k)
         chosen.append((k, row))
@@ -473,7 +470,10 @@ class Nearby:
             if step is None:
                 raise NoValue("the constraints do not determine the dependent coordinates")
             state = {**state, **{q: state[q] + d for q, d in zip(self._dependent_q, step, strict=True)}}
-            if all(abs(d) < MET_AT_50 * (1 + abs(state[q])) for q, d in zip(self._dependent_q, step, strict=True)):
+            if all(
+                abs(d) < tolerances.MET_AT_50 * (1 + abs(state[q]))
+                for q, d in zip(self._dependent_q, step, strict=True)
+            ):
                 return state
         raise NoValue("the constraints cannot be satisfied near the state")
 

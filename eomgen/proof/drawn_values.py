@@ -14,7 +14,7 @@ from itertools import product
 from typing import Any
 
 from eomgen.proof.check import Check, checked, first_wrong
-from eomgen.symbolic.numeric import CARRIED, COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 HOW = "floating point, every run"
 MASK = 2**64 - 1
@@ -51,7 +51,7 @@ def _ranges(over: Mapping[str, Sequence[float]], draws: int, rows: Sequence[Sequ
     points = list(product(*over.values()))
     for number, _, *values in rows:
         due = points[number // draws]
-        same = all(abs(x - y) <= COMPUTED * abs(y) for x, y in zip(values, due, strict=False))
+        same = all(abs(x - y) <= tolerances.COMPUTED * abs(y) for x, y in zip(values, due, strict=False))
         yield "" if same else f"run {number} is not at {due}"
 
 
@@ -65,7 +65,7 @@ def _draws(first: int, laws: Sequence[Law], draws: int, design: str, rows: Seque
             chances = [_chance(row[1], k + 1) for row in block]
             if design == "random":
                 yield from (
-                    f"'{name}' of run {row[0]} is not by its seed" * (abs(u - v) > CARRIED)
+                    f"'{name}' of run {row[0]} is not by its seed" * (abs(u - v) > tolerances.CARRIED)
                     for row, u, v in zip(block, shares, chances, strict=True)
                 )
             elif len(block) == draws:
@@ -110,7 +110,7 @@ def _summed(name: str, column: Sequence[float | None], reported: Sequence[float 
     values = [x for x in column if x is not None]
     due = [len(values), *((min(values), math.fsum(values) / len(values), max(values)) if values else (None,) * 3)]
     pairs = zip(reported, due, strict=True)
-    same = all(x == y if x is None or y is None else abs(x - y) <= COMPUTED * (1 + abs(y)) for x, y in pairs)
+    same = all(x == y if x is None or y is None else abs(x - y) <= tolerances.COMPUTED * (1 + abs(y)) for x, y in pairs)
     return "" if same else f"'{name}': {list(reported)} for {due}"
 
 

@@ -29,18 +29,7 @@ from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import instant_of, with_inputs
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, State, order
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    LARGEST_SQUARED,
-    SEVEN_DIGITS,
-    SOLVED,
-    NoValue,
-    evaluate,
-    fifty_digits,
-    floats_of,
-    of_one_length,
-)
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, of_one_length, tolerances
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
 FAR = 1e-2  # of the least of the singular values of scaled rows, from which doubles solve them to COMPUTED
@@ -103,7 +92,7 @@ class PhaseMotion:
         given = self.values(at)
         found = _held(system, given)
         if found is None or any(
-            abs(found[x] - given[x]) > CARRIED * (1 + abs(given[x])) for x in (*symbols.q, *symbols.u)
+            abs(found[x] - given[x]) > tolerances.CARRIED * (1 + abs(given[x])) for x in (*symbols.q, *symbols.u)
         ):
             return None
         state = replace(at, x=np.array(floats_of(found[x] for x in (*symbols.q, *symbols.u))))
@@ -143,7 +132,10 @@ class RunNumbers:
         Raises:
             NoValue: a coefficient, or its square, is beyond doubles.
         """
-        if not all(np.all(np.abs(x) < LARGEST_SQUARED) for x in (self.rates, self.M, self.J, self.forcing, self.gamma)):
+        if not all(
+            np.all(np.abs(x) < tolerances.LARGEST_SQUARED)
+            for x in (self.rates, self.M, self.J, self.forcing, self.gamma)
+        ):
             raise NoValue("a coefficient of the equations is beyond doubles")
         rates, a = np.split(np.asarray(dx, dtype=float), [len(self.rates)])
         sizes = 1 + np.max(np.abs(self.rates), initial=0.0)
@@ -167,8 +159,8 @@ class RunNumbers:
         sizes = np.linalg.norm(self.J, axis=1)
         J = of_one_length(self.J)
         gamma = self.gamma / np.where(sizes > 0, sizes, 1.0)
-        least = J @ np.linalg.lstsq(J, -gamma, rcond=COMPUTED)[0] + gamma
-        if np.max(np.abs(least)) > COMPUTED * (1 + np.max(np.abs(gamma))):
+        least = J @ np.linalg.lstsq(J, -gamma, rcond=tolerances.COMPUTED)[0] + gamma
+        if np.max(np.abs(least)) > tolerances.COMPUTED * (1 + np.max(np.abs(gamma))):
             raise NoValue("the constraints contradict one another")
 
     def left_of_forces(self, a: np.ndarray, acting: np.ndarray | float = 0.0) -> float:
@@ -187,7 +179,7 @@ class RunNumbers:
             return float("nan")
         if len(self.J):
             J = of_one_length(self.J * weights)
-            lam = np.linalg.lstsq(J.T, needed, rcond=COMPUTED)[0]
+            lam = np.linalg.lstsq(J.T, needed, rcond=tolerances.COMPUTED)[0]
             needed, terms = needed - J.T @ lam, terms + np.abs(J.T) @ np.abs(lam)
         left = float(np.max(np.abs(needed), initial=0.0) / max(np.max(terms, initial=0.0), np.finfo(float).tiny))
         if np.isnan(left):
@@ -222,8 +214,8 @@ def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], na
     def wrong(instant: TriedState) -> str | None:
         numbers = motion.numbers(instant)
         left, where = numbers.left(code(instant))
-        if left <= COMPUTED or not _sure(code, instant):
-            return torn(instant) or ("" if left <= COMPUTED else None)
+        if left <= tolerances.COMPUTED or not _sure(code, instant):
+            return torn(instant) or ("" if left <= tolerances.COMPUTED else None)
         return f"{where} is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
 
     return at_states(name, HOW, at, wrong, cost=len(order(motion.scalars)))
@@ -235,12 +227,12 @@ def _sure(code: Code, instant: TriedState) -> bool:
     if not np.all(np.isfinite(here)):
         return not any(np.all(np.isfinite(each)) for each in nearby)
     change = max(float(np.max(np.abs(each - here), initial=0.0)) for each in nearby)
-    return bool(change <= COMPUTED * (1 + np.max(np.abs(here), initial=0.0)))
+    return bool(change <= tolerances.COMPUTED * (1 + np.max(np.abs(here), initial=0.0)))
 
 
 def _nearby(instant: TriedState) -> tuple[TriedState, ...]:
     """The state, each of its numbers a part in 1e12 larger or smaller by turns."""
-    turns = np.where(np.arange(len(instant.x)) % 2, -SOLVED, SOLVED)
+    turns = np.where(np.arange(len(instant.x)) % 2, -tolerances.SOLVED, tolerances.SOLVED)
     return tuple(replace(instant, x=instant.x * (1 + sign * turns)) for sign in (1, -1))
 
 
@@ -264,7 +256,7 @@ def values_agree(
         right = np.array([float(x) for x in evaluate(tuple(scalars.values()), known, fifty_digits())])
         found = np.asarray(code(instant), dtype=float)
         apart = np.abs(found - right) / (1 + np.max(np.abs(right), initial=0.0))
-        if np.all(apart <= COMPUTED):
+        if np.all(apart <= tolerances.COMPUTED):
             return ""
         if not _sure(code, instant):
             return None
@@ -305,7 +297,7 @@ def at_states(
 
 
 LITERAL = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")  # a number of any language, without its sign
-MOST_TOLERANCE = 10 * COMPUTED  # that a test vector may allow
+MOST_TOLERANCE = 10 * tolerances.COMPUTED  # that a test vector may allow
 
 
 @dataclass(frozen=True)
@@ -374,7 +366,7 @@ def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -
         numbers = np.abs(numbers[np.isfinite(numbers)])
         k = np.clip(np.searchsorted(reported, numbers), 1, max(len(reported) - 1, 1))
         apart = np.min(np.abs(np.take(reported, [k, k - 1], mode="clip") - numbers), axis=0)
-        missing = numbers[(apart > SEVEN_DIGITS * numbers) & (numbers > np.finfo(np.float32).tiny)]
+        missing = numbers[(apart > tolerances.SEVEN_DIGITS * numbers) & (numbers > np.finfo(np.float32).tiny)]
         if len(missing):
             what = f"{missing[0]:.9g} at t = {v.t:.6g} s is not written"
             yield checked("test vectors stand in the self-tests of the code", what, "numbers of their texts")
@@ -455,7 +447,7 @@ class Judged:
             if not np.any(known):
                 return None
             apart = np.max(np.abs(code(instant) - right)[known]) / (1 + np.max(np.abs(right[known])))
-            return "" if apart <= CARRIED else f"a slope is off by {apart:.1e} at t = {instant.t:.6g} s"
+            return "" if apart <= tolerances.CARRIED else f"a slope is off by {apart:.1e} at t = {instant.t:.6g} s"
 
         how = "the linearized equations solved in numbers"
         return at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
@@ -471,7 +463,7 @@ class Judged:
             values = {**self.motion.values(unmoved), **dict(zip(e.symbols.a, map(float, a), strict=True))}
             right = np.array([float(x) for x in evaluate((*entries, *pi), values, fifty_digits())])
             apart = np.max(np.abs(found - right[: len(entries)]), initial=0) / (1 + np.max(np.abs(right), initial=0))
-            if not apart <= COMPUTED:
+            if not apart <= tolerances.COMPUTED:
                 return f"an entry is off by {apart:.1e} at t = {instant.t:.6g} s"
             Y, y0 = found[: size * len(pi)].reshape(size, -1), found[size * len(pi) :][:size]
             return _left(self.motion.numbers(unmoved), instant.t, a, Y @ right[len(entries) :] + y0)
@@ -482,7 +474,7 @@ class Judged:
     def _allowed(self, at: TriedState) -> np.ndarray:
         """The accelerations of a state, the nearest that J a + gamma = 0 allows."""
         free = self.motion.numbers(at)
-        away = np.linalg.lstsq(free.J, free.J @ at.a + free.gamma, rcond=COMPUTED)[0] if len(free.J) else 0.0
+        away = np.linalg.lstsq(free.J, free.J @ at.a + free.gamma, rcond=tolerances.COMPUTED)[0] if len(free.J) else 0.0
         return np.asarray(at.a - away)
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
@@ -516,7 +508,7 @@ class Judged:
 
 def _left(numbers: RunNumbers, t: float, a: np.ndarray, push: np.ndarray) -> str:
     left = numbers.left_of_forces(a, push)
-    return "" if left <= COMPUTED else f"M a + c = Q is left with {left:.1e} of its terms at t = {t:.6g} s"
+    return "" if left <= tolerances.COMPUTED else f"M a + c = Q is left with {left:.1e} of its terms at t = {t:.6g} s"
 
 
 def acting(system: System, name: str) -> tuple[Scalar, ...]:
@@ -577,7 +569,7 @@ def _wrong(text: str, states: Mapping[str, float], parameters: Mapping[str, floa
         raise NoValue("the model has no start")
     for name, right in (*states.items(), *parameters.items()):
         reported = named[name].get("start") if name in named else None
-        if reported is None or abs(float(reported) - right) > SOLVED * (1 + abs(right)):
+        if reported is None or abs(float(reported) - right) > tolerances.SOLVED * (1 + abs(right)):
             return f"'{name}' starts at {reported} for {right:.12g}"
     missing = [name for name in states if f"der({name})" not in named]
     return f"'{missing[0]}' has no derivative" if missing else ""

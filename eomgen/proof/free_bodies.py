@@ -57,18 +57,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    NEARLY_SINGULAR,
-    RANK,
-    SUMMED,
-    ZERO_AT_50,
-    NoValue,
-    balanced,
-    evaluate,
-    fifty_digits,
-    rank,
-)
+from eomgen.symbolic.numeric import NoValue, balanced, evaluate, fifty_digits, rank, tolerances
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
 
@@ -132,8 +121,10 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
     A = np.array([[float(x - y) for x, y in zip(still.forces, one, strict=True)] for one in alone]).T
     _, rows, columns = balanced(A)
     A, right = rows[:, None] * A * columns, rows * right
-    lam = np.linalg.lstsq(A, right, rcond=RANK)[0]
-    if np.any(abs(A @ lam - right) > COMPUTED * (abs(rows * [float(x) for x in still.sizes]) + abs(A) @ abs(lam))):
+    lam = np.linalg.lstsq(A, right, rcond=tolerances.RANK)[0]
+    if np.any(
+        abs(A @ lam - right) > tolerances.COMPUTED * (abs(rows * [float(x) for x in still.sizes]) + abs(A) @ abs(lam))
+    ):
         raise NoValue("the forces of the constraints do not balance the free bodies")
     single = [rank(np.delete(A, k, axis=1)) < rank(A) for k in range(len(closing))]
     values = zip(closing, columns * lam, single, strict=True)
@@ -163,7 +154,7 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
 
 
 def moved_otherwise(
-    system: System, state: State, friction: Sequence[Any] = (), *, regular: float = NEARLY_SINGULAR
+    system: System, state: State, friction: Sequence[Any] = (), *, regular: float = tolerances.NEARLY_SINGULAR
 ) -> str:
     """Message if the accelerations of a state violate the equations of the free bodies, for any constraint forces; "".
 
@@ -189,7 +180,7 @@ def moved_otherwise(
     turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # terms of the rate of J are of the size J u^2
     a = np.abs([float(known[x]) for x in free.scope.symbols.a]) + np.fromiter(turning, float)
     for row, line in zip(free.constraints.closing, J, strict=True):
-        if abs(needed.rates[row.constraint, row.number]) > COMPUTED * (1 + abs(line) @ a):
+        if abs(needed.rates[row.constraint, row.number]) > tolerances.COMPUTED * (1 + abs(line) @ a):
             return f"row {row.number} of '{row.constraint}' is torn open"
     own = [float(x) for x in friction] or [0.0] * len(needed.forces)
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
@@ -198,7 +189,9 @@ def moved_otherwise(
     if free is not system and allowed.shape[1] > _motions_elsewhere(free, known, regular):
         raise NoValue("in a singular position, where more may move than elsewhere")
     for z in allowed.T:
-        if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50) + abs(z @ _rounded(system, free, state, needed)):
+        if abs(z @ forces) > abs(z) @ (tolerances.COMPUTED * sizes + tolerances.ZERO_AT_50) + abs(
+            z @ _rounded(system, free, state, needed)
+        ):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
             return f"the bodies are not in equilibrium along {most.name}"
     return ""
@@ -213,7 +206,7 @@ def _of_all_rates(system: System, free: System, state: State) -> State:
 def _rounded(system: System, free: System, state: State, needed: Demand) -> np.ndarray:
     """Change of the forces with a relative change COMPUTED of accelerations: s2'' = u1' - u2' may be rounding alone."""
     rng, a = Random(1), system.symbols.a
-    shaken = {x: state[x] * (1 + COMPUTED * rng.choice((-1, 1)) * rng.uniform(0.5, 1)) for x in a}
+    shaken = {x: state[x] * (1 + tolerances.COMPUTED * rng.choice((-1, 1)) * rng.uniform(0.5, 1)) for x in a}
     there = _demand(free, _of_all_rates(system, free, state | shaken))
     return np.array([float(x - y) for x, y in zip(there.forces, needed.forces, strict=True)])
 
@@ -252,7 +245,7 @@ def _allowed(J: np.ndarray, regular: float) -> np.ndarray:
     """
     scaled, _, columns = balanced(J)
     _, values, directions = np.linalg.svd(scaled)
-    if np.any((values > SUMMED) & (values < regular)):
+    if np.any((values > tolerances.SUMMED) & (values < regular)):
         raise NoValue("next to a singular position")
     free: np.ndarray = columns[:, None] * directions[int(np.sum(values >= regular)) :].T
     return free
@@ -543,7 +536,7 @@ def named_otherwise(balance: Balance, state: State) -> str:
             couple, k = ALONG[function]
             stated, size = proof.stated(named)
             due = proof.due(named.owner, rest.removesuffix(")"), couple)
-            if due is not None and abs(stated - due[k]) > ZERO_AT_50 * (1 + size + sum(map(abs, due))):
+            if due is not None and abs(stated - due[k]) > tolerances.ZERO_AT_50 * (1 + size + sum(map(abs, due))):
                 return f"{named.name} is not along the ground's {'xyz'[k]}"
     return ""
 
@@ -571,7 +564,7 @@ def driven_otherwise(reactions: Reactions, state: State) -> str:
         except (NoValue, Indeterminate):
             continue
         (stated,) = evaluate((value,), state, fifty_digits())
-        if abs(stated - due) > COMPUTED * (size + abs(stated)):
+        if abs(stated - due) > tolerances.COMPUTED * (size + abs(stated)):
             return f"{named.name} = {float(stated):.10g}, and the bodies ask for {float(due):.10g}"
         found += 1
     if not found:

@@ -23,7 +23,7 @@ from eomgen.proof.posed_model import (
     turn_about,
     turn_by_three,
 )
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
@@ -172,11 +172,19 @@ class _Imported:
                 continue
             for theirs, ours in FELT:
                 due, found = _float(dynamics, theirs, 0.0), self.posed.number(getattr(own[q], ours, None))
-                yield "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"{ours} of '{q}' is {found:.9g}"
+                yield (
+                    ""
+                    if abs(found - due) <= tolerances.COMPUTED * (1 + abs(due))
+                    else f"{ours} of '{q}' is {found:.9g}"
+                )
             rest = _float(dynamics, "spring_reference", 0.0)
             if _float(dynamics, "spring_stiffness", 0.0):
                 found = self.posed.number(getattr(own[q], "rest", None))
-                yield "" if abs(found - rest) <= COMPUTED * (1 + abs(rest)) else f"rest of '{q}' is {found:.9g}"
+                yield (
+                    ""
+                    if abs(found - rest) <= tolerances.COMPUTED * (1 + abs(rest))
+                    else f"rest of '{q}' is {found:.9g}"
+                )
 
     def follows(self) -> Iterator[str]:
         """q = multiplier (leader - reference) + offset leaves nothing."""
@@ -201,7 +209,11 @@ class _Imported:
             return ""
         due = _by_density(link, inertial) if inertial.get("auto") in YES else _as_said(inertial)
         off = abs(self.posed.weight(name) - due).max()
-        return f"'{name}' has another mass, mass centre or inertia" if off > COMPUTED * (1 + abs(due).max()) else ""
+        return (
+            f"'{name}' has another mass, mass centre or inertia"
+            if off > tolerances.COMPUTED * (1 + abs(due).max())
+            else ""
+        )
 
 
 def _as_said(inertial: Element) -> np.ndarray:
@@ -331,7 +343,7 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     uniform = {name: [y for y in x if isinstance(y, PushOfMass) and not y.bodies] for name, x in acts.items()}
     fields = [name for name, x in acts.items() if x and len(uniform[name]) == len(x)]
     g = [[posed.number(c) for c in (*y.acceleration, None)[:3]] for name in fields for y in uniform[name]]
-    usual = np.allclose(np.sum(g, axis=0) if g else np.zeros(3), G, 0, COMPUTED)
+    usual = np.allclose(np.sum(g, axis=0) if g else np.zeros(3), G, 0, tolerances.COMPUTED)
     pushes = {name: part.joint.pushes() for name, part in model.bodies.items() if part.joint is not None}
     q = model.coordinates
     due: dict[str, list[str]] = {
@@ -434,7 +446,11 @@ class _ImportedUrdf:
             return ""
         due = 0.0 if dynamics is None else float(dynamics.get("damping", 0))
         found = self.posed.number(getattr(self.model.bodies[child].joint, "damping", None))
-        return "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"the joint of '{child}' has another damping"
+        return (
+            ""
+            if abs(found - due) <= tolerances.COMPUTED * (1 + abs(due))
+            else f"the joint of '{child}' has another damping"
+        )
 
     def bounded(self, joint: Element) -> str:
         """Limits of a hinge or slide, as the remark of its coordinate says."""
@@ -452,7 +468,7 @@ class _ImportedUrdf:
         else_none = {"lower": -UNLIMITED, "upper": UNLIMITED, "effort": UNLIMITED, "velocity": UNLIMITED}
         for key, none in else_none.items():
             found, wanted = float(reported[key][0]) if reported[key] else none, due.get(key, none)
-            if abs(found - wanted) > COMPUTED * abs(wanted) and not (key not in due and not reported[key]):
+            if abs(found - wanted) > tolerances.COMPUTED * abs(wanted) and not (key not in due and not reported[key]):
                 return f"the limits of '{q}' are reported differently"
         return ""
 
@@ -469,7 +485,11 @@ class _ImportedUrdf:
         I = np.array([[0.0 if tensor is None else float(tensor.get(key, 0)) for key in row] for row in keys])
         due = np.array([m, *(m * p), *(R @ I @ R.T).ravel()])
         off = abs(self.posed.weight(name) - due).max()
-        return f"'{name}' has another mass, mass centre or inertia" if off > COMPUTED * (1 + abs(due).max()) else ""
+        return (
+            f"'{name}' has another mass, mass centre or inertia"
+            if off > tolerances.COMPUTED * (1 + abs(due).max())
+            else ""
+        )
 
 
 def _mimics(joints: list[Element]) -> Iterator[tuple[Element, str]]:

@@ -18,7 +18,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.model import Joint, Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import PosedModel, poses_differ, quaternion_names
-from eomgen.symbolic.numeric import CARRIED, FLOAT, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
 JOINT_WRAP, SITE_WRAP = 1, 3  # of the path of a tendon
@@ -235,4 +235,4 @@ def _places(joint: Joint) -> list[str]:
 
 
 def _fine(values: np.ndarray) -> float:
-    return float(CARRIED * (1 + abs(values).max()))
+    return float(tolerances.CARRIED * (1 + abs(values).max()))

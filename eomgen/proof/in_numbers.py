@@ -29,7 +29,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 SAMPLES = "times of samples"
 STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
@@ -136,7 +136,7 @@ def pushed_otherwise(found: Pushes, due: Pushes, size: Any) -> str:
     for body in dict.fromkeys((*found, *due)):
         pairs = zip(found.get(body, nothing), due.get(body, nothing), strict=True)
         apart: list[Any] = [x - y for a, b in pairs for x, y in zip(a, b, strict=True)]
-        if any(abs(x) > ZERO_AT_50 * size for x in apart):
+        if any(abs(x) > tolerances.ZERO_AT_50 * size for x in apart):
             return body
     return ""
 
@@ -216,6 +216,6 @@ def instant_of(system: System, t: float) -> Any:
 def _side(system: System, state: State) -> int:
     """1 or -1 at the first or last sample of a given function, to differentiate inside the samples; 0 elsewhere."""
     t, knots = state.get(system.symbols.t, 0), _times_of_samples(system)
-    if not any(abs(x - t) < ZERO_AT_50 for times in knots for x in map(fifty_digits().number, times)):
+    if not any(abs(x - t) < tolerances.ZERO_AT_50 for times in knots for x in map(fifty_digits().number, times)):
         return 0
-    return -1 if any(abs(fifty_digits().number(times[-1]) - t) < ZERO_AT_50 for times in knots) else 1
+    return -1 if any(abs(fifty_digits().number(times[-1]) - t) < tolerances.ZERO_AT_50 for times in knots) else 1

@@ -56,7 +56,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, DIFFERENCE_AT_50, LARGEST_AT_50, NoValue, evaluate, fifty_digits, rank
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, rank, tolerances
 
 DIFFERENCES = "differences at 50 digits"
 MOST_TRIPLES = 60  # of bodies whose three centres are looked at
@@ -166,7 +166,7 @@ class _Proof:
         system = self.state.system
         found = way_through(system, {**dict.fromkeys(system.symbols.a, 0), **self.values}, SECOND_STEP, order=2)
         _, first, second = found.along(system.symbols.q)
-        if any(abs(x) > LARGEST_AT_50 for x in (*first, *second)):
+        if any(abs(x) > tolerances.LARGEST_AT_50 for x in (*first, *second)):
             raise NoValue("too fast for differences")
         return found
 
@@ -177,7 +177,7 @@ class _Proof:
             NoValue: they are so large that no digits are left for differences.
         """
         now, first, second = self.way.along(scalars)
-        if any(abs(x) > LARGEST_AT_50 for x in now):
+        if any(abs(x) > tolerances.LARGEST_AT_50 for x in now):
             raise NoValue("too far from the origin for differences")
         return now, first, second
 
@@ -223,15 +223,17 @@ class _Proof:
 
         A quaternion of doubles turns as its length allows, which is 1 to their digits only.
         """
-        tolerance = tolerance or (self.tolerance if self.state.system.scope.quaternions else DIFFERENCE_AT_50)
+        tolerance = tolerance or (
+            self.tolerance if self.state.system.scope.quaternions else tolerances.DIFFERENCE_AT_50
+        )
         size = self.size[order - 1] + max(map(abs, found), default=0)
-        floor = DIFFERENCE_AT_50 * max(map(abs, (self.size[0], 1)))
+        floor = tolerances.DIFFERENCE_AT_50 * max(map(abs, (self.size[0], 1)))
         return any(abs(x - y) > tolerance * size + floor for x, y in zip(stated, found, strict=True))
 
     @property
     def tolerance(self) -> float:
         """Tolerance of the state's equations; the state may be known in doubles only."""
-        return DIFFERENCE_AT_50 if self.state.exact and not self.state.rounded else COMPUTED
+        return tolerances.DIFFERENCE_AT_50 if self.state.exact and not self.state.rounded else tolerances.COMPUTED
 
     # -- constraints and given equations ----------------------------------------------------------------------------
 
@@ -340,7 +342,7 @@ class _Proof:
             for c, s in ((5, 0), (-3, 4)):
                 place = (x + c * radius / 5, y + s * radius / 5, 0)
                 v = seen.velocity(place)
-                if (size := _size(v)) > COMPUTED * self.size[0]:  # not the centre of rotation itself
+                if (size := _size(v)) > tolerances.COMPUTED * self.size[0]:  # not the centre of rotation itself
                     yield "the inflection circle", (cross(v, seen.acceleration(place))[2] / size,), 2
         if motion.slowest is not None:
             first, last, least = motion.slowest
@@ -464,7 +466,7 @@ def _degrees_of_freedom_left(system: System, values: Mapping[Node, Any]) -> int:
         opened = [(x - y) / (2 * SECOND_STEP) for x, y in zip(late, early, strict=True)]
         columns.append([*opened, *along[len(symbols.q) :]])
     slopes = np.array(columns, dtype=float).T
-    return len(symbols.u) - rank(np.where(abs(slopes) > DIFFERENCE_AT_50, slopes, 0.0))
+    return len(symbols.u) - rank(np.where(abs(slopes) > tolerances.DIFFERENCE_AT_50, slopes, 0.0))
 
 
 # -------- second definitions ----------------------------------------------------------------------------------
@@ -657,7 +659,7 @@ def second_definition(state: NumericState, call: Call) -> str:
     """
     second = FUNCTIONS[call.name].second
     assert second is not None, "only for functions that have one"
-    if any(abs(x) > LARGEST_AT_50 for x in state.numbers.values()):
+    if any(abs(x) > tolerances.LARGEST_AT_50 for x in state.numbers.values()):
         raise NoValue("coordinates or speeds too large for differences")
     found = state.number(Quantities(state.equations.system).value(call))
     right = float(second(NearbyStates(state), call))

@@ -26,17 +26,7 @@ from eomgen.mechanics.start import values_of_parameters
 from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.symbolic.expression import Expression, Node, Pose, Scalar, Vector
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    FLOAT,
-    IMAGINARY_STEP,
-    LARGEST_SQUARED,
-    ROUNDING,
-    NoValue,
-    evaluate,
-    fifty_digits,
-    floats_of,
-)
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"
@@ -132,7 +122,7 @@ def filled(shape: Shape, value: Any) -> tuple[float, np.ndarray]:
 def _cell(cell: Cell, dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """(weights, places) of the nodes of Gauss and Legendre in one cell."""
     s, weights = _nodes(dimension)
-    slopes = np.array([_at(cell, s + _step(dimension, k)).imag / IMAGINARY_STEP for k in range(dimension)])
+    slopes = np.array([_at(cell, s + _step(dimension, k)).imag / tolerances.IMAGINARY_STEP for k in range(dimension)])
     return weights * _measure(slopes), _at(cell, s.astype(complex)).real.T
 
 
@@ -145,7 +135,7 @@ def _nodes(dimension: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _step(dimension: int, k: int) -> np.ndarray:
-    return np.array([[IMAGINARY_STEP * 1j * (i == k)] for i in range(dimension)])
+    return np.array([[tolerances.IMAGINARY_STEP * 1j * (i == k)] for i in range(dimension)])
 
 
 def _at(cell: Cell, s: np.ndarray) -> np.ndarray:
@@ -191,7 +181,7 @@ def _differs(A: np.ndarray, B: np.ndarray) -> bool:
         max(abs(x) for x in pair) ** 0.5 for pair in ((np.trace(A[:3, :3]), np.trace(B[:3, :3])), (A[3, 3], B[3, 3]))
     )
     sizes = np.array([radius, radius, radius, mass])
-    return bool(np.any(abs(A - B) > COMPUTED * np.outer(sizes, sizes)))
+    return bool(np.any(abs(A - B) > tolerances.COMPUTED * np.outer(sizes, sizes)))
 
 
 @dataclass(frozen=True)
@@ -246,7 +236,9 @@ class _Proof:
         if _differs(S, _moments_of(stated, self.numbers)):
             return f"the {shape.kind} of '{body}'"
         (size,) = self.numbers((shape.measure(self.motion.scope.value),))
-        return f"the size of the {shape.kind} of '{body}'" if abs(size - measure) > COMPUTED * measure else ""
+        return (
+            f"the size of the {shape.kind} of '{body}'" if abs(size - measure) > tolerances.COMPUTED * measure else ""
+        )
 
     # -- bodies ----------------------------------------------------------------------------------------------
 
@@ -289,7 +281,11 @@ class _Proof:
         if self.motion.scope.model.bodies[body].mass is None or not shared:
             return ""
         densities = [self.numbers((p.mass.m,))[0] / filled(p.piece.shape, self.value)[0] for p in shared]
-        return f"the densities of '{body}' differ" if np.ptp(densities) > COMPUTED * max(map(abs, densities)) else ""
+        return (
+            f"the densities of '{body}' differ"
+            if np.ptp(densities) > tolerances.COMPUTED * max(map(abs, densities))
+            else ""
+        )
 
     # -- stated values ---------------------------------------------------------------------------------------
 
@@ -315,14 +311,14 @@ class _Proof:
         for name, x in _in_order(found).items():
             kind = name.partition("_")[0]
             power = 2 if kind == "k" else 1  # the root of a rounding error is no rounding error
-            if not abs(x**power - expected[name] ** power) <= COMPUTED * sizes[kind] ** power:
+            if not abs(x**power - expected[name] ** power) <= tolerances.COMPUTED * sizes[kind] ** power:
                 yield name, f": {x:.10g} against {expected[name]:.10g}"
 
     def _expected(self, stated: Stated) -> tuple[dict[str, float], dict[str, float]]:
         """(each value, the size of its kind)"""
         origin, S = self.about(stated, (0, 0, 0)), self.about(stated, self.numbers(stated.point))
         m, P = S[3, 3], S[:3, :3]
-        if not np.all(np.abs(np.stack([origin, S])) < LARGEST_SQUARED):
+        if not np.all(np.abs(np.stack([origin, S])) < tolerances.LARGEST_SQUARED):
             raise NoValue("moments of inertia are beyond doubles")
         I, moments = _tensor(P), np.linalg.eigvalsh(_tensor(P))
         found = {"m": m, "J_P": float(np.trace(P))}
@@ -337,7 +333,9 @@ class _Proof:
             n = along / np.linalg.norm(along)
             found["J_axis"] = n @ _tensor(self.about(stated, start)[:3, :3]) @ n
         passed = max(float(np.trace(abs(S[:3, :3]))) for S in (origin, *map(self.own, stated.bodies)))
-        large = float(np.trace(abs(I))) + ROUNDING / COMPUTED * passed  # about a far origin I is a small difference
+        large = (
+            float(np.trace(abs(I))) + tolerances.ROUNDING / tolerances.COMPUTED * passed
+        )  # about a far origin I is a small difference
         radius = np.sqrt(np.trace(abs(origin[:3, :3])) / abs(m)) if m else 1.0
         return found, {"m": abs(m), "k": radius, **dict.fromkeys("IJP", large), **dict.fromkeys(AXES, radius)}
 
@@ -346,8 +344,8 @@ class _Proof:
         assert stated.axes is not None
         R = np.array(stated.axes)
         I, large = _tensor(self.about(stated, self.numbers(stated.point))[:3, :3]), self._expected(stated)[1]["I"]
-        if abs(R @ R.T - np.eye(3)).max() > COMPUTED or np.linalg.det(R) < 0:
+        if abs(R @ R.T - np.eye(3)).max() > tolerances.COMPUTED or np.linalg.det(R) < 0:
             return f"those of {stated.of or 'all'} are not three unit vectors, right-handed"
         moments = self.numbers([stated.values[f"I_{k}"] for k in (1, 2, 3)])
         left = R @ I @ R.T - np.diag(moments)
-        return f"those of {stated.of or 'all'}" if abs(left).max() > COMPUTED * large else ""
+        return f"those of {stated.of or 'all'}" if abs(left).max() > tolerances.COMPUTED * large else ""

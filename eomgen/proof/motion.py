@@ -20,7 +20,7 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.identities import energy_function, given_power
 from eomgen.symbolic.expression import Scalar, State, apply, depends_on, dot, gradient, is_zero
-from eomgen.symbolic.numeric import ITERATED, LARGEST_SQUARED, SUMMED, ZERO_AT_50, evaluate, fifty_digits
+from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 PER_STEP = 10  # tolerances of the run that one step may cost
 SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it
@@ -100,7 +100,7 @@ class Promise:
 
     def open(self, size: float) -> float:
         """Limit of the error of constraints, for states of a size."""
-        return PER_STEP * (self.atol + SUMMED * size) if self.projected else self.limit(size)
+        return PER_STEP * (self.atol + tolerances.SUMMED * size) if self.projected else self.limit(size)
 
 
 def run_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
@@ -157,7 +157,7 @@ def _steps(legs: Sequence[Leg], promise: Promise) -> Check:
         places = np.flatnonzero(leg.integrated)
         i = places[np.unique(np.linspace(0, len(places) - 1, PLACES).astype(int))] if len(places) else places
         with np.errstate(all="ignore"):
-            i = i[np.max(np.abs(leg.rates(leg.t[i], leg.x[i])), axis=1, initial=0.0) < LARGEST_SQUARED]
+            i = i[np.max(np.abs(leg.rates(leg.t[i], leg.x[i])), axis=1, initial=0.0) < tolerances.LARGEST_SQUARED]
         if not len(i):
             continue
         with np.errstate(all="ignore"):
@@ -217,7 +217,7 @@ def _level(legs: Sequence[Leg], promise: Promise) -> Check | None:
     for leg in legs:
         T, V, H = leg.TVH
         fast = T > FAST * np.maximum.accumulate(T)
-        limit = max(limit, ITERATED * float(np.max(T + np.abs(V - V[0]))))
+        limit = max(limit, tolerances.ITERATED * float(np.max(T + np.abs(V - V[0]))))
         worst = max(worst, float(np.max(np.abs(H - H[0])[fast], initial=0.0)))
     if not np.isfinite(limit + worst):
         return unchecked(name, "the energy has no value at some of the states", how)
@@ -420,7 +420,7 @@ def other_energies(equations: EquationsOfMotion, state: State) -> str:
     for letter, parts in terms.items():
         due = [next(values) for _ in parts]
         total = sum(due, start=0 * stated[letter])
-        if abs(stated[letter] - total) > ZERO_AT_50 * (1 + sum(map(abs, due))):
+        if abs(stated[letter] - total) > tolerances.ZERO_AT_50 * (1 + sum(map(abs, due))):
             return f"{letter} is {float(stated[letter]):.10g}, that of the bodies {float(total):.10g}"
     return ""
 

@@ -11,7 +11,7 @@ from eomgen.model import exact_parameters
 from eomgen.proof.check import Check, checked
 from eomgen.proof.declared_numbers import other_functions
 from eomgen.proof.masses import other_masses
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 
 def other_data(motion: Motion) -> Iterator[Check]:
@@ -26,6 +26,8 @@ def other_parameters(scope: Scope) -> Iterator[Check]:
     known, found = exact_parameters(scope.model), values_of_parameters(scope, None)
     there = {x.name: float(value) for x, value in found.items()}
     pairs = [(name, there.get(name, math.nan), float(right)) for name, right in known.items()]
-    wrong = [f"'{name}': {x:.10g} for {y:.10g}" for name, x, y in pairs if not abs(x - y) <= COMPUTED * abs(y)]
+    wrong = [
+        f"'{name}': {x:.10g} for {y:.10g}" for name, x, y in pairs if not abs(x - y) <= tolerances.COMPUTED * abs(y)
+    ]
     if wrong:
         yield checked("parameters have the values of the file", "; ".join(wrong[:3]), "floating point")

@@ -61,7 +61,7 @@ from eomgen.symbolic.expression import (
     times,
     vector_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, ZERO_AT_50, evaluate, fifty_digits
+from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
 REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": name in the other file
@@ -125,7 +125,7 @@ class PosedModel:
             gap = getattr(constraint, "gap", None)
             if gap is not None and not gap.calls and name.startswith("mimic"):
                 left = self.number(gap)
-                yield f"'{name}' leaves {left:.3g}" if abs(left) > COMPUTED * 10 else ""
+                yield f"'{name}' leaves {left:.3g}" if abs(left) > tolerances.COMPUTED * 10 else ""
 
 
 def quaternion_names(joint: Joint) -> tuple[str, ...]:
@@ -154,7 +154,7 @@ def pose_back(pose: FloatPose) -> FloatPose:
 def poses_differ(found: FloatPose, due: FloatPose) -> bool:
     """True if two poses differ."""
     away = max(abs(found[0] - due[0]).max(), abs(found[1] - due[1]).max())
-    return bool(away > COMPUTED * (1 + abs(due[1]).max()))
+    return bool(away > tolerances.COMPUTED * (1 + abs(due[1]).max()))
 
 
 def figures_in(text: str) -> np.ndarray:
@@ -341,7 +341,7 @@ def _turned(e: Quaternion, v: Numbers) -> Numbers:
 def _apart(a: Numbers, b: Numbers) -> bool:
     gap: Sequence[Any] = minus(a, b)
     most: Any = max(map(abs, b))
-    return any(abs(x) > ZERO_AT_50 * (1 + most) for x in gap)
+    return any(abs(x) > tolerances.ZERO_AT_50 * (1 + most) for x in gap)
 
 
 # -------- contact geometry ------------------------------------------------------------------------------------
@@ -421,11 +421,11 @@ class _Contact(InNumbers):
         touch = self._touch
         distance: Numbers = minus(touch.first, touch.second)
         size = 1 + max(map(abs, touch.first))
-        if max(map(abs, distance)) > COMPUTED * size:
+        if max(map(abs, distance)) > tolerances.COMPUTED * size:
             return "its two points of contact are apart"
         slip = minus(self.velocity(self._body, touch.first), self.velocity(self.meeting.surface.on, touch.first))
         held = (slip,) if self.meeting.sticks else tuple(times(dot(slip, e), e) for e in touch.held)
-        if self._rigid and any(abs(x) > COMPUTED * (1 + size) for part in held for x in part):
+        if self._rigid and any(abs(x) > tolerances.COMPUTED * (1 + size) for part in held for x in part):
             return "its two points of contact part or slip"
         return self._wrong_force(touch)
 
@@ -452,7 +452,7 @@ class _Contact(InNumbers):
         for body, (own_force, own_couple) in found.items():
             f, tau = (self.carried(body, x, direction=True) for x in (own_force, own_couple))
             about_contact: Numbers = minus(tau, cross(minus(touch.first, self.carried(body, ZERO)), f))
-            if max(map(abs, about_contact)) > COMPUTED * (1 + max(map(abs, touch.first))):
+            if max(map(abs, about_contact)) > tolerances.COMPUTED * (1 + max(map(abs, touch.first))):
                 return True
             forces.append(f if body == self._body else times(-1, f))
         return any(self._misdirected(touch, label, f) for f in forces)
@@ -466,7 +466,7 @@ class _Contact(InNumbers):
             wrong += [dot(f, n) - 1] if label == "n" else []
             if not self._space and label == "t":
                 wrong += minus(f, (n[1], -n[0], 0))
-        return any(abs(x) > COMPUTED for x in wrong)
+        return any(abs(x) > tolerances.COMPUTED for x in wrong)
 
     @cached_property
     def _scene(self) -> SystemScene:

@@ -24,7 +24,7 @@ from eomgen.model import BALANCE, FUNCTIONS, exact_parameters
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
-from eomgen.symbolic.numeric import COMPUTED, NoValue, evaluate, fifty_digits, of_one_length
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_one_length, tolerances
 
 SPINS = ("omega_1", "omega_2", "omega_3")  # about the axes of the body
 SOON = (precise(1) / 1000, precise(1) / 70)  # s after the start, in whose piece a law holds
@@ -212,7 +212,7 @@ class ReadBack:
             raise NoValue("nothing is said of this piece")
         values, rates, _ = way_through(self.equations.system, state).along([x for _, x in said])
         for (text, _), value, rate in zip(said, values, rates, strict=True):
-            if abs(rate) > COMPUTED * (1 + abs(value)):
+            if abs(rate) > tolerances.COMPUTED * (1 + abs(value)):
                 return f"{text} changes by {float(rate):.3g} in a second"
         return ""
 
@@ -233,7 +233,7 @@ class ReadBack:
         for instant in (precise(0),) if closed else ():
             for q, (value, rate, _) in _along(laws, start, instant).items():
                 for what, found, due in (("is", value, start[q]), ("moves by", rate, start[speeds[f"{q.name}'"]])):
-                    if abs(found - due) > COMPUTED * (1 + abs(due)):
+                    if abs(found - due) > tolerances.COMPUTED * (1 + abs(due)):
                         return f"{q.name} {what} {float(found):.9g} at the start, not {float(due):.9g}"
         for instant in SOON:
             moved = _along(laws, start, instant)
@@ -244,7 +244,7 @@ class ReadBack:
             a = dict(zip(speeds, exact_accelerations(e, state), strict=True))
             for q, (_, _, found) in moved.items():
                 due = a[f"{q.name}'"]
-                if abs(found - due) > COMPUTED * (1 + abs(found)):
+                if abs(found - due) > tolerances.COMPUTED * (1 + abs(found)):
                     return f"{q.name} is accelerated by {float(found):.9g}, not {float(due):.9g}"
         return ""
 
@@ -286,7 +286,7 @@ def _broken(equations: EquationsOfMotion, state: State) -> str:
     gaps = (0 if row.gap is None else row.gap for row in rows)
     found = evaluate((*gaps, *rates), state, fifty_digits())
     names = [row.constraint for row in rows] * 2
-    return next((constraint for constraint, x in zip(names, found, strict=False) if abs(x) > COMPUTED), "")
+    return next((constraint for constraint, x in zip(names, found, strict=False) if abs(x) > tolerances.COMPUTED), "")
 
 
 def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
@@ -294,7 +294,7 @@ def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
     values = iter(evaluate([x for _, *sides in pairs for x in sides], state, fifty_digits()))
     for where, *sides in pairs:
         a, b = next(values), next(values)
-        if abs(a - b) > COMPUTED * (1 + abs(a) + abs(b)) and all(_has_value(x, state) for x in sides):
+        if abs(a - b) > tolerances.COMPUTED * (1 + abs(a) + abs(b)) and all(_has_value(x, state) for x in sides):
             return f"{where}: {float(a):.10g} against {float(b):.10g}"
     return ""
 
@@ -303,7 +303,7 @@ def _has_value(x: Scalar, state: State) -> bool:
     """True if its value hardly changes with the last digits of all numbers, which 0/0 does."""
     nearby = {node: value * (1 + (k + 1) * LAST) for k, (node, value) in enumerate(state.items())}
     (a,), (b,) = (evaluate((x,), each, fifty_digits()) for each in (state, nearby))
-    return bool(abs(a - b) <= COMPUTED * (1 + abs(a)))
+    return bool(abs(a - b) <= tolerances.COMPUTED * (1 + abs(a)))
 
 
 def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:
@@ -317,6 +317,6 @@ def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, 
     needed = (M.reshape(n, n) @ np.array([state[a] for a in symbols.a], dtype=object) - forcing).astype(float)
     J = J.reshape(k, n).astype(float)
     sizes = np.linalg.norm(J, axis=1)
-    scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
+    scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=tolerances.COMPUTED)[0]
     lam = scaled / np.where(sizes > 0, sizes, 1.0)
     return {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}

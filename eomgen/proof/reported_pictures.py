@@ -27,7 +27,7 @@ from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.reported_run import state_of_row
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import is_zero
-from eomgen.symbolic.numeric import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW, STANDS_FOR_A_MASS, NoValue
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 NAME = "drawn parts are where the model says"
 HOW = "poses and places in 50 digits, shapes by places inside them"
@@ -112,7 +112,7 @@ def states_shown(run: Trajectory, times: np.ndarray) -> Iterator[tuple[int, Nume
     for frame in dict.fromkeys((0, len(times) // 2, len(times) - 1)) if len(times) else ():
         row = int(np.argmin(np.abs(run.t - times[frame])))
         phase = next((x for x in run.phases if x.rows[0] <= row < x.rows[1]), None)
-        on_row = abs(float(run.t[row] - times[frame])) <= COMPUTED * (1 + abs(float(times[frame])))
+        on_row = abs(float(run.t[row] - times[frame])) <= tolerances.COMPUTED * (1 + abs(float(times[frame])))
         if on_row and phase is not None and phase.model is not None and phase.track is not None:
             yield frame, state_of_row(run, phase, row)
 
@@ -127,7 +127,7 @@ class _Shown(InNumbers):
     @property
     def near(self) -> float:
         """Tolerance of a place [m]."""
-        return DRAWN * self.picture.size
+        return tolerances.DRAWN * self.picture.size
 
     @property
     def d(self) -> int:
@@ -216,7 +216,7 @@ class _Shown(InNumbers):
 
     def _apart(self, found: Corners, right: Corners) -> str:
         """Message if the corners of a box are elsewhere; a round shape may reach a little beyond grid places; ""."""
-        near = BETWEEN_PLACES * float(np.max(right[1] - right[0])) + self.near
+        near = tolerances.BETWEEN_PLACES * float(np.max(right[1] - right[0])) + self.near
         off = max(float(np.max(np.abs(a - b))) for a, b in zip(found, right, strict=True))
         sizes = [" x ".join(f"{x:.4g}" for x in high - low) for low, high in (found, right)]
         return "" if off <= near else f"fills {sizes[0]} m for {sizes[1]} m, or elsewhere"
@@ -275,21 +275,25 @@ class _Shown(InNumbers):
         if not len(rim):
             return "is not drawn as it rolls", own
         off = np.maximum(np.abs(rim.min(axis=0) - (c - h)), np.abs(rim.max(axis=0) - (c + h)))
-        return "is not as large as it rolls" if np.any(off > BETWEEN_PLACES * h + self.near) else "", own[~on]
+        return "is not as large as it rolls" if np.any(off > tolerances.BETWEEN_PLACES * h + self.near) else "", own[
+            ~on
+        ]
 
     def _wrong_mass(self, link: BodyLink, drawn: np.ndarray) -> str:
         """Message if the ellipsoid for a body has another centre or other moments: A = m (b^2 + c^2)/5; ""."""
         mass = mass_properties(self.system.scope, link.name)
         low, high = drawn.min(axis=0), drawn.max(axis=0)
         size = float(np.max(high - low))
-        if float(np.max(np.abs((low + high) / 2 - self.placed(mass.com)))) > STANDS_FOR_A_MASS * size:
+        if float(np.max(np.abs((low + high) / 2 - self.placed(mass.com)))) > tolerances.STANDS_FOR_A_MASS * size:
             return "its ellipsoid is not about its mass centre"
         m, moments = float(self.one(mass.m)), np.array([float(self.one(mass.I[k][k])) for k in range(3)])
         squares = ((high - low) / 2) ** 2
         found = m / 5 * (np.sum(squares) - squares)
         beyond = max(0.0, *(2 * moments - np.sum(moments)))  # of moments that no body has the axis that is none is 0
         off = float(np.max(np.abs(found - moments))) - beyond
-        return "its ellipsoid has other moments" if off > 2 * STANDS_FOR_A_MASS * float(np.max(moments)) else ""
+        return (
+            "its ellipsoid has other moments" if off > 2 * tolerances.STANDS_FOR_A_MASS * float(np.max(moments)) else ""
+        )
 
     def _hung(self, link: BodyLink) -> list[BodyLink]:
         """Bodies whose joints sit at a place fixed in the body."""
@@ -346,7 +350,7 @@ class _Shown(InNumbers):
         """Message if an arc has another angle than its label, apart from whole turns; ""."""
         right = self._named(name)
         off = min(abs((drawn - turned + np.pi) % (2 * np.pi) - np.pi) for turned in (right, -right))
-        return f"{drawn:.6g} for {right:.6g}" if off > DRAWN else ""
+        return f"{drawn:.6g} for {right:.6g}" if off > tolerances.DRAWN else ""
 
     def _named(self, name: str) -> float:
         symbols = self.system.symbols
@@ -369,13 +373,16 @@ class _Shown(InNumbers):
             length = float(np.linalg.norm(along))
             if at is not None and min(np.linalg.norm(arrow.tip - at), np.linalg.norm(arrow.begin - at)) > self.near:
                 return f"that of {arrow.of} is not where it acts"
-            if np.linalg.norm(along * size - force * length) > SAME_ARROW * size * length + COMPUTED:
+            if (
+                np.linalg.norm(along * size - force * length)
+                > tolerances.SAME_ARROW * size * length + tolerances.COMPUTED
+            ):
                 return f"that of {arrow.of} goes another way"
             scales.append((arrow.of, length / size if size else 0.0))
         if not scales:
             raise NoValue("their forces are not known apart")
         common = float(np.median([scale for _, scale in scales if scale] or [0.0]))
-        off = next((of for of, scale in scales if scale and abs(scale - common) > SAME_ARROW * common), "")
+        off = next((of for of, scale in scales if scale and abs(scale - common) > tolerances.SAME_ARROW * common), "")
         return f"that of {off} is of another scale" if off else ""
 
     def _force(self, name: str) -> tuple[np.ndarray | None, np.ndarray] | None:

@@ -23,7 +23,7 @@ from eomgen.proof.emitted_code import WORK
 from eomgen.proof.instant import second_definition
 from eomgen.simulation import Phase, Trajectory
 from eomgen.symbolic.expression import Expression, Fraction, Scalar, order, parse_unit
-from eomgen.symbolic.numeric import COMPUTED, NINE_DIGITS, NoValue
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 NAME, HOW = "reported values of the run are those of its states", "states by their names, texts read back"
 ROWS = 3  # of a file or table that are looked at: its first, middle and last
@@ -121,7 +121,7 @@ class _RunReported:
             return str(error)
         column = self.own[name]
         for place, text in zip((0, -1), texts, strict=True):
-            if wrong := _apart(float(text) * size, float(column[place]), NINE_DIGITS):
+            if wrong := _apart(float(text) * size, float(column[place]), tolerances.NINE_DIGITS):
                 return f"{('start', 'end')[place]}: {wrong}"
         return ""
 
@@ -143,14 +143,16 @@ class _RunReported:
         if len(texts) != len(column):
             return f"{len(texts)} lines for {len(column)} instants"
         places = dict.fromkeys(np.linspace(0, len(column) - 1, ROWS).astype(int).tolist()) if len(column) else ()
-        found = (_apart(float(texts[k]) * size, float(column[k]), COMPUTED) for k in places)
+        found = (_apart(float(texts[k]) * size, float(column[k]), tolerances.COMPUTED) for k in places)
         return next(filter(None, found), "")
 
     def _is_rate(self, name: str) -> str:
         """The steps of a coordinate are the means of its rate, to second order; jumps of the rate are a few."""
         q, u, h = self.own[name], self.own[f"{name}'"], np.diff(self.run.t)
         apart = np.abs(np.diff(q) - h * (u[1:] + u[:-1]) / 2)
-        allowed = h * np.abs(np.diff(u)) + h * _usual_change(u) + COMPUTED * (1 + np.max(np.abs(q), initial=0.0))
+        allowed = (
+            h * np.abs(np.diff(u)) + h * _usual_change(u) + tolerances.COMPUTED * (1 + np.max(np.abs(q), initial=0.0))
+        )
         wrong = np.isfinite(apart) & (apart > allowed)
         return f"it is not the rate of {name}" if np.sum(wrong) > len(h) / 2 else ""
 
@@ -163,7 +165,7 @@ class _RunReported:
             state = state_of_row(self.run, phase, row)
             T, V = (state.number(x) for x in (phase.model.equations.T, phase.model.equations.V))
             found = float(self.own["energy"][row])
-            if abs(found - T - V) > COMPUTED * (1 + abs(T) + abs(V)):
+            if abs(found - T - V) > tolerances.COMPUTED * (1 + abs(T) + abs(V)):
                 return f"{found:.10g} for {T + V:.10g} at t = {self.run.t[row]:.6g} s"
             return ""
         raise NoValue("no phase is long enough")
@@ -177,7 +179,7 @@ class _RunReported:
             places = [0, len(column) // 2, -1] if len(column) else []
             yield f"trajectory of {name}", partial(self._entry, name, [column[k] for k in places], places)
         if reported and len(self.run.t):
-            yield "time", lambda: _apart(reported["time"], self.run.phases[-1].end, COMPUTED)
+            yield "time", lambda: _apart(reported["time"], self.run.phases[-1].end, tolerances.COMPUTED)
             yield "energy drift", lambda: _none_apart(reported["energy_drift"], self.run.drift)
             yield "gap", lambda: _none_apart(reported["gap"], self.run.gap)
             yield "gap rate", lambda: _none_apart(reported["gap_rate"], self.run.gap_rate)
@@ -203,7 +205,7 @@ class _RunReported:
             return "another number of values"
         pairs = [*zip(values, rights, strict=True)]
         wrong = [_none_apart(None if x is None else x * size, right) for x, right in pairs]
-        wrong += [_apart(x, right, COMPUTED) for x, right in zip(reported["t"], found.t, strict=True)]
+        wrong += [_apart(x, right, tolerances.COMPUTED) for x, right in zip(reported["t"], found.t, strict=True)]
         return next(filter(None, wrong), "")
 
     def _rows_of(self, name: str, rows: Sequence[Sequence[str]]) -> str:
@@ -215,11 +217,11 @@ class _RunReported:
         for k, ((head, text, when), right) in enumerate(zip(rows, rights, strict=True)):
             unit = _HEAD.fullmatch(head)
             size = parse_unit(unit["unit"]).size if unit is not None and unit["unit"] else 1.0
-            wrong = "" if right is None else _apart(float(text) * size, right, NINE_DIGITS)
+            wrong = "" if right is None else _apart(float(text) * size, right, tolerances.NINE_DIGITS)
             if right is not None and k < len(found.t):
                 instant = re.fullmatch(r"t = (.*) s", when)
                 wrong = wrong or (
-                    "no instant" if instant is None else _apart(float(instant[1]), found.t[k], NINE_DIGITS)
+                    "no instant" if instant is None else _apart(float(instant[1]), found.t[k], tolerances.NINE_DIGITS)
                 )
             if wrong:
                 return wrong
@@ -246,7 +248,7 @@ def _none_apart(found: float | None, right: float | None) -> str:
     """Difference of two values that may be missing, in words; null stands for a value that is not finite."""
     if right is None or not np.isfinite(right):
         return "" if found is None else f"{found:.10g} for none"
-    return f"nothing for {right:.10g}" if found is None else _apart(found, float(right), COMPUTED)
+    return f"nothing for {right:.10g}" if found is None else _apart(found, float(right), tolerances.COMPUTED)
 
 
 # -------- run columns -----------------------------------------------------------------------------------------
@@ -311,7 +313,7 @@ def _wrong_reaction(run: Trajectory, phase: Phase, row: int, formulas: Mapping[s
     size = max(map(abs, known.values()))
     for name, found in known.items():
         right = state.number(formulas[name])
-        if abs(found - right) > COMPUTED * (1 + size):
+        if abs(found - right) > tolerances.COMPUTED * (1 + size):
             wrong = off_by(found, right, [near.number(formulas[name]) for near in state.nearby()])
             if wrong:
                 return f"{name}: {wrong}"

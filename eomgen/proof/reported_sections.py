@@ -25,7 +25,7 @@ from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.declared_loads import declared_pushes
 from eomgen.symbolic.expression import LONGEST, Node, Scalar, State, parse, symbols_of
-from eomgen.symbolic.numeric import CARRIED, FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, tolerances
 
 NAME, HOW = "reported section forces are those that were found", "heads and texts read back, random values"
 Reported = Scalar | str
@@ -67,23 +67,25 @@ def _wrong(forces: SectionForces, reported: ReportedSections, near: Mapping[str,
     for piece, row in zip(forces.pieces, reported.pieces, strict=True):
         start, end = values.of(piece.start), values.of(piece.end)
         ends = (("from", start), ("to", end))
-        wrong = [differing(values.of(row[name]), right, CARRIED) for name, right in ends]
+        wrong = [differing(values.of(row[name]), right, tolerances.CARRIED) for name, right in ends]
         x, h = start + (end - start) * 0.37, (end - start) * 0.25
         polynomials = {"N": piece.N, "V": piece.V, "M": piece.M}
         for name, coefficients in polynomials.items():
             right = sum(values.of(c) * (x - start) ** k for k, c in enumerate(coefficients))
             size = sum(abs(values.of(c) * (x - start) ** k) for k, c in enumerate(coefficients))
             at = values.of(row[name], x)
-            wrong.append(f"{name}: {at:.10g} for {right:.10g}" if abs(at - right) > CARRIED * (1 + size) else "")
+            wrong.append(
+                f"{name}: {at:.10g} for {right:.10g}" if abs(at - right) > tolerances.CARRIED * (1 + size) else ""
+            )
         slope = (8 * _rise(values, row, x, h / 2) - _rise(values, row, x, h)) / (6 * h)  # exact to the fourth power
         V = values.of(row["V"], x)
-        if not any(wrong) and abs(slope - V) > CARRIED * (1 + abs(V) + abs(values.of(row["M"], x) / h)):
+        if not any(wrong) and abs(slope - V) > tolerances.CARRIED * (1 + abs(V) + abs(values.of(row["M"], x) / h)):
             wrong.append(f"dM/dx = {slope:.10g}, V = {V:.10g}")
         if any(wrong):
             return next(filter(None, wrong))
     for extreme, one in zip(reported.extremes, forces.extremes, strict=True):
         for name, due in (("x", one.x), ("M", one.M)):
-            if apart := differing(values.of(extreme[name]), values.of(due), CARRIED):
+            if apart := differing(values.of(extreme[name]), values.of(due), tolerances.CARRIED):
                 return f"{name} of an extreme: {apart}"
     return ""
 
@@ -242,20 +244,22 @@ class _Works:
         factors = self.factors(reaction)
         for j, (owner, _) in enumerate(self.found.structure.pushes):
             work, size = field.work_of(j)
-            if abs(work - along * factors.get(j, 0.0)) > CARRIED * (size + abs(along)):
+            if abs(work - along * factors.get(j, 0.0)) > tolerances.CARRIED * (size + abs(along)):
                 return f"the constraint does the work {work:.6g} along {self.found.structure.names[j]} of {owner}"
         if wrong := field.wrong_works():
             return wrong
         given = 0.0 if reaction.work is None else self.value_of(reaction.work.given)
         total = sum(self.value_of(work) for _, work in reported.works)
         size = sum(abs(self.value_of(work)) for _, work in reported.works) + abs(along * R)
-        if abs(along * (R - given) + total) > CARRIED * (1 + size):
+        if abs(along * (R - given) + total) > tolerances.CARRIED * (1 + size):
             return f"the works add up to {total:.6g}, for {-along * (R - given):.6g}"
         values = (("machines", reported.value), ("people", reported.last))
-        if off := next((who for who, x in values if abs(self.value_of(x) - R) > CARRIED * (1 + abs(R))), ""):
+        if off := next((who for who, x in values if abs(self.value_of(x) - R) > tolerances.CARRIED * (1 + abs(R))), ""):
             return f"another value is reported to {off} than {R:.10g}"
         here, nearby = (self.value_of(reported.left, R + step, reported.name) for step in (0, 1))
-        if abs(here) > CARRIED * (1 + size) or abs(abs(nearby - here) - abs(along)) > CARRIED * (1 + abs(along)):
+        if abs(here) > tolerances.CARRIED * (1 + size) or abs(abs(nearby - here) - abs(along)) > tolerances.CARRIED * (
+            1 + abs(along)
+        ):
             return "the equation that is printed is another one"
         return field.wrong_rows()
 
@@ -371,7 +375,7 @@ class _Field:
                     if body is not None:
                         six = np.array([moment[2], force[0], force[1]], dtype=float)
                         due += float(six @ self.motions.get(body, np.zeros(3)))
-                if abs(stated.get(name, 0.0) - due) > CARRIED * (1 + abs(due)):
+                if abs(stated.get(name, 0.0) - due) > tolerances.CARRIED * (1 + abs(due)):
                     return f"{name} works {stated.get(name, 0.0):.6g}, as reported to {who}, for {due:.6g}"
         return ""
 
@@ -386,7 +390,8 @@ class _Field:
                 x, y = (self.proof.value_of(x) for x in row.center)
                 moved = self.proof.value_of(row.spin) * np.array([y, -x])
             if np.any(
-                np.abs([self.proof.value_of(row.spin) - own[0], *(moved - own[1:])]) > CARRIED * (1 + abs(own).max())
+                np.abs([self.proof.value_of(row.spin) - own[0], *(moved - own[1:])])
+                > tolerances.CARRIED * (1 + abs(own).max())
             ):
                 return f"block {k} is printed with another motion"
         for row in self.reported.places:
@@ -395,6 +400,6 @@ class _Field:
             if all(places):
                 due = np.mean([self.at(*place) for place in places if place is not None], axis=0)
                 moved = np.array([self.proof.value_of(x) for x in row.shift])
-                if np.any(np.abs(moved - due) > CARRIED * (1 + abs(due).max())):
+                if np.any(np.abs(moved - due) > tolerances.CARRIED * (1 + abs(due).max())):
                     return f"{row.at} is printed with the shift {moved}, for {due}"
         return ""

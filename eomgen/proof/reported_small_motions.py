@@ -21,17 +21,7 @@ from eomgen.model import Model, exact_parameters
 from eomgen.proof.check import Check, Tally, attempted, checked, differing, first_wrong
 from eomgen.proof.reports_read import ColouredPoints, DrawnPanel, said_of
 from eomgen.symbolic.expression import LONGEST, Expression, parse, parse_unit
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    FOUR_DIGITS,
-    ITERATED,
-    SAME_PLACE,
-    SEVEN_DIGITS,
-    SLOW,
-    SOLVED,
-    NoValue,
-)
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 NAME, HOW = "printed small motions are those that machines get", "texts and numbers read back"
 MATRICES = ("mass", "rates", "stiffness", "input", "kinematic_rates", "kinematic_places")
@@ -120,7 +110,7 @@ class ReportedMotions:
         for row, right in zip(entry["exact"], entry["value"], strict=True):
             for text, number in zip(row, right, strict=True):
                 found = self._value(text, self.values)
-                if abs(found - number) > COMPUTED * (size + abs(found)):
+                if abs(found - number) > tolerances.COMPUTED * (size + abs(found)):
                     return f"{text[:60]}: {differing(found, number) or found}"
         return ""
 
@@ -156,11 +146,15 @@ class ReportedMotions:
         if not np.any(v):
             return ""
         pencil = self.A - x * np.eye(len(self.A))
-        pencil = pencil / (abs(pencil).max(axis=1) + SLOW * abs(x))[:, None]
+        pencil = pencil / (abs(pencil).max(axis=1) + tolerances.SLOW * abs(x))[:, None]
         u = np.linalg.lstsq(pencil[:, self.m :], -pencil[:, : self.m] @ v, rcond=None)[0]
         whole = np.concatenate([v, u])
         left, size = abs(pencil @ whole), abs(pencil) @ abs(whole)
-        return "its shape is no motion of that eigenvalue" if np.any(left > CARRIED * (size + abs(whole).max())) else ""
+        return (
+            "its shape is no motion of that eigenvalue"
+            if np.any(left > tolerances.CARRIED * (size + abs(whole).max()))
+            else ""
+        )
 
     # -- as they are printed ---------------------------------------------------------------------------------
 
@@ -177,7 +171,7 @@ class ReportedMotions:
             else:
                 continue
             found = np.array(rows, dtype=float)
-            if all(found.shape != right.shape or _differ(found, right, SEVEN_DIGITS) for right in rights):
+            if all(found.shape != right.shape or _differ(found, right, tolerances.SEVEN_DIGITS) for right in rights):
                 return f"{letter} is another for machines"
         return ""
 
@@ -196,7 +190,9 @@ class ReportedMotions:
             }
             for head, right in wanted.items():
                 text = row.get(head, "")
-                if (text == "") != (right is None) or (text and differing(float(text), right or 0.0, SEVEN_DIGITS)):
+                if (text == "") != (right is None) or (
+                    text and differing(float(text), right or 0.0, tolerances.SEVEN_DIGITS)
+                ):
                     return f"mode {k + 1}, {head}: {text} for {right}"
             if row.get("", "") != mode["kind"] or row.get("mode") != str(k + 1):
                 return f"mode {k + 1}: '{row.get('', '')}' for '{mode['kind']}'"
@@ -204,7 +200,7 @@ class ReportedMotions:
                 return f"mode {k + 1}: {row.get('eigenvalue [1/s]')} for {complex(*mode['eigenvalue']):.7g}"
         for name, cells in self.printed.shapes.items():
             for k, cell in enumerate(cells):
-                if not _is_complex(cell, complex(*modes[k]["shape"][name]), 2 * SEVEN_DIGITS):
+                if not _is_complex(cell, complex(*modes[k]["shape"][name]), 2 * tolerances.SEVEN_DIGITS):
                     return f"mode {k + 1}, {name}: {cell} for {complex(*modes[k]['shape'][name]):.7g}"
         return ""
 
@@ -213,7 +209,9 @@ class ReportedMotions:
         if len(reported) != len(self.printed.conditions):
             return f"{len(self.printed.conditions)} are printed of {len(reported)}" if self.printed.conditions else ""
         for text, number in zip(reported, self.printed.conditions, strict=True):
-            if not math.isnan(number) and (wrong := differing(number, self._value(text, self.values), SEVEN_DIGITS)):
+            if not math.isnan(number) and (
+                wrong := differing(number, self._value(text, self.values), tolerances.SEVEN_DIGITS)
+            ):
                 return wrong
         return ""
 
@@ -232,12 +230,12 @@ class ReportedMotions:
                 sum(self._value(text, self.values) * s**k for k, text in enumerate(reported[part]))
                 for part in ("numerator", "denominator")
             )
-            if abs(above / below - answers[i]) > SAME_PLACE * abs(answers).max():
+            if abs(above / below - answers[i]) > tolerances.SAME_PLACE * abs(answers).max():
                 return f"{above / below:.6g} for {answers[i]:.6g} at s = {s:.4g}"
         return ""
 
 
-def _differ(a: np.ndarray, b: np.ndarray, share: float = COMPUTED) -> bool:
+def _differ(a: np.ndarray, b: np.ndarray, share: float = tolerances.COMPUTED) -> bool:
     """Entries are compared on the scale of the largest of their rows and columns."""
     if a.size == b.size == 0:
         return False
@@ -245,10 +243,10 @@ def _differ(a: np.ndarray, b: np.ndarray, share: float = COMPUTED) -> bool:
         return True
     size = np.maximum(abs(a), abs(b))
     usual = np.minimum.outer(size.max(axis=1), size.max(axis=0))
-    return bool(np.any(abs(a - b) > share * (size + usual) + SOLVED * size.max()))
+    return bool(np.any(abs(a - b) > share * (size + usual) + tolerances.SOLVED * size.max()))
 
 
-def _is_complex(text: str, right: complex, share: float = SEVEN_DIGITS) -> bool:
+def _is_complex(text: str, right: complex, share: float = tolerances.SEVEN_DIGITS) -> bool:
     """True if a text like 1.2 +- 3.4i is that number, or its conjugate."""
     pieces = text.replace("+-", "+").replace("+ ", "+").replace("- ", "-").replace("i", "j").replace(" ", "")
     try:
@@ -285,10 +283,12 @@ def _wrong_modes(modes: Sequence[Mapping[str, Any]], panels: Sequence[DrawnPanel
         number, _, unit = panel.title.removeprefix(said).partition(" ")
         right = mode["eigenvalue"][0] if frequency is None else frequency
         known = panel.title.startswith(said) and unit == ("1/s" if frequency is None else "rad/s")
-        if not known or abs(float(number) - right) > FOUR_DIGITS * abs(right):
+        if not known or abs(float(number) - right) > tolerances.FOUR_DIGITS * abs(right):
             return f"'{panel.title}' stands above mode {k}, {right:.6g} {unit}"
         heights = [height for _, height in panel.bars]
-        if heights and not np.allclose(heights, [x for x, _ in mode["shape"].values()], rtol=0, atol=COMPUTED):
+        if heights and not np.allclose(
+            heights, [x for x, _ in mode["shape"].values()], rtol=0, atol=tolerances.COMPUTED
+        ):
             return f"the bars of mode {k} are not its shape"
     return ""
 
@@ -380,7 +380,7 @@ class _Drawn:
             if not np.array_equal(curve.places[:, 0], omega) or not np.array_equal(turned[:, 0], omega):
                 return f"{curve.label} is drawn at other frequencies than its phase"
             W, size = answers[:, j, k], np.abs(answers[:, :, k]).max(axis=1)
-            near = CARRIED * np.abs(W) + ITERATED * size + 10 * rounding[:, j, k]
+            near = tolerances.CARRIED * np.abs(W) + tolerances.ITERATED * size + 10 * rounding[:, j, k]
             for what, found in (
                 ("|W|", curve.places[:, 1] * np.exp(1j * np.angle(W))),
                 ("phase", np.abs(W) * np.exp(1j * np.radians(turned[:, 1]))),
@@ -388,11 +388,11 @@ class _Drawn:
                 if np.any(off := np.abs(found - W) > near):
                     i = int(np.argmax(off))
                     return f"{what} of {curve.label} at {omega[i]:.4g} rad/s: {found[i]:.6g} for {W[i]:.6g}"
-        left = [label for label, (j, k) in names.items() if np.abs(answers[:, j, k]).max() > CARRIED]
+        left = [label for label, (j, k) in names.items() if np.abs(answers[:, j, k]).max() > tolerances.CARRIED]
         if left and len(sizes.curves) < MOST_CURVES:
             return f"{left[0]} is not drawn"
         rates = np.abs([complex(*x) for x in entries["eigenvalues"]])
-        moving = rates[rates > ITERATED * rates.max(initial=0.0)]
+        moving = rates[rates > tolerances.ITERATED * rates.max(initial=0.0)]
         outside = moving[(moving < omega[0]) | (moving > omega[-1])]
         return f"the mode of {outside[0]:.4g} 1/s is not within the frequencies" if len(outside) else ""
 
@@ -451,10 +451,12 @@ def _no_roots(pencil: Pencil, roots: Sequence[complex]) -> str:
     size = max(map(abs, roots), default=0.0) or 1.0
     for s in roots:
         rows = A - s * np.eye(len(A))
-        if np.linalg.svd(rows, compute_uv=False)[-1] > CARRIED * max(size, 1.0):
+        if np.linalg.svd(rows, compute_uv=False)[-1] > tolerances.CARRIED * max(size, 1.0):
             return f"{s:.6g} is no root"
     found, sums = np.array(roots), (np.trace(A), np.sum(A * A.T))
-    if any(abs(np.sum(found**k) - right) > CARRIED * len(A) * size**k for k, right in enumerate(sums, start=1)):
+    if any(
+        abs(np.sum(found**k) - right) > tolerances.CARRIED * len(A) * size**k for k, right in enumerate(sums, start=1)
+    ):
         return "a root is drawn in place of another"
     return ""
 
@@ -531,7 +533,9 @@ class _Reported:
         right = sorted(np.linalg.eigvals(self.A), key=lambda x: (abs(x), x.imag))
         size = max(map(abs, right), default=0.0)
         for x in found:  # of a double one without two modes numpy's are apart by the root of rounding
-            if np.linalg.svd(self.A - x * np.eye(len(self.A)), compute_uv=False)[-1] > CARRIED * max(size, 1.0):
+            if np.linalg.svd(self.A - x * np.eye(len(self.A)), compute_uv=False)[-1] > tolerances.CARRIED * max(
+                size, 1.0
+            ):
                 return f"{x:.6g} is no eigenvalue of the state matrix"
         return "" if len(found) == len(right) else f"{len(found)} eigenvalues for {len(right)} states"
 
@@ -541,7 +545,7 @@ class _Reported:
             reported = [frequency, mode["hertz"], mode["damping_ratio"]]
             due = [x.imag, x.imag / math.tau, -x.real / abs(x) if x else 0.0] if x.imag else [0.0, 0.0, None]
             for name, a, b in zip(("frequency", "hertz", "damping ratio"), reported, due, strict=True):
-                if a is not None and b is not None and abs(a - b) > SAME_PLACE * (1 + abs(x)):
+                if a is not None and b is not None and abs(a - b) > tolerances.SAME_PLACE * (1 + abs(x)):
                     return f"the {name} of mode {k} is {a:.10g} for {b:.10g}"
                 if x.imag and a is None:
                     return f"mode {k} oscillates, and has no {name}"
@@ -564,4 +568,4 @@ class _Reported:
 
 def away(found: np.ndarray, right: np.ndarray) -> bool:
     """True if two matrices differ by more than rounding in doubles."""
-    return bool(abs(found - right).max(initial=0) > CARRIED * (1 + abs(right).max(initial=0)))
+    return bool(abs(found - right).max(initial=0) > tolerances.CARRIED * (1 + abs(right).max(initial=0)))

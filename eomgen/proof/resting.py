@@ -24,16 +24,7 @@ from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.in_numbers import STEP, with_inputs
 from eomgen.symbolic.expression import Node, jacobian
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    DIFFERENCE_STEP,
-    SAME_PLACE,
-    SHARE,
-    ZERO_AT_50,
-    NoValue,
-    evaluate,
-    fifty_digits,
-)
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 MOST = 12  # places that are looked at
 ASIDE = (
@@ -56,7 +47,7 @@ def _unbalanced(place: Equilibrium) -> str:
     known |= _places(place, statics.unknowns, known)
     left = evaluate(statics.equations, known, digits)
     for i, (x, usual) in enumerate(zip(left, _usual(statics, known), strict=True)):
-        if abs(x) > COMPUTED * usual + ZERO_AT_50:
+        if abs(x) > tolerances.COMPUTED * usual + tolerances.ZERO_AT_50:
             return f"{float(x):.3g} is left of equation {i + 1}"
     return _unbalanced_along(place, known)
 
@@ -70,7 +61,7 @@ def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
         there = {**known, **{x: digits.number(1) * float(v) for x, v in zip(statics.unknowns, z, strict=True)}}
         left = evaluate(statics.equations, there, digits)
         for x, usual in zip(left, _usual(statics, there), strict=True):
-            if abs(x) > SAME_PLACE * usual + ZERO_AT_50:
+            if abs(x) > tolerances.SAME_PLACE * usual + tolerances.ZERO_AT_50:
                 return f"{float(x):.3g} is left along the family, at {statics.q[0].name} = {z[0]:.6g}"
     return ""
 
@@ -112,7 +103,7 @@ def _pushed(place: Equilibrium) -> str:
         if rates.keys() <= left.keys():
             radial = sum(left[rate] * e for rate, e in rates.items())
             left |= {rate: left[rate] - radial * e for rate, e in rates.items()}
-    wrong = ((name, x) for name, x in left.items() if abs(x) > COMPUTED * most + ZERO_AT_50)
+    wrong = ((name, x) for name, x in left.items() if abs(x) > tolerances.COMPUTED * most + tolerances.ZERO_AT_50)
     return next((f"{float(x):.3g} is left along {name}" for name, x in wrong), "")
 
 
@@ -212,7 +203,7 @@ class _Proof:
         moving = (
             f"{name} is {float(x):.3g} at rest"
             for name, x in zip(names, rates, strict=True)
-            if abs(x) > COMPUTED * size
+            if abs(x) > tolerances.COMPUTED * size
         )
         return next(moving, "")
 
@@ -224,12 +215,12 @@ class _Proof:
         aside = {q: rng.choice((-1, 1)) * STEP * max(1, abs(numbers[q])) for q in self.first.system.symbols.q}
         usual = self._moved(aside, 1)
         for u, x in self.nearby.going(numbers).a.items():
-            if abs(x) > COMPUTED * usual + ZERO_AT_50:
+            if abs(x) > tolerances.COMPUTED * usual + tolerances.ZERO_AT_50:
                 with suppress(NoValue, ZeroDivisionError):
-                    if abs(x) <= COMPUTED * self._moved(aside, ASIDE / STEP):
+                    if abs(x) <= tolerances.COMPUTED * self._moved(aside, ASIDE / STEP):
                         continue
                 nearby = self.nearby.going({**numbers, **{q: numbers[q] + STEP * d for q, d in aside.items()}}).a[u]
-                if abs(nearby - x) > SHARE * abs(x):
+                if abs(nearby - x) > tolerances.SHARE * abs(x):
                     raise NoValue(f"{u.name} is 0/0 there")
                 return f"{u.name} changes by {float(x):.3g}"
         return ""
@@ -260,9 +251,9 @@ class _Proof:
             return self._wrong_when_pushed(self.nearby.q[0], rows[along[0]])
         values = np.linalg.eigvals(self.slopes[[rows[name] for name in along]]).real
         largest = abs(values).max(initial=0)
-        if kind == "stable" and values.max() > SAME_PLACE * largest:
+        if kind == "stable" and values.max() > tolerances.SAME_PLACE * largest:
             return "said to be stable, and a small motion grows"
-        if kind == "unstable" and largest and values.max() < -SAME_PLACE * largest:
+        if kind == "unstable" and largest and values.max() < -tolerances.SAME_PLACE * largest:
             return "said to be unstable, and all small motions oscillate"
         return ""
 
@@ -283,9 +274,9 @@ class _Proof:
         """The accelerations from both sides, of the least push at which they are more than is left at the place."""
         place, left = self.numbers[q], abs(self._accelerations({})[row])
         size = max(1, abs(place))
-        for push in (STEP, STEP / SHARE, DIFFERENCE_STEP * size, ASIDE * size):
+        for push in (STEP, STEP / tolerances.SHARE, tolerances.DIFFERENCE_STEP * size, ASIDE * size):
             pulls = [self._accelerations({q: place + sign * push})[row] for sign in (1, -1)]
-            if min(map(abs, pulls)) > left / COMPUTED:
+            if min(map(abs, pulls)) > left / tolerances.COMPUTED:
                 return pulls
         if left:
             raise NoValue("what is left at the place hides what pushes back")

@@ -27,20 +27,7 @@ from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
 from eomgen.proof.neighbouring_motions import Differences, DigitColumn, MotionDifference
 from eomgen.symbolic.expression import Node
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    DIFFERENCE_AT_50,
-    FLOAT,
-    ROUNDING,
-    SAME_PLACE,
-    SLOW,
-    ZERO_AT_50,
-    NoValue,
-    evaluate,
-    fifty_digits,
-    sums_of_products,
-)
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, sums_of_products, tolerances
 
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them
 BY_DIFFERENCES = "differences at 50 digits"
@@ -73,7 +60,8 @@ def _reference(differences: Differences) -> Check:
     wrong = [
         f"{u.name} changes by {float(origin.a[u]):.3g}"
         for u in differences.nearby.u
-        if abs(origin.a[u]) > COMPUTED * (usual.get(u) or most) + ZERO_AT_50  # without a row: the largest
+        if abs(origin.a[u])
+        > tolerances.COMPUTED * (usual.get(u) or most) + tolerances.ZERO_AT_50  # without a row: the largest
     ]
     name = "the equations of motion hold at the reference, without acceleration"
     return checked(name, "; ".join(wrong), "50 digits")
@@ -85,7 +73,7 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
     if differences.is_part:
         yield _of_part(differences)
         return
-    exact, tolerance = _entries(modes), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
+    exact, tolerance = _entries(modes), tolerances.DIFFERENCE_AT_50 if small.exact is not None else tolerances.COMPUTED
     nearby, energies = [], []
     for _ in range(DIRECTIONS):
         moved = (*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs)
@@ -116,7 +104,7 @@ def _of_part(differences: Differences) -> Check:
         pencil = sum((s**k * np.array(A, dtype=float) for k, A in enumerate((e.K, e.C, e.M))))
         answer = np.linalg.inv(pencil)
         away = abs(answer - whole(s)[np.ix_(requested, requested)]).max() / abs(answer).max()
-        wrong = wrong or ("" if away <= CARRIED else f"their answers differ by {away:.2g}")
+        wrong = wrong or ("" if away <= tolerances.CARRIED else f"their answers differ by {away:.2g}")
     return checked("requested coordinates move as they do in the whole system", wrong, "differences, floating point")
 
 
@@ -152,7 +140,7 @@ def _wrong_parts(modes: Modes) -> str:
         name: _numbers(small, A if name == "S" else _printed_half(modes, A))
         for name, A in modes.symmetric_parts.items()
     }
-    tolerance = ZERO_AT_50 if small.exact is not None else ROUNDING
+    tolerance = tolerances.ZERO_AT_50 if small.exact is not None else tolerances.ROUNDING
     for letter, even, odd in (("C", "D", "G"), ("K", "S", "H")):
         for i, j in product(range(len(whole[letter])), repeat=2):
             (a, b), (c, d) = ((parts[name][i][j], parts[name][j][i]) for name in (even, odd))
@@ -200,7 +188,7 @@ def _in_state_form(small: SmallMotions, nearby: Sequence[MotionDifference]) -> s
     found = sums_of_products(both, [[*at.q, *u, *at.w] for at, u, _ in _moving(small, nearby)])
     for (at, _, a), rows in zip(_moving(small, nearby), found, strict=True):
         for name, rate, row in zip(names, (*at.q1, *a), rows, strict=True):
-            if wrong := _left(-rate, row, COMPUTED):
+            if wrong := _left(-rate, row, tolerances.COMPUTED):
                 return f"the row of {name}: {wrong}"
     return ""
 
@@ -232,7 +220,7 @@ def _left(other: Any, sums: tuple[Any, Any], tolerance: float, unit: Any = 1) ->
         sums: of the others, and of their sizes.
     """
     left, size = other + sums[0], abs(other) + sums[1]
-    if abs(left) <= tolerance * (size + SLOW * unit):
+    if abs(left) <= tolerance * (size + tolerances.SLOW * unit):
         return ""
     return f"{float(left):.3g} is left, of terms of {float(size):.3g}"
 
@@ -302,7 +290,7 @@ class _Proof:
     def rate(self) -> float:
         """Geometric mean of the absolute values of the eigenvalues that are not 0."""
         sizes = abs(self.values)
-        sizes = sizes[sizes > SAME_PLACE * self.largest]
+        sizes = sizes[sizes > tolerances.SAME_PLACE * self.largest]
         return float(np.exp(np.log(sizes).mean())) if len(sizes) else 1.0
 
     # -- modes -----------------------------------------------------------------------------------------------
@@ -320,12 +308,12 @@ class _Proof:
                 continue
             pencil = self.A - mode.eigenvalue * np.eye(len(self.A))
             pencil = pencil if mode.eigenvalue or mode.pair else pencil @ pencil / self.rate
-            scale = 1 / (abs(pencil).max(axis=1) + SLOW * self.rate)  # of each row, in its own unit
+            scale = 1 / (abs(pencil).max(axis=1) + tolerances.SLOW * self.rate)  # of each row, in its own unit
             pencil = pencil * scale[:, None]
             u = np.linalg.lstsq(pencil[:, n:], -pencil[:, :n] @ v, rcond=None)[0]
             x = np.concatenate([v, u])
             left = abs(pencil @ x)
-            if left.max() > SAME_PLACE * abs(x).max():
+            if left.max() > tolerances.SAME_PLACE * abs(x).max():
                 return f"mode {k}: {left.max():.2g} is left"
         return ""
 
@@ -337,7 +325,7 @@ class _Proof:
                 continue
             back = np.exp(mode.eigenvalue / mode.hertz)
             left = np.exp(-math.tau * mode.damping_ratio / math.sqrt(1 - mode.damping_ratio**2))
-            if not abs(back - left) <= SAME_PLACE * abs(left):
+            if not abs(back - left) <= tolerances.SAME_PLACE * abs(left):
                 return f"mode {k}: {back:.6g} against {left:.6g}"
         return ""
 
@@ -352,8 +340,8 @@ class _Proof:
         if len(values) != len(self.A):
             return f"{len(values)} for {len(self.A)} states"
         for k, trace in ((1, np.trace(self.A)), (2, np.trace(self.A @ self.A))):
-            size = (abs(values) ** k).sum() + (abs(self.A).max(initial=0) * SLOW) ** k
-            if abs((values**k).sum() - trace) > SAME_PLACE * size:
+            size = (abs(values) ** k).sum() + (abs(self.A).max(initial=0) * tolerances.SLOW) ** k
+            if abs((values**k).sum() - trace) > tolerances.SAME_PLACE * size:
                 return f"the sum of lambda^{k} is {(values**k).sum():.10g}, the trace {trace:.10g}"
         return ""
 
@@ -384,7 +372,7 @@ class _Proof:
             scaled = [[x / size for x in row] for row, size in zip(rows, sizes, strict=True)]
             det = one.context.det(one.context.matrix(scaled)) * one.context.fprod(sizes)
             size = sum(abs(c * s**k) for k, c in enumerate(p.coefficients))
-            if abs(det - p.at(s)) > DIFFERENCE_AT_50 * size:
+            if abs(det - p.at(s)) > tolerances.DIFFERENCE_AT_50 * size:
                 return f"p({float(s):.6g}) = {float(p.at(s)):.10g} against {float(det):.10g}"
         return ""
 
@@ -397,12 +385,12 @@ class _Proof:
     def wrong_frequency(self) -> str:
         for w in self.closed:
             away = abs(self.values.imag - w).min()
-            if away > SAME_PLACE * max(w, SLOW * self.largest):
+            if away > tolerances.SAME_PLACE * max(w, tolerances.SLOW * self.largest):
                 return f"{w:.10g} rad/s is the frequency of no eigenvalue"
         printed = [f for f in self.modes.spectrum.oscillating if f.frequency]
         for mode in printed:
             assert mode.frequency is not None
-            if abs(self.values.imag - mode.frequency).min() > SAME_PLACE * self.largest:
+            if abs(self.values.imag - mode.frequency).min() > tolerances.SAME_PLACE * self.largest:
                 return f"{mode.frequency:.10g} rad/s is the frequency of no eigenvalue"
         return ""
 
@@ -419,21 +407,25 @@ class _Proof:
     def wrong_stability(self) -> str:
         said = self.modes.spectrum.stability
         if said == "unstable":
-            return "none of them grows" if self.growth < -CARRIED else ""
+            return "none of them grows" if self.growth < -tolerances.CARRIED else ""
         if said == "unstable to first order":
             return "" if self._has_chains else "said to grow like t, and the eigenvalue 0 has all its modes"
         if said in ("stable", "asymptotically stable") and self._has_chains:
             return f"said to be {said}, and a motion grows like t"
         if said == "stable to first order" and self._drifts_away:
             return f"said to be {said}, and a motion grows like t into others"
-        return f"said to be {said}, and one of them grows" if said != "undecided" and self.growth > SAME_PLACE else ""
+        return (
+            f"said to be {said}, and one of them grows"
+            if said != "undecided" and self.growth > tolerances.SAME_PLACE
+            else ""
+        )
 
     @property
     def _has_chains(self) -> bool:
         """True if A has Jordan chains at 0: A^2 has a larger null space than A, so some motions grow like t."""
         zeros = sum(x == 0 for x in self.modes.spectrum.eigenvalues)
         sizes = np.linalg.svd(self.A, compute_uv=False)
-        return zeros > 0 and int(np.sum(sizes <= COMPUTED * sizes.max(initial=0))) < zeros
+        return zeros > 0 and int(np.sum(sizes <= tolerances.COMPUTED * sizes.max(initial=0))) < zeros
 
     @property
     def _drifts_away(self) -> bool:
@@ -447,16 +439,16 @@ class _Proof:
         if constrained or not {*small.numbers.coordinates} <= numbers.keys() or not self._has_chains:
             return False
         sizes, columns = np.linalg.svd(self.A @ self.A)[1:]
-        slow = columns[sizes <= COMPUTED * sizes.max(initial=0)]
+        slow = columns[sizes <= tolerances.COMPUTED * sizes.max(initial=0)]
         drifts = (self.A @ slow.T).T
         drift = max(drifts, key=lambda x: float(np.linalg.norm(x)))[: len(small.numbers.coordinates)]
-        if not np.linalg.norm(drift) > SAME_PLACE * self.rate:
+        if not np.linalg.norm(drift) > tolerances.SAME_PLACE * self.rate:
             return False
         drift = drift / abs(drift).max()
         there = {q: numbers[q] + ASIDE * float(x) for q, x in zip(small.numbers.coordinates, drift, strict=True)}
         entries = (*(x for row in e.M for x in row), *e.forcing)
         here, moved = (evaluate(entries, {**numbers, **more}, fifty_digits()) for more in ({}, there))
-        return any(abs(x - y) > COMPUTED * (1 + abs(x)) for x, y in zip(here, moved, strict=True))
+        return any(abs(x - y) > tolerances.COMPUTED * (1 + abs(x)) for x, y in zip(here, moved, strict=True))
 
     def conditions(self) -> Check:
         """All are positive where nothing grows, and one is not where something does."""
@@ -488,7 +480,7 @@ class _Proof:
         grows = float(roots.real.max(initial=-np.inf)) / float(abs(roots).max(initial=1))
         if least > 0 and grows > SURELY:
             return "all hold for other parameters, and a root grows"
-        if least < 0 and (grows < -SURELY or (not conditions.fading and grows < CARRIED)):
+        if least < 0 and (grows < -SURELY or (not conditions.fading and grows < tolerances.CARRIED)):
             return "one does not hold for other parameters, and no root grows"
         return ""
 
@@ -506,9 +498,9 @@ class _Proof:
     @property
     def _wrong_here(self) -> str:
         least = min(evaluate(self.modes.conditions.expressions, self.modes.small.reference.trial, fifty_digits()))
-        if least > 0 and self.growth > SAME_PLACE:
+        if least > 0 and self.growth > tolerances.SAME_PLACE:
             return "all hold, and an eigenvalue grows"
-        fading = least < 0 and self.growth < -SAME_PLACE
+        fading = least < 0 and self.growth < -tolerances.SAME_PLACE
         return "one does not hold, and all eigenvalues fade" if fading else ""
 
     # -- inputs ----------------------------------------------------------------------------------------------
@@ -522,7 +514,7 @@ class _Proof:
             for f in self.modes.transfers:
                 i, j = names.coordinates.index(f.coordinate), names.inputs.index(f.input)
                 found = _value(f.above, s, trial) / _value(f.below, s, trial)
-                if abs(found - answers[i, j]) > SAME_PLACE * abs(answers[:, j]).max():
+                if abs(found - answers[i, j]) > tolerances.SAME_PLACE * abs(answers[:, j]).max():
                     return f"{f.coordinate.name}/{f.input.name}: {found:.6g} against {answers[i, j]:.6g}"
         return ""
 

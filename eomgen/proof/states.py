@@ -19,16 +19,7 @@ from eomgen.mechanics.start import start_state
 from eomgen.model import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.symbolic.expression import Scalar, State, is_zero
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    LARGEST_AT_50,
-    LARGEST_SQUARED,
-    NoValue,
-    Switch,
-    evaluate,
-    fifty_digits,
-    switches_of,
-)
+from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, switches_of, tolerances
 
 CONSISTENT = (11,)  # seeds of states at which all constraints hold
 OWN_START = "own start"
@@ -96,7 +87,7 @@ class States:
     def _satisfied(self, state: State) -> bool:
         """True if constraints that hold identically near the start hold here: past its eyelet a string is too long."""
         try:
-            return all(abs(x) <= COMPUTED for x in evaluate(self._identities, state, fifty_digits()))
+            return all(abs(x) <= tolerances.COMPUTED for x in evaluate(self._identities, state, fifty_digits()))
         except (NoValue, ZeroDivisionError):
             return True
 
@@ -104,8 +95,8 @@ class States:
         """True if the numbers are small enough to leave digits for differences, and not to overflow when squared."""
         symbols = self.system.symbols
         moving, given = (*symbols.q, *symbols.u), symbols.parameters.values()
-        near = all(abs(state[x]) <= LARGEST_AT_50 for x in moving if x in state)
-        return near and all(abs(state[x]) <= LARGEST_SQUARED for x in given if x in state)
+        near = all(abs(state[x]) <= tolerances.LARGEST_AT_50 for x in moving if x in state)
+        return near and all(abs(state[x]) <= tolerances.LARGEST_SQUARED for x in given if x in state)
 
     @cached_property
     def switches(self) -> tuple[Switch, ...]:
@@ -259,7 +250,7 @@ def refuse_open(system: System, state: State) -> None:
     """
     rows = [row for row in system.constraints.rows if not row.identical]
     requested = [*(row.velocity for row in rows), *(row.gap for row in rows if row.gap is not None)]
-    if any(abs(x) > COMPUTED for x in evaluate(requested, state, fifty_digits())):
+    if any(abs(x) > tolerances.COMPUTED for x in evaluate(requested, state, fifty_digits())):
         raise NoValue("the constraints are open")
 
 

@@ -42,7 +42,7 @@ from eomgen.proof.declared_loads import acting_otherwise
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
 from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, single_call, symbols_of
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, FLOAT, FOUR_DIGITS, RANK, SAME_PLACE, evaluate, fifty_digits
+from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
 
 IN_NUMBERS = "floating point"
 MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread
@@ -163,9 +163,9 @@ class _Proof:
         factors = np.zeros(len(least))
         factors[list(each.combination)] = self.numbers(tuple(each.combination.values()))
         size = np.abs(factors) @ np.abs(least) + np.abs(factors).max() * np.abs(least).max(initial=0.0)
-        off = abs(factors @ least - self.one(each.value)) > COMPUTED * size
+        off = abs(factors @ least - self.one(each.value)) > tolerances.COMPUTED * size
         names = " + ".join(self.found.structure.names[j] for j in each.combination)
-        if off or np.any(np.abs(factors @ added) > COMPUTED * np.abs(factors).sum()):
+        if off or np.any(np.abs(factors @ added) > tolerances.COMPUTED * np.abs(factors).sum()):
             return f"the sum of {names}"
         return ""
 
@@ -212,7 +212,7 @@ class _Proof:
                 found = {"axial_force": R @ t, "shear_force": -R @ n, "bending_moment": T}
                 for kind, value in found.items():
                     stated = self._value(piece, kind, x)
-                    if abs(stated - value) > COMPUTED * (moment if kind == "bending_moment" else size):
+                    if abs(stated - value) > tolerances.COMPUTED * (moment if kind == "bending_moment" else size):
                         return f"{kind}({forces.axis.body}, {x:.6g}): {stated:.10g} against {value:.10g}"
         return ""
 
@@ -229,7 +229,7 @@ class _Proof:
             if not mine:
                 return f"x = {x:.6g} lies in no part of '{forces.axis.body}'"
             V, T, size, moment = self._behind(forces, mine[0], x)
-            if abs(V) > COMPUTED * size or abs(T - M) > COMPUTED * moment:
+            if abs(V) > tolerances.COMPUTED * size or abs(T - M) > tolerances.COMPUTED * moment:
                 return f"at x = {x:.6g} of '{forces.axis.body}' V = {V:.6g} and M = {T:.10g} for {M:.10g}"
         for a, b in self._turns(forces):
             if not any(a < x < b for x, _ in stated):
@@ -255,7 +255,7 @@ class _Proof:
                 (x, V)
                 for x in places
                 for V, _, size, _ in (self._behind(forces, piece, x),)
-                if abs(V) > COMPUTED * size
+                if abs(V) > tolerances.COMPUTED * size
             ]
             yield from ((a, b) for (a, V), (b, W) in pairwise(signs) if V * W < 0)
 
@@ -272,7 +272,7 @@ class _Proof:
                 pairs = (("dM/dx", M, np.polyval(V, s)), ("dV/dx", V, q @ n), ("dN/dx", N, -q @ t))
                 for what, series, value in pairs:
                     unit = scale if what == "dM/dx" else scale / (end - start)
-                    if abs(np.polyval(np.polyder(series), s) - value) > COMPUTED * unit:
+                    if abs(np.polyval(np.polyder(series), s) - value) > tolerances.COMPUTED * unit:
                         return f"{what} of '{forces.axis.body}' at x = {start + s:.6g}"
         return ""
 
@@ -291,10 +291,10 @@ class _Proof:
                 for part, places in self._ends(plan, block):
                     for place in places:
                         r, v = np.split(np.array(self._at(plan, (*plan.position(place), *plan.raw_velocity(place)))), 2)
-                        if abs(field[3:] + np.cross(field[:3], r) - v).max() > COMPUTED * (1 + abs(v).max()):
+                        if abs(field[3:] + np.cross(field[:3], r) - v).max() > tolerances.COMPUTED * (1 + abs(v).max()):
                             return f"{part} does not move with its block, {name} released"
             for one, other in combinations([f for f, b in zip(fields, blocks, strict=True) if not b.nodes], 2):
-                if abs(one - other).max() <= COMPUTED * (1 + abs(one).max()):
+                if abs(one - other).max() <= tolerances.COMPUTED * (1 + abs(one).max()):
                     return f"two blocks move alike, {name} released"
         return "" if plans else None
 
@@ -316,7 +316,7 @@ class _Proof:
                 place = ends[0] + part * (ends[1] - ends[0])
                 value = self._by_load(line, body, place)
                 expected = stated[0] + part * (stated[1] - stated[0])
-                if abs(value - expected) > COMPUTED * (1 + abs(value)):
+                if abs(value - expected) > tolerances.COMPUTED * (1 + abs(value)):
                     return f"at ({place[0]:.6g}, {place[1]:.6g}): {expected:.10g} against {value:.10g}"
         return ""
 
@@ -334,8 +334,8 @@ class _Proof:
         i = self.found.system.motion.index[body]
         right = np.zeros(self._G.shape[0])
         right[3 * i : 3 * i + 3] = _wrench(load, place - self._centers[i])
-        scale = 1 / np.maximum(abs(self._G).max(axis=0, initial=0), RANK)
-        x = scale * np.linalg.lstsq(self._G * scale, -right, rcond=RANK)[0]
+        scale = 1 / np.maximum(abs(self._G).max(axis=0, initial=0), tolerances.RANK)
+        x = scale * np.linalg.lstsq(self._G * scale, -right, rcond=tolerances.RANK)[0]
         if line.cut is None:
             return self._named(line.name, x)
         return self._in_section(line, x, (body, place, load))
@@ -355,7 +355,7 @@ class _Proof:
                 return f"{span.name} is drawn from {x[0]:.6g} to {x[-1]:.6g}, not from {due[0]:.6g} to {due[1]:.6g}"
             for part, body in self._stops(span):
                 value, found = self._by_load(line, body, a + part * (b - a)), y[0] + part * (y[-1] - y[0])
-                if abs(value - found) > CARRIED * (1 + abs(value)):
+                if abs(value - found) > tolerances.CARRIED * (1 + abs(value)):
                     return f"in {span.name}: {found:.6g} for {value:.6g}"
         return _misnamed(panel)
 
@@ -463,9 +463,11 @@ class _Diagram:
         if _far((x[0], x[-1]), (start, end), end) or np.any(np.diff(x) < 0) or np.any(curve.places[[0, -1], 1]):
             return f"drawn from {x[0]:.6g} to {x[-1]:.6g}, not from {start:.6g} to {end:.6g}"
         for at, value in zip(x, y * PREFIXES[self.unit.partition("N")[0]], strict=True):
-            inside = min(max(at, start + COMPUTED * (end - start)), end - COMPUTED * (end - start))
+            inside = min(
+                max(at, start + tolerances.COMPUTED * (end - start)), end - tolerances.COMPUTED * (end - start)
+            )
             right, size = self._from_behind(piece, inside)
-            if abs(value - right) > CARRIED * (size + 1):
+            if abs(value - right) > tolerances.CARRIED * (size + 1):
                 return f"at x = {at:.6g} {value:.6g} for {right:.6g}"
         return ""
 
@@ -478,7 +480,7 @@ class _Diagram:
 
 
 def _far(found: tuple[float, float], due: tuple[float, float], size: float) -> bool:
-    return bool(np.any(np.abs(np.subtract(found, due)) > SAME_PLACE * (1 + abs(size))))
+    return bool(np.any(np.abs(np.subtract(found, due)) > tolerances.SAME_PLACE * (1 + abs(size))))
 
 
 def _misnamed(panel: DrawnPanel) -> str:
@@ -486,13 +488,13 @@ def _misnamed(panel: DrawnPanel) -> str:
     corners = np.concatenate([curve.places[[1, -2]] for curve in panel.curves])
     size = np.abs(np.concatenate([curve.places for curve in panel.curves])).max(axis=0)
     for text, place in panel.names:
-        if abs(float(text) - place[1]) > FOUR_DIGITS * abs(place[1]):
+        if abs(float(text) - place[1]) > tolerances.FOUR_DIGITS * abs(place[1]):
             return f"{text} stands at {place[1]:.6g}"
         if not any(_is_on(curve.places[1:-1], place, size) for curve in panel.curves):
             return f"{text} stands next to the curve"
     for corner in corners:
-        near = any(np.all(np.abs(place - corner) <= SAME_PLACE * size) for _, place in panel.names)
-        if abs(corner[1]) > COMPUTED * size[1] and not near:
+        near = any(np.all(np.abs(place - corner) <= tolerances.SAME_PLACE * size) for _, place in panel.names)
+        if abs(corner[1]) > tolerances.COMPUTED * size[1] and not near:
             return f"no number stands at the corner ({corner[0]:.6g}, {corner[1]:.6g})"
     return ""
 
@@ -500,12 +502,12 @@ def _misnamed(panel: DrawnPanel) -> str:
 def _is_on(places: np.ndarray, place: np.ndarray, size: np.ndarray) -> bool:
     """True if a place is on a curve; between two of its points the tolerance is the bend of the curve there."""
     x, y = places.T
-    if not x[0] - SAME_PLACE * size[0] <= place[0] <= x[-1] + SAME_PLACE * size[0]:
+    if not x[0] - tolerances.SAME_PLACE * size[0] <= place[0] <= x[-1] + tolerances.SAME_PLACE * size[0]:
         return False
-    if x[-1] - x[0] <= SAME_PLACE * size[0]:  # a jump
-        return bool(y.min() - SAME_PLACE * size[1] <= place[1] <= y.max() + SAME_PLACE * size[1])
+    if x[-1] - x[0] <= tolerances.SAME_PLACE * size[0]:  # a jump
+        return bool(y.min() - tolerances.SAME_PLACE * size[1] <= place[1] <= y.max() + tolerances.SAME_PLACE * size[1])
     bent = float(np.abs(np.diff(y, 2)).max(initial=0.0)) if len(y) > 2 else 0.0
-    return bool(abs(np.interp(place[0], x, y) - place[1]) <= bent + SAME_PLACE * size[1])
+    return bool(abs(np.interp(place[0], x, y) - place[1]) <= bent + tolerances.SAME_PLACE * size[1])
 
 
 def _wrench(force: np.ndarray, arm: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.reactions import reactions_of
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Check, Tally
-from eomgen.symbolic.numeric import COMPUTED, NoValue
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 
 def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> Iterator[Check]:
@@ -29,7 +29,7 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
                 continue
             size = max(map(abs, state.reactions.values()))
             found, right = state.number(scalar), state.reactions[name]
-            if abs(found - right) > COMPUTED * (1 + size):
+            if abs(found - right) > tolerances.COMPUTED * (1 + size):
                 near = [near.reactions.get(name, right) for near in state.nearby()]
                 wrong = off_by(found, right, near)
                 if wrong and not state.decides(scalar):
@@ -58,7 +58,7 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
         found, right = values[name], start.number(scalar)
         if start.jumps and (found or right):
             return "a force jumps there, and it has no one value"
-        if abs(found - right) <= COMPUTED * (1 + size):
+        if abs(found - right) <= tolerances.COMPUTED * (1 + size):
             return ""
         return off_by(found, right, [near.number(scalar) for near in start.nearby()])
 

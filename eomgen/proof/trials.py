@@ -44,7 +44,7 @@ from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
 from eomgen.symbolic.exact import rounding_decides
 from eomgen.symbolic.expression import Scalar, State, apply, dot, inner, is_zero, matrix_of, transposed, vector_of
-from eomgen.symbolic.numeric import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50, NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 if TYPE_CHECKING:
     from eomgen.codegen import RightHandSide
@@ -146,7 +146,7 @@ class Trials:
         def check(state: State) -> str:
             size = 1 + sum(abs(x) for x in evaluate(scope.rates, state, fifty_digits()))
             for row, value in zip(owners, evaluate(rates, state, fifty_digits()), strict=True):
-                if abs(value) > DIFFERENCE_AT_50 * size:
+                if abs(value) > tolerances.DIFFERENCE_AT_50 * size:
                     return f"row {row.number} of '{row.constraint}' opens"
             return ""
 
@@ -175,7 +175,7 @@ class Trials:
                 spin = spin_between(R_now, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
                 velocity = apply(transposed(R_now), vector_of(rates[9:12]))
                 pairs = zip(twist, (*spin, *velocity), strict=True)
-                if any(abs(a - b) > DIFFERENCE_AT_50 * (1 + abs(a)) for a, b in pairs):
+                if any(abs(a - b) > tolerances.DIFFERENCE_AT_50 * (1 + abs(a)) for a, b in pairs):
                     return f"the twist of '{link.name}' is not the rate of its pose"
             return ""
 
@@ -204,7 +204,7 @@ class Trials:
 
         def slope(f: Scalar, state: State) -> Any:
             early, now, late = (evaluate((f,), {**state, t: state[t] + by}, digits)[0] for by in (-h, 0 * h, h))
-            if abs(late - 2 * now + early) > COMPUTED * h * (1 + abs(now)):
+            if abs(late - 2 * now + early) > tolerances.COMPUTED * h * (1 + abs(now)):
                 raise NoValue("two pieces meet there")
             return (late - early) / (2 * h)
 
@@ -215,7 +215,7 @@ class Trials:
                 pairs += [(slope(f, state), evaluate((g,), state, digits)[0]) for f, g in given.slopes]
                 pairs += [evaluate(pair, state, digits) for pair in given.same]
                 pairs += [evaluate(pair, begun, digits) for pair in given.first]
-                if any(abs(a - b) > DIFFERENCE_AT_50 * (1 + abs(a) + abs(b)) for a, b in pairs):
+                if any(abs(a - b) > tolerances.DIFFERENCE_AT_50 * (1 + abs(a) + abs(b)) for a, b in pairs):
                     return f"'{given.coordinate}' moves differently"
             return ""
 
@@ -237,7 +237,7 @@ class Trials:
             rates = [needed.rates[row.constraint, row.number] for row in closing]
             sizes = [*needed.sizes, *(1 + abs(x) for x in rates)]
             found = zip(own, (*needed.forces, *rates), sizes, strict=True)
-            return [i for i, (x, y, size) in enumerate(found) if abs(x - y) > DIFFERENCE_AT_50 * size]
+            return [i for i, (x, y, size) in enumerate(found) if abs(x - y) > tolerances.DIFFERENCE_AT_50 * size]
 
         def check(state: State) -> str:
             own, needed = evaluate((*forces, *rows), state, fifty_digits()), demand_of(self.equations.system, state)
@@ -325,7 +325,7 @@ class Trials:
     def _holds(self, law: tuple[Scalar, ...], state: State) -> bool:
         """F = factor sqrt(N_1^2 + N_2^2) with the accelerations of the equations of motion."""
         F, factor, *N = map(float, evaluate(law, self._moving(state), fifty_digits()))
-        return math.isclose(F, factor * math.hypot(*N), rel_tol=COMPUTED, abs_tol=COMPUTED)
+        return math.isclose(F, factor * math.hypot(*N), rel_tol=tolerances.COMPUTED, abs_tol=tolerances.COMPUTED)
 
     def tensors(self) -> Iterable[Check]:
         """n . I n is the declared [xx, yy, zz, xy, yz, zx] times the products of n; none where none is declared."""
@@ -345,7 +345,7 @@ class Trials:
             values = iter(evaluate([x for _, *both in pairs for x in both], state, fifty_digits()))
             for name, _, _ in pairs:
                 typed, held = next(values), next(values)
-                if abs(typed - held) > ZERO_AT_50 * (abs(typed) + abs(held)):
+                if abs(typed - held) > tolerances.ZERO_AT_50 * (abs(typed) + abs(held)):
                     return f"that of '{name}'"
             return ""
 
@@ -462,7 +462,7 @@ class Trials:
             rates = floats_of(evaluate(self.equations.system.scope.rates, state, digits))
             dx = rhs(float(state[symbols.t]), x, p, inputs)
             a = floats_of(self._moving(state)[a] for a in symbols.a)
-            return _difference("dx", dx, [*rates, *a], COMPUTED)
+            return _difference("dx", dx, [*rates, *a], tolerances.COMPUTED)
 
         name = f"the emitted code ({rhs.target}) returns the symbols' numbers"
         return self._at_states(name, "floating point", check, moving=True)

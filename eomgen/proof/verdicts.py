@@ -32,7 +32,7 @@ from eomgen.proof.in_numbers import STEP
 from eomgen.proof.instant import NearbyStates
 from eomgen.proof.trials import Trials
 from eomgen.symbolic.expression import SLOPE, Call, Expression, Fraction, Node, parse
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, ITERATED, ZERO_AT_50, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 NEAR, FAR = 5, 2  # states near the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
@@ -155,7 +155,7 @@ class _Again:
     def _reported(self, text: str, state: NumericState) -> Rounded | None:
         """Value of a reported text at a state; None where it has none."""
         try:
-            return Sides(state, self.judged.stands_for, ITERATED).worked(parse(text, references=True))
+            return Sides(state, self.judged.stands_for, tolerances.ITERATED).worked(parse(text, references=True))
         except (ExpressionError, NoValue, ZeroDivisionError, OverflowError, ValueError, KeyError):
             return None
 
@@ -208,7 +208,7 @@ class _Again:
         for length in LENGTHS:
             rough, fine = (_runge_kutta(rate, x0, length, steps) for steps in (STEPS, 2 * STEPS))
             size = np.max(np.abs(fine), axis=0, initial=0.0) + 1e-3
-            if np.all(np.isfinite(fine)) and np.all(np.abs(rough - fine) <= CARRIED * size):
+            if np.all(np.isfinite(fine)) and np.all(np.abs(rough - fine) <= tolerances.CARRIED * size):
                 break
         else:
             raise NoValue("the motion from the start is too fast for the steps of this check")
@@ -253,7 +253,7 @@ class Rounded:
 
 def _at(state: NumericState, judged: JudgedEquation) -> Rounded | None:
     """Left side minus right side at a state; None where it has no value there, or is stated for another piece."""
-    error = CARRIED if judged.is_of_start else ITERATED
+    error = tolerances.CARRIED if judged.is_of_start else tolerances.ITERATED
     sides = Sides(state, judged.stands_for, error)
     try:
         if any(sides.worked(condition).value < 0 for condition in _conditions(judged.up_to)):
@@ -357,7 +357,7 @@ class Sides:
 
     def _known(self, name: str) -> Rounded:
         (value,) = evaluate((self.state.equations.system.scope.names[name],), self._values, fifty_digits())
-        return Rounded(float(value), self.error * (abs(float(value)) + self._scale(name)) + ZERO_AT_50)
+        return Rounded(float(value), self.error * (abs(float(value)) + self._scale(name)) + tolerances.ZERO_AT_50)
 
     def _scale(self, name: str) -> float:
         """Usual size of values of the same kind: smaller ones are known no better than a share of it."""
@@ -400,7 +400,7 @@ class Sides:
             return Rounded(float(self._values[node]), self.error * abs(float(self._values[node])))
         if call.name == SLOPE:
             slope = self._slope(call)
-            return Rounded(slope, COMPUTED * abs(slope) + self.error * self._size(call))
+            return Rounded(slope, tolerances.COMPUTED * abs(slope) + self.error * self._size(call))
         if call.name not in FUNCTIONS:
             raise NoValue(f"'{call.name}' is no function of the outputs")
         function = FUNCTIONS[call.name]
@@ -418,7 +418,7 @@ class Sides:
             )
         if not math.isfinite(value):
             raise NoValue(f"{call} has no value there")
-        return Rounded(value, COMPUTED * abs(value) + self.error * self._size(call))
+        return Rounded(value, tolerances.COMPUTED * abs(value) + self.error * self._size(call))
 
     def _slope(self, call: Call) -> float:
         """Derivative of an energy by a speed, or by a coordinate with all that this moves: a central difference."""

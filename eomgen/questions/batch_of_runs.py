@@ -52,7 +52,7 @@ from eomgen.simulation import (
     refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression, Typed, seconds
-from eomgen.symbolic.numeric import COMPUTED, check_patience, doing
+from eomgen.symbolic.numeric import check_patience, doing, tolerances
 
 OfRuns = Mapping[str, Any]
 """Values by name: arrays, one number a run, or what all runs share."""
@@ -235,7 +235,7 @@ def _in_marches(plan: _Plan, threads: int) -> Reported | None:
         return None
     x0, places, known = ManyStarts(phase).at(p, plan.start)
     known &= base.derived.holds(p, places) & base.derived.is_regular(p, x0)
-    known &= np.max(np.abs(x0), axis=1) < COMPUTED / np.finfo(float).eps
+    known &= np.max(np.abs(x0), axis=1) < tolerances.COMPUTED / np.finfo(float).eps
     which, step = np.flatnonzero(known), with_fields(how.of_one_step(), breakpoints=breakpoints_of(plan.model))
     found = None
     if len(which):

@@ -37,7 +37,7 @@ from eomgen.simulation import (
 )
 from eomgen.study import Study, study_at_rest, study_of
 from eomgen.symbolic.expression import Node, Scalar, depends_on, substituted
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, FINE_RUN, FLOAT, RUNS_AGREE, evaluate, number_of
+from eomgen.symbolic.numeric import FLOAT, evaluate, number_of, tolerances
 
 if TYPE_CHECKING:
     from eomgen.simulation import PhaseModel, PhaseModels, PhaseStart, Stepping
@@ -199,7 +199,7 @@ class MotionFromStart:
         x = first.state({node.name: value for node, value in self.numbers.items()})
         with np.errstate(all="ignore"):
             rates = first.rate(0.0, x)[len(symbols.q) : len(symbols.q) + len(symbols.u)]
-        return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < COMPUTED
+        return not np.all(np.isfinite(rates)) or float(np.max(np.abs(rates), initial=0.0)) < tolerances.COMPUTED
 
     @property
     def _numeric_first(self) -> PhaseModel:
@@ -219,7 +219,7 @@ class MotionFromStart:
             scalar = moment.phase.eliminated(bound.value)
             there = evaluate((scalar,), values, FLOAT)[0]
             size = abs(evaluate((scalar,), {**values, **self.numbers}, FLOAT)[0])
-            if math.isfinite(there) and there < -CARRIED * max(1.0, size):
+            if math.isfinite(there) and there < -tolerances.CARRIED * max(1.0, size):
                 raise RunFailed(
                     f"'{bound.owner}' ends before the instant, on the way from an unstable equilibrium",
                     fix="start from an equilibrium that is stable, or ask earlier",
@@ -283,7 +283,7 @@ def fine_stepping() -> Stepping:
     """Fine tolerances for a motion whose instants are then sought in closed form."""
     from eomgen.simulation import Stepping
 
-    return Stepping(AUTO, FINE_RUN, FINE_RUN, MOST_STEPS)
+    return Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, MOST_STEPS)
 
 
 def _end_of(phase: Study, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]) -> StateAtInstant:
@@ -316,7 +316,7 @@ def _numbers(phase: Study, t: float, values: Mapping[str, float]) -> dict[Node, 
 def _jumps(end: Mapping[str, float], start: Mapping[str, float]) -> bool:
     """True if a velocity jumps between two phases: an impact."""
     common = [name for name in end if name in start]
-    return any(abs(end[name] - start[name]) > CARRIED * (1 + abs(end[name])) for name in common)
+    return any(abs(end[name] - start[name]) > tolerances.CARRIED * (1 + abs(end[name])) for name in common)
 
 
 def _is_moved_by_time(first: PhaseModel, phase: Study) -> bool:
@@ -357,8 +357,8 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         x0=x0,
         p=p,
         method=AUTO,
-        rtol=FINE_RUN,
-        atol=FINE_RUN,
+        rtol=tolerances.FINE_RUN,
+        atol=tolerances.FINE_RUN,
         samples=samples,
         projection=projection_of(system, p, "numpy"),
         nearness=nearness_of(phase.equations, p, system),
@@ -391,7 +391,7 @@ def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
     with np.errstate(all="ignore"):
         over = function.many(run.t, run.x, parameters_in_numbers(motion))
     worst = np.max(over, axis=1)
-    out = worst > COMPUTED * (1 + np.max(np.abs(over), initial=0.0))
+    out = worst > tolerances.COMPUTED * (1 + np.max(np.abs(over), initial=0.0))
     if not out.any():
         return None
     k = max(int(np.argmax(out)), 1)
@@ -439,7 +439,7 @@ def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant)
 
 
 def _apart(x: float, y: float) -> bool:
-    return not abs(x - y) <= RUNS_AGREE * (1 + abs(y))
+    return not abs(x - y) <= tolerances.RUNS_AGREE * (1 + abs(y))
 
 
 def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
@@ -455,7 +455,7 @@ def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
         t, x = (run.run.t, run.run.x) if track is None else track.all
         with np.errstate(all="ignore"):
             values = phase.functions.function((scalar,)).many(t, phase.functions.inner(x), phase.p)[:, 0]
-        sure = values[np.abs(values) > CARRIED * np.max(np.abs(values), initial=0.0)]
+        sure = values[np.abs(values) > tolerances.CARRIED * np.max(np.abs(values), initial=0.0)]
         if np.any(sure > 0) and np.any(sure < 0):
             return f"'{condition.text}' holds before t = {run.run.end:.10g} s"
     return ""

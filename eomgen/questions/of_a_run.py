@@ -35,7 +35,7 @@ from eomgen.model import (
 from eomgen.proof import Check, Tally, differing
 from eomgen.simulation import DenseMotion, OutputColumns, PhaseRun, Plan, dense_motion
 from eomgen.symbolic.expression import Call, Expression, parse, parse_typed_equation
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, SAME_PERIOD, SAME_PLACE, SOLVED, ChebyshevPieces, resolved_curve
+from eomgen.symbolic.numeric import ChebyshevPieces, resolved_curve, tolerances
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ class WholeRun:
         found = self.of(output)
         if not found.t:
             return f"{reported:.10g} for no event"
-        before = sum(end < found.t[0] * (1 - SAME_PLACE) for _, end in met)
+        before = sum(end < found.t[0] * (1 - tolerances.SAME_PLACE) for _, end in met)
         if before >= n:
             return f"{reported:.10g} at t = {found.t[0]:.6g} s, and it is met {before} times before"
         return self._events_against_samples(output, reported)
@@ -145,7 +145,7 @@ class WholeRun:
         start = float(self._sampled(output.value)[0][1][0])
         if reported is None:
             return f"no value for {start:.10g}" if math.isfinite(start) else ""
-        return differing(reported, start, CARRIED)
+        return differing(reported, start, tolerances.CARRIED)
 
     def _otherwise_reported(self, output: Output, calls: Sequence[Call], reported: float | None) -> str:
         """Difference between a reported value and the formula of the functions of the run; ""."""
@@ -154,12 +154,12 @@ class WholeRun:
             return "" if found is reported or isinstance(found, tuple) else f"{reported} for {found}"
         values = (y for call in calls for _, y in self._sampled(formula_at(call, 0)))
         size = max(abs(found), self._duration, *(float(np.max(np.abs(y), initial=0.0)) for y in values))
-        return "" if abs(reported - found) <= CARRIED * size else f"{reported:.10g} for {found:.10g}"
+        return "" if abs(reported - found) <= tolerances.CARRIED * size else f"{reported:.10g} for {found:.10g}"
 
     def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
         """Intervals between samples [s] in which the difference of the sides of a condition changes its sign."""
         curves = self._sampled(condition.left - condition.right)
-        sure = CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
+        sure = tolerances.CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
         found: list[tuple[float, float]] = []
         for t, y in curves:
             known = np.flatnonzero(np.abs(y) > sure)
@@ -196,7 +196,7 @@ class WholeRun:
             return _not_at(curves, reported, sign * extreme, size)
         beyond = extreme - sign * reported
         rise = max(float(np.max(np.abs(np.diff(y)), initial=0.0)) for _, y in curves)
-        if beyond > CARRIED * size or -beyond > rise + CARRIED * size:
+        if beyond > tolerances.CARRIED * size or -beyond > rise + tolerances.CARRIED * size:
             return f"{reported:.10g} for the sample {sign * extreme:.10g}"
         return _not_at(curves, when[0], reported, size)
 
@@ -209,7 +209,7 @@ class WholeRun:
         pairs = [(t, y**power) for t, y in curves]
         size, count = max(float(np.max(np.abs(y))) for _, y in pairs), sum(len(y) for _, y in pairs)
         fine, coarse = (sum(float(np.trapezoid(y[::k], t[::k])) for t, y in pairs) / self._duration for k in (1, 2))
-        unsure = 4 * abs(fine - coarse) + CARRIED * size + size * len(pairs) / count
+        unsure = 4 * abs(fine - coarse) + tolerances.CARRIED * size + size * len(pairs) / count
         return (
             f"{reported:.10g}, squared {reported**2:.10g}, for {fine:.10g}"
             if abs(reported**power - fine) > unsure
@@ -321,7 +321,7 @@ class WholeRun:
                 f"'{formula.text}' passes its mean upward {len(t)} times: no period", fix="a longer run"
             )
         apart = np.diff(t)
-        if np.max(apart) - np.min(apart) > SAME_PERIOD * np.mean(apart):
+        if np.max(apart) - np.min(apart) > tolerances.SAME_PERIOD * np.mean(apart):
             low, high = np.min(apart), np.max(apart)
             what = f"'{formula.text}' has no period: from {low:.6g} to {high:.6g} s between upward passages of its mean"
             raise DerivationError(what, fix="choose a quantity that repeats, or a run after it has settled")
@@ -362,10 +362,10 @@ class WholeRun:
             start, end = run.here.t, run.run.end
             first, last = (float(pieces.g(np.array([t]))[0]) for t in (start, end))
             size = max(abs(pieces.extreme(sign)[0]) for sign in (1, -1))
-            floor = COMPUTED * max(size, SOLVED)
+            floor = tolerances.COMPUTED * max(size, tolerances.SOLVED)
             if before * first < 0 and abs(first) > floor:
                 found.append((k - 1, float(self.runs[k - 1].run.end)))
-            near = COMPUTED * max(1.0, end - start)
+            near = tolerances.COMPUTED * max(1.0, end - start)
             found += [(k, t) for t, _ in pieces.zeros() if t - start > near and end - t > near]
             if abs(last) <= floor < size:
                 found.append((k, end))
@@ -463,7 +463,7 @@ def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) ->
         k = int(np.searchsorted(t, when))
         near = y[max(0, k - NEAREST) : k + NEAREST]
         if len(near) and t[0] <= when <= t[-1]:
-            slack = float(np.max(near) - np.min(near)) + CARRIED * size
+            slack = float(np.max(near) - np.min(near)) + tolerances.CARRIED * size
             if not (np.isfinite(slack) and not np.min(near) - slack <= value <= np.max(near) + slack):
                 return ""
     return f"at t = {when:.10g} s it is not {value:.10g}"

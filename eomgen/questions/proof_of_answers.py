@@ -50,18 +50,7 @@ from eomgen.questions.velocities import state_of
 from eomgen.simulation import Trajectory
 from eomgen.study import Study
 from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    PIECEWISE,
-    RUNS_AGREE,
-    SAME_PLACE,
-    NoValue,
-    evaluate,
-    fifty_digits,
-    number_of,
-    numbers_of,
-)
+from eomgen.symbolic.numeric import PIECEWISE, NoValue, evaluate, fifty_digits, number_of, numbers_of, tolerances
 
 WAY = 1.0  # s, of the motion along which functions of the configuration are checked
 ROWS = 21  # samples of it
@@ -334,7 +323,7 @@ class _Proof:
         there = np.array([moment.numbers[node] for node in (*symbols.q, *symbols.u)])
         apart = np.abs(run.x[-1] - there) / (1 + np.max(np.abs(run.x), axis=0, initial=0.0))
         k = int(np.argmax(apart)) if len(apart) else 0
-        if len(apart) and not apart[k] <= RUNS_AGREE:
+        if len(apart) and not apart[k] <= tolerances.RUNS_AGREE:
             name = (*symbols.q, *symbols.u)[k].name
             return f"{name} = {there[k]:.10g} for {run.x[-1][k]:.10g} at t = {t:.10g} s"
         return self._too_late(motion, output, run, t)
@@ -349,8 +338,8 @@ class _Proof:
         with np.errstate(all="ignore"):
             values = function.many(run.t, run.x, parameters_in_numbers(motion))[:, 0]
         size = float(np.max(np.abs(values), initial=0.0))
-        before = [float(v) for v, when in zip(values, run.t, strict=True) if when < t * (1 - SAME_PLACE)]
-        signs = {v > 0 for v in before if abs(v) > CARRIED * size}
+        before = [float(v) for v, when in zip(values, run.t, strict=True) if when < t * (1 - tolerances.SAME_PLACE)]
+        signs = {v > 0 for v in before if abs(v) > tolerances.CARRIED * size}
         smooth = np.max(np.abs(np.diff(values)), initial=0.0) < size
         return f"'{condition.text}' holds before t = {t:.10g} s" if len(signs) > 1 and smooth else ""
 
@@ -395,7 +384,7 @@ class _Proof:
             right = in_unit(state.value_of(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
             reported = in_unit(number_of(scalar, here), output)
-            wrong = differing(reported, right, CARRIED) and off_by(
+            wrong = differing(reported, right, tolerances.CARRIED) and off_by(
                 reported, right, [in_unit(near.value_of(output.value), output) for near in state.nearby()]
             )
             if wrong:
@@ -407,7 +396,7 @@ def _left_at_rest(state: NumericState) -> str:
     """Message if the forces are not in equilibrium while nothing moves; ""."""
     numbers = PhaseMotion(state.equations).numbers(TriedState(0.0, state.x, state.p))
     left, where = numbers.left(np.zeros(len(state.x)))
-    return f"{where} is left with {left:.1e} of its terms" if left > COMPUTED else ""
+    return f"{where} is left with {left:.1e} of its terms" if left > tolerances.COMPUTED else ""
 
 
 def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest | None) -> str:
@@ -437,7 +426,7 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
         return ""  # near the parameters' own values it has no value
     state = NumericState(moment.phase.equations, p, numbers)
     gaps = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
-    if any(abs(state.number(gap)) > COMPUTED * (1 + max(map(abs, numbers.values()))) for gap in gaps):
+    if any(abs(state.number(gap)) > tolerances.COMPUTED * (1 + max(map(abs, numbers.values()))) for gap in gaps):
         return "its closed form holds by coincidence: near these parameters the constraints are not satisfied"
     if condition is None:
         left = _left_at_rest(state)
@@ -511,7 +500,7 @@ def _by_matrices(found: Linearization, system: System, output: Output, value: fl
 
     right = number_of(output.value.evaluate(system.scope.names, second), known_exactly(system.scope))
     frequency = any(call.name == "frequency" for call in output.value.calls)
-    return differing(value, in_unit(right, output), SAME_PLACE if frequency else COMPUTED)
+    return differing(value, in_unit(right, output), tolerances.SAME_PLACE if frequency else tolerances.COMPUTED)
 
 
 def _rates(found: Linearization) -> list[float]:

@@ -56,7 +56,7 @@ from eomgen.simulation import (
     through,
 )
 from eomgen.symbolic.expression import Expression, Typed, as_expression, seconds, single_call
-from eomgen.symbolic.numeric import SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 SAMPLES = 101
 MOST_BASES = 4  # derivations that are tried first at other values, before the model is derived again
@@ -481,16 +481,18 @@ def _stretches(controllers: Mapping[str, Controller], time: float) -> Iterator[t
     periods = {name: each.every for name, each in controllers.items() if each.every is not None}
     if sum(time / every for every in periods.values()) > MOST_SAMPLES:
         raise UsageError(f"more than {MOST_SAMPLES} samples of controllers", fix="a shorter run, or a longer `every`")
-    instants = {0.0} | {k * every for every in periods.values() for k in range(1, math.ceil(time / every - SOLVED))}
+    instants = {0.0} | {
+        k * every for every in periods.values() for k in range(1, math.ceil(time / every - tolerances.SOLVED))
+    }
     marks: list[float] = []
     for t in sorted(instants):
-        if not marks or t - marks[-1] > SOLVED * time:
+        if not marks or t - marks[-1] > tolerances.SOLVED * time:
             marks.append(t)
     for start, end in zip(marks, [*marks[1:], time], strict=True):
         due = [
             name
             for name, every in periods.items()
-            if abs(start / every - round(start / every)) * every <= SOLVED * time
+            if abs(start / every - round(start / every)) * every <= tolerances.SOLVED * time
         ]
         yield start, end, due
 

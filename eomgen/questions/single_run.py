@@ -61,7 +61,7 @@ from eomgen.simulation import (
     with_reactions,
 )
 from eomgen.symbolic.expression import Expression, Typed
-from eomgen.symbolic.numeric import COMPUTED, NoValue, PatienceEnded, doing, keep_what_there_is
+from eomgen.symbolic.numeric import NoValue, PatienceEnded, doing, keep_what_there_is, tolerances
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
@@ -358,7 +358,7 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
         return
     phase = models.of(here.configuration)
     rates, accelerations = np.split(np.abs(phase.rate(here.t, phase.state(here.values))), [len(phase.coordinates)])
-    if np.max(rates, initial=0.0) <= COMPUTED and np.max(accelerations, initial=0.0) > COMPUTED:
+    if np.max(rates, initial=0.0) <= tolerances.COMPUTED and np.max(accelerations, initial=0.0) > tolerances.COMPUTED:
         what = f"it starts at rest in {fork.words}: forces move it away, and nothing determines on which branch"
         raise DerivationError(
             what, f"constraints.{fork.constraints[0]}", "give it start speeds, or start near that position"

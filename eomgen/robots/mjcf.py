@@ -52,7 +52,7 @@ from eomgen.robots.tables import (
 )
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
 from eomgen.symbolic.expression import IDENTITY
-from eomgen.symbolic.numeric import SLOPE_AT_REST
+from eomgen.symbolic.numeric import tolerances
 
 TABLES = ("points", "coordinates", "speeds", "inputs", "bodies", "constraints", "forces")
 
@@ -274,7 +274,7 @@ def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
         away = [
             f"{one} = {signed_sum([(Decimal(1), q)], -at)}" for one, q, at in zip((x, y, z), places, rest, strict=False)
         ]
-        head = "; ".join([*away, f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + {SLOPE_AT_REST:g})"])
+        head = "; ".join([*away, f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + {tolerances.SLOPE_AT_REST:g})"])
         force = [f"{head}; ({law(n)})*{one}" for one in (x, y, z)]
         r.found["forces"][r.forces.new(f"{r.joint[j]}_spring")] = {
             "kind": "force",
@@ -294,7 +294,7 @@ def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
     head = "; ".join(
         [
             *(f"{one} = {text}" for one, text in zip((w, x, y, z), turn, strict=True)),
-            f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + {SLOPE_AT_REST:g})",
+            f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + {tolerances.SLOPE_AT_REST:g})",
             f"{a} = 2*atan2({w}*{n}, {w}^2)/{n}",
         ]
     )

@@ -28,7 +28,7 @@ from eomgen.robots.tables import (
     turned_by,
 )
 from eomgen.symbolic.expression import IDENTITY, apply
-from eomgen.symbolic.numeric import RANK_NEARBY, ROUNDING
+from eomgen.symbolic.numeric import tolerances
 
 CONNECT, WELD, JOINT, TENDON = range(4)  # the numbers of MuJoCo: of equalities,
 SITE = 6  # of the objects that they connect
@@ -181,7 +181,9 @@ def _weld(r: CompiledRobot, first: int, second: int, raw: str, data: Any) -> Ent
     away = back @ (state.xpos[second] + there @ data[:3] - state.xpos[first])
     turn = mujoco_matrix(mujoco, data[6:10])
     turns = data[TURNING] != 0  # else it holds a point alone
-    if abs(away - data[3:6]).max() > ROUNDING or (turns and abs(back @ there - turn).max() > ROUNDING):
+    if abs(away - data[3:6]).max() > tolerances.ROUNDING or (
+        turns and abs(back @ there - turn).max() > tolerances.ROUNDING
+    ):
         return None
     points = [r.point(first, raw, data[3:6]), r.point(second, raw, data[:3])]
     return {"kind": "clamp" if turns else "pin", "points": points}
@@ -192,7 +194,7 @@ def _weld_of_sites(r: CompiledRobot, first: int, second: int, data: Any) -> Entr
     _, state = _at_start(r)
     turns, apart = data[TURNING] != 0, abs(state.site_xmat[first] - state.site_xmat[second]).max()
     away = abs(state.site_xpos[first] - state.site_xpos[second]).max()
-    if away > ROUNDING or (turns and apart > ROUNDING):
+    if away > tolerances.ROUNDING or (turns and apart > tolerances.ROUNDING):
         return None
     return {"kind": "clamp" if turns else "pin", "points": [r.sites[first], r.sites[second]]}
 
@@ -225,13 +227,13 @@ def start_of(r: CompiledRobot) -> Any:
         mujoco.mj_fwdPosition(own, state)
         rows = state.efc_type == mujoco.mjtConstraint.mjCNSTR_EQUALITY
         gaps = state.efc_pos[rows]
-        if abs(gaps).max(initial=0) < ROUNDING / 10:
+        if abs(gaps).max(initial=0) < tolerances.ROUNDING / 10:
             if step:
                 moved = [r.joint[j] for j in range(m.njnt) if state.qpos[m.jnt_qposadr[j]] != m.qpos0[m.jnt_qposadr[j]]]
                 r.leave("start where constraints gape", moved, "the start is moved to where they close")
             return state.qpos.copy() if step else m.qpos0
         J = state.efc_J.reshape(-1, m.nv)[rows]
-        mujoco.mj_integratePos(own, state.qpos, -np.linalg.lstsq(J, gaps, rcond=RANK_NEARBY)[0], 1)
+        mujoco.mj_integratePos(own, state.qpos, -np.linalg.lstsq(J, gaps, rcond=tolerances.RANK_NEARBY)[0], 1)
     return m.qpos0
 
 

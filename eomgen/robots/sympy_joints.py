@@ -50,7 +50,7 @@ from eomgen.symbolic.expression import (
     parse,
     symbols_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, NoValue, Work, evaluate
+from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, tolerances
 from eomgen.symbolic.print import scalar_from_sympy, text_size, to_text, with_definitions
 
 
@@ -517,7 +517,7 @@ def _refuse_misread(scalars: Sequence[Scalar], found: Sequence[Any]) -> None:
         with suppress(NoValue, ExpressionError, ArithmeticError, ValueError):  # a root of a negative number there
             (due,) = evaluate((x,), state, FLOAT)
             read = float(parse(text, longest=LONGEST_WITH_PARTS).evaluate(names))
-            if abs(read - due) > COMPUTED * (1 + abs(due)):
+            if abs(read - due) > tolerances.COMPUTED * (1 + abs(due)):
                 what = f"a formula of sympy is written as another one, {read:.9g} for {due:.9g}: {text[:60]}"
                 raise DerivationError(what, fix="this is a mistake of eomgen: please report it")
 

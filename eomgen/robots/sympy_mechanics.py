@@ -53,7 +53,7 @@ from eomgen.symbolic.expression import (
     times,
     transposed,
 )
-from eomgen.symbolic.numeric import FLOAT, RANK_NEARBY, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, unique_solution, vanishes
 
@@ -238,7 +238,10 @@ class _Energies:
         rng = Random(1)
         state = {x: rng.uniform(0.5, 1.5) for x in symbols_of([*rows])}
         numbers = np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), len(u))
-        ranks = [0, *(int(np.linalg.matrix_rank(numbers[: k + 1], tol=RANK_NEARBY)) for k in range(len(rows)))]
+        ranks = [
+            0,
+            *(int(np.linalg.matrix_rank(numbers[: k + 1], tol=tolerances.RANK_NEARBY)) for k in range(len(rows))),
+        ]
         chosen = [k for k in range(len(rows)) if ranks[k + 1] > ranks[k]]
         fix = "give one for each coordinate"
         if len(chosen) != len(u):
@@ -393,6 +396,6 @@ def _beyond(q: list[Node], w: list[Node], rates: Sequence[Scalar], velocities: S
     rng = Random(1)
     state = {x: rng.uniform(0.5, 1.5) for x in symbols_of(flat)}
     found = np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(J), len(w))
-    ranks = [int(np.linalg.matrix_rank(found[:k], tol=RANK_NEARBY)) if k else 0 for k in range(len(J) + 1)]
+    ranks = [int(np.linalg.matrix_rank(found[:k], tol=tolerances.RANK_NEARBY)) if k else 0 for k in range(len(J) + 1)]
     first = len(rates)
     return [k for k in range(len(velocities)) if ranks[first + k + 1] > ranks[first + k]]

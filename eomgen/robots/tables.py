@@ -17,7 +17,7 @@ from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
 from eomgen.model import rotation_of
 from eomgen.symbolic.expression import IDENTITY, Fraction, apply, plus, product, rotation, transposed
-from eomgen.symbolic.numeric import ROUNDED_AWAY, SAME_TURN, check_patience
+from eomgen.symbolic.numeric import check_patience, tolerances
 
 # -------- numbers ---------------------------------------------------------------------------------------------
 # Decimals of robot files: places, turns and inertias by 40 digits, written with 17; angles that are parts of pi.
@@ -51,7 +51,7 @@ def decimal_of_double(x: float) -> Decimal:
 
 def computed(x: Decimal) -> Decimal:
     """Computed number, rounded to the digits that are written; a rounding error is 0."""
-    if abs(x) < ROUNDED_AWAY:
+    if abs(x) < tolerances.ROUNDED_AWAY:
         return ZERO
     return Context(prec=WRITTEN).plus(x).normalize()
 
@@ -83,7 +83,7 @@ def sine_cosine(angle: Decimal) -> tuple[Any, Any]:
     with mpmath.workdps(DIGITS + 5):
         x = mpmath.mpf(str(angle)) if part is None else mpmath.pi * part.numerator / part.denominator
         pair = [Decimal(mpmath.nstr(y, DIGITS)) for y in (mpmath.sin(x), mpmath.cos(x))]
-    sine, cosine = (ZERO if abs(y) < ROUNDED_AWAY else y for y in pair)
+    sine, cosine = (ZERO if abs(y) < tolerances.ROUNDED_AWAY else y for y in pair)
     return sine, cosine
 
 
@@ -142,7 +142,7 @@ def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
     with localcontext(EXACTLY):
         w, *v = quaternion
         length = sum((x * x for x in v), ZERO).sqrt()
-        if length < SAME_TURN:
+        if length < tolerances.SAME_TURN:
             return []
         largest = max(v, key=abs)
         axis = [_plain(x / abs(largest)) for x in v]
@@ -160,7 +160,7 @@ def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
 def _plain(x: Decimal) -> Decimal:
     """Decimal with 6 digits where that is right to 14 digits; else as `computed`."""
     short = Context(prec=6).plus(x)
-    return short.normalize() if abs(short - x) < SAME_TURN else computed(x)
+    return short.normalize() if abs(short - x) < tolerances.SAME_TURN else computed(x)
 
 
 def inertia_in(R: Nine, tensor: Nine) -> Nine:

@@ -41,7 +41,7 @@ from eomgen.robots.tables import (
 )
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression import IDENTITY, cross
-from eomgen.symbolic.numeric import NOT_NEGATIVE
+from eomgen.symbolic.numeric import tolerances
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
@@ -105,7 +105,7 @@ def massive(inertial: XmlElement | None) -> Entries:
     if tensor is not None:
         entries = [tensor.number(key, "0") for key in ("ixx", "iyy", "izz", "ixy", "iyz", "ixz")]
         for k, key in enumerate(("ixx", "iyy", "izz")):
-            if entries[k] < -NOT_NEGATIVE:
+            if entries[k] < -tolerances.NOT_NEGATIVE:
                 raise ModelError(
                     f"a negative moment of inertia: {entries[k]}", tensor.where, f"give {key} of 0 or more"
                 )

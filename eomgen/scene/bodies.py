@@ -37,7 +37,7 @@ from eomgen.symbolic.expression import (
     sqrt,
     times,
 )
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 
 def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
@@ -81,7 +81,7 @@ def wedge_of(system: System, link: BodyLink) -> PolygonForm | None:
         height, fall = dot(up, minus(seat, own)), dot(up, along)
         if motion.moves(seat) or motion.moves(along):
             continue
-        if all(abs(x) > COMPUTED for x in evaluate((height, fall), parameters_as_drawn(system), FLOAT)):
+        if all(abs(x) > tolerances.COMPUTED for x in evaluate((height, fall), parameters_as_drawn(system), FLOAT)):
             toe = minus(seat, times(over(height, fall), along))
             top = plus(seat, times(Fraction(1, 8), minus(seat, toe)))
             heel = minus(top, times(over(dot(up, minus(top, own)), dot(up, up)), up))
@@ -185,7 +185,7 @@ def hull(places: Sequence[tuple[float, ...]]) -> list[int]:
     for way in (order, order[::-1]):
         chain: list[int] = []
         for k in way:
-            while len(chain) > 1 and _turn(places[chain[-2]], places[chain[-1]], places[k]) <= COMPUTED:
+            while len(chain) > 1 and _turn(places[chain[-2]], places[chain[-1]], places[k]) <= tolerances.COMPUTED:
                 chain.pop()
             chain.append(k)
         chains.append(chain[:-1])

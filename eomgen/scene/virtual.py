@@ -32,7 +32,7 @@ from eomgen.scene.scene import Mark, Scene
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.symbolic.expression import ZERO, Node, Pose, Scalar, Vector, cross, is_zero, plus, times, transposed
-from eomgen.symbolic.numeric import FLOAT, WIDE_STEP, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 SWING = 0.12  # of the extent, by which the point that moves most is swung out
 IN_SIGHT = 0.5  # of the extent: centres of rotation farther outside are not drawn
@@ -72,8 +72,8 @@ class VirtualDisplacement:
 
     def along(self, phases: np.ndarray) -> SceneNumbers:
         """Frames at phases of the swing; phase 0 is the structure at rest [rad]."""
-        step = np.array([0.0, WIDE_STEP])
-        size = swing_of(SceneNumbers(self.scene, self._frames(step)), WIDE_STEP)
+        step = np.array([0.0, tolerances.WIDE_STEP])
+        size = swing_of(SceneNumbers(self.scene, self._frames(step)), tolerances.WIDE_STEP)
         return SceneNumbers(self.scene, self._frames(size * np.sin(phases)))
 
     @cached_property

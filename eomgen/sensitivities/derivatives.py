@@ -60,7 +60,7 @@ from eomgen.symbolic.expression import (
     substituted,
     tangent,
 )
-from eomgen.symbolic.numeric import COMPUTED, RANK_NEARBY, NoValue, Work, doing, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, Work, doing, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
 
 RHS, STATE, FREQUENCIES, REST = "rhs", "state", "frequencies", "equilibrium"
@@ -196,7 +196,10 @@ class Sensitivity(Result):
     def _as_reported(self, pair: tuple[str, str], found: Quantity) -> bool:
         due = self.in_si[pair]
         return found.value is not None and math.isclose(
-            found.value * parse_unit(found.unit or "1").size, due, rel_tol=COMPUTED, abs_tol=COMPUTED**2
+            found.value * parse_unit(found.unit or "1").size,
+            due,
+            rel_tol=tolerances.COMPUTED,
+            abs_tol=tolerances.COMPUTED**2,
         )
 
 
@@ -447,7 +450,7 @@ class _Asking:
         constraints = [row.velocity for row in reference.system.constraints.closing]
         u = reference.system.symbols.u
         J = Numbers(reference.numbers).array(jacobian(constraints, u), len(u))
-        free = len(Split.of(J, smallest=RANK_NEARBY).free)
+        free = len(Split.of(J, smallest=tolerances.RANK_NEARBY).free)
         return bool(K.shape == (free, free) and np.linalg.matrix_rank(K) == free)
 
     def _of_small_motions(self, formula: Expression, name: str) -> Derived:

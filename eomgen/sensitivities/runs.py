@@ -23,19 +23,7 @@ from eomgen.questions import requested_of, solve
 from eomgen.simulation import breakpoints_of, changing, has_phases, solver_of, step
 from eomgen.study import Study
 from eomgen.symbolic.expression import Expression, Node, Scalar, depends_on, order, substituted, tangent
-from eomgen.symbolic.numeric import (
-    BESIDE,
-    CARRIED,
-    COMPUTED,
-    COORDINATE_AT_50,
-    FINE_RUN,
-    PARAMETER_STEP,
-    RANK,
-    check_patience,
-    evaluate,
-    fifty_digits,
-    floats_of,
-)
+from eomgen.symbolic.numeric import check_patience, evaluate, fifty_digits, floats_of, tolerances
 
 # -------- along a run -----------------------------------------------------------------------------------------
 # Equations, changes of parameters and start -> change along a motion: the variational equations, integrated with it.
@@ -135,7 +123,7 @@ def _integrated(f, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[f
     """
     end = float(instants[-1])
     found = [x0 for t in instants if t <= 0]
-    solver = solver_of("DOP853", f, (0.0, end), x0, rtol=FINE_RUN, atol=FINE_RUN)
+    solver = solver_of("DOP853", f, (0.0, end), x0, rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN)
     while len(found) < len(instants):
         check_patience()
         step(solver, breakpoints, end)
@@ -182,7 +170,7 @@ class ChangingState:
             (numbers, seeds), held = self._moving, self._rows
         _refuse_corners((*scalars, *held), numbers, seeds)
         values = evaluate((*scalars, *tangent(tuple(scalars), seeds)), numbers, fifty_digits())
-        found = [0.0 if abs(x) < COORDINATE_AT_50 else x for x in floats_of(values)]
+        found = [0.0 if abs(x) < tolerances.COORDINATE_AT_50 else x for x in floats_of(values)]
         return list(zip(found[: len(scalars)], found[len(scalars) :], strict=True))
 
     def formula(self, formula: Expression) -> tuple[float, float]:
@@ -203,7 +191,7 @@ class ChangingState:
         e, symbols = self.phase.equations, self.phase.system.symbols
         n, k, graph = len(e.M), len(e.J), self.phase.system.scope.graph
         M, J = np.split(Numbers(self.numbers).array((*e.M, *e.J), n), [n])
-        inverse = np.linalg.pinv(np.block([[M, -J.T], [J, np.zeros((k, k))]]), rcond=RANK)
+        inverse = np.linalg.pinv(np.block([[M, -J.T], [J, np.zeros((k, k))]]), rcond=tolerances.RANK)
         unknowns, rows = (*symbols.a, *symbols.lam), self._rows
         numbers = dict(self.numbers) | dict.fromkeys(unknowns, fifty_digits().number(0))
         for _ in range(ROUNDS):
@@ -236,10 +224,10 @@ def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seed
     rates = dict(zip(seeds, evaluate(tuple(seeds.values()), numbers, digits), strict=True))
     found = evaluate((*scalars, *tangent(tuple(scalars), seeds)), numbers, digits)
     for side in (-1, 1):
-        step = side * digits.number(1) * BESIDE
+        step = side * digits.number(1) * tolerances.BESIDE
         nearby = evaluate(scalars, {**numbers, **{x: numbers[x] + step * rate for x, rate in rates.items()}}, digits)
         for here, there, slope in zip(found, nearby, found[len(scalars) :], strict=False):
-            if abs((there - here) / step - slope) > CARRIED * (1 + abs(slope)):
+            if abs((there - here) / step - slope) > tolerances.CARRIED * (1 + abs(slope)):
                 raise DerivationError("it, or a force, has a corner or a jump there", fix="take a state near it")
 
 
@@ -290,7 +278,7 @@ def checks_of(model: Model, found: Derivatives) -> Certificate:
 def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> list[Check]:
     """Checks of the derivatives by one name."""
     value = _value(model, to)
-    h = PARAMETER_STEP * (abs(value) or 1.0)
+    h = tolerances.PARAMETER_STEP * (abs(value) or 1.0)
     computed = _computed(model, of, to) if reported.run is None else _run(model, of, to, reported.run)
     names = [f"d({text})/d({to})" for text in of]
     try:
@@ -301,9 +289,9 @@ def _by_one(model: Model, of: Sequence[str], to: str, reported: Derivatives) -> 
     for k, (text, name) in enumerate(zip(of, names, strict=True)):
         low2, low, high, high2 = (each[k] for each in f)
         coarse, fine = (high2 - low2) / (4 * h), (8 * (high - low) - (high2 - low2)) / (12 * h)
-        share = COMPUTED if reported.run is None else CARRIED
+        share = tolerances.COMPUTED if reported.run is None else tolerances.CARRIED
         own, noise = reported.slope(text, to), share * np.max(np.abs(high), initial=0.0)
-        trust = np.abs(fine - coarse) + noise / h + COMPUTED * np.max(np.abs(own))
+        trust = np.abs(fine - coarse) + noise / h + tolerances.COMPUTED * np.max(np.abs(own))
         if not np.all(np.isfinite(fine)):
             found.append(unchecked(name, "without a value nearby", HOW))
             continue
@@ -345,7 +333,9 @@ def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], lis
 def _run(model: Model, of: Sequence[str], to: str, run: ChangingRun) -> Callable[[float], list[np.ndarray]]:
     """value -> each formula along the motion."""
     requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
-    again = simulator(replace(model, outputs=Table[Output](requested)), rtol=FINE_RUN, atol=FINE_RUN)
+    again = simulator(
+        replace(model, outputs=Table[Output](requested)), rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN
+    )
 
     def found(value: float) -> list[np.ndarray]:
         parameters = {to: value} if to in model.parameters else None

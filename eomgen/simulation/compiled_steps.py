@@ -39,7 +39,7 @@ from eomgen.simulation.many_runs import (
 from eomgen.simulation.phase_model import ExactSlope
 from eomgen.simulation.solvers import AUTO, MOST_PIECES, SEEN, TAYLOR, LateSlope, stiff_words
 from eomgen.symbolic.expression import Node, order
-from eomgen.symbolic.numeric import FLOAT, SOLVED, Arithmetic
+from eomgen.symbolic.numeric import FLOAT, Arithmetic, tolerances
 
 COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
 FEW = 8  # steps in the first call
@@ -449,7 +449,7 @@ class HeyokaSteps:
 
     def advance(self, _: int) -> tuple[int, bool]:
         """(1, False), or no step where it failed."""
-        k = bisect_right(self._breakpoints, self.t + SOLVED * max(1.0, abs(self.t)))
+        k = bisect_right(self._breakpoints, self.t + tolerances.SOLVED * max(1.0, abs(self.t)))
         bound = min([self._end, *self._breakpoints[k : k + 1]])
         outcome, length = self._taylor.step(bound - self.t, write_tc=True)
         self.nfev += 1

@@ -30,7 +30,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
 from eomgen.mechanics.kinematics import branches_of, locks_of
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression import Scalar
-from eomgen.symbolic.numeric import NEARLY_SINGULAR, Newton, dense
+from eomgen.symbolic.numeric import Newton, dense, tolerances
 
 STEPS = 8
 FAR = 1e-3  # of what is allowed to be open: so far it is closed
@@ -178,7 +178,7 @@ def least_change(M: np.ndarray, J: np.ndarray, right: np.ndarray) -> np.ndarray:
         moved = J.T
     S = J @ moved
     d = 1 / np.sqrt(np.where(np.diagonal(S) > 0, np.diagonal(S), 1.0))
-    lam = d * np.linalg.solve(d[:, None] * S * d + NEARLY_SINGULAR**2 * np.eye(len(S)), d * right)
+    lam = d * np.linalg.solve(d[:, None] * S * d + tolerances.NEARLY_SINGULAR**2 * np.eye(len(S)), d * right)
     found: np.ndarray = moved @ lam
     return found
 

@@ -22,7 +22,7 @@ from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression import Expression, Fraction, Scalar, function, order, sqrt, symbols_of
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, SUMMED, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 # -------- contact events --------------------------------------------------------------------------------------
 # System, configuration of its contacts -> ContactEvents: what the contacts say, and the functions that end a phase.
@@ -302,11 +302,15 @@ class ContactSignals:
         if not self.watch.bounds:
             return np.zeros(0)
         places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
-        size = {"force": COMPUTED * self.sizes(t, x)[0], "rate": COMPUTED * rates, "gap": COMPUTED * places}
+        size = {
+            "force": tolerances.COMPUTED * self.sizes(t, x)[0],
+            "rate": tolerances.COMPUTED * rates,
+            "gap": tolerances.COMPUTED * places,
+        }
         passing = [
             float(stopped_below(self.watch.contact(b.owner))) if b.kind == "stops" else 0.0 for b in self.watch.bounds
         ]
-        return np.maximum([size[bound.unit] for bound in self.watch.bounds], passing) + SUMMED
+        return np.maximum([size[bound.unit] for bound in self.watch.bounds], passing) + tolerances.SUMMED
 
     def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The bounds along the states, n x k; nan where a reaction has no single value."""

@@ -17,20 +17,7 @@ from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.symbolic.expression import Fraction, Node, Scalar, State, depends_on, inner, substituted
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    DIFFERENCE_STEP,
-    FINE_RUN,
-    FLOAT,
-    GAP_CLOSED,
-    RANK_NEARBY,
-    SUMMED,
-    WIDE_STEP,
-    all_roots,
-    evaluate,
-    least_left,
-)
+from eomgen.symbolic.numeric import FLOAT, all_roots, evaluate, least_left, tolerances
 from eomgen.symbolic.solve import vanishes
 
 # -------- rest departure --------------------------------------------------------------------------------------
@@ -99,7 +86,7 @@ class RestDeparture:
         if self._is_moved_by_time:
             return False
         size = float(np.max(np.abs(usual), initial=0.0)) if np.all(np.isfinite(usual)) else 1.0
-        return float(np.max(np.abs(dx), initial=0.0)) <= GAP_CLOSED * size
+        return float(np.max(np.abs(dx), initial=0.0)) <= tolerances.GAP_CLOSED * size
 
     @property
     def _is_moved_by_time(self) -> bool:
@@ -232,9 +219,9 @@ class RestDeparture:
 STEP = 1e-3  # from a singular start, of the leading coordinate
 AROUND = 12.0  # steps: how far other coordinates may move in this one
 GUESSES = 60
-SEARCH = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=4000)
+SEARCH = Stepping(rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN, most_steps=4000)
 REACHES = (1.0, 10.0, 100.0)  # how far the leading coordinate is followed, in sizes of its start and 1
-NEARER = 1 - COMPUTED  # what the second sense must undercut: of two mirror images the first one is taken
+NEARER = 1 - tolerances.COMPUTED  # what the second sense must undercut: of two mirror images the first one is taken
 ASIDE = 0.1
 
 VectorFunction = Callable[[np.ndarray], np.ndarray]
@@ -308,7 +295,7 @@ class Configurations:
         if not regular:
             s = sense * STEP
             q = self._beside(q, s, near)
-        if y(q + (0 if not regular else WIDE_STEP * sense * self.direction(q))) < 0:
+        if y(q + (0 if not regular else tolerances.WIDE_STEP * sense * self.direction(q))) < 0:
             raise NeverReached("the motion does not go this way from the start")
         sensed = _Sensed(self, g, y, sense)
         return sensed.arrival(march(sensed.rate, (abs(s), within), q, how=SEARCH, events=sensed.events))
@@ -323,14 +310,16 @@ class Configurations:
         aside = q.copy()
         aside[list(self.sought)] += ASIDE
         usual = np.linalg.norm(self._slopes(aside))
-        return bool(np.min(np.linalg.svd(self._slopes(q), compute_uv=False), initial=usual) > RANK_NEARBY * usual)
+        return bool(
+            np.min(np.linalg.svd(self._slopes(q), compute_uv=False), initial=usual) > tolerances.RANK_NEARBY * usual
+        )
 
     def _slopes(self, q: np.ndarray) -> np.ndarray:
         """d gaps / d sought coordinates, by central differences."""
         columns = []
         for k in self.sought:
             h = np.zeros(len(q))
-            h[k] = DIFFERENCE_STEP * (1 + abs(q[k]))
+            h[k] = tolerances.DIFFERENCE_STEP * (1 + abs(q[k]))
             columns.append((self.gaps(q + h) - self.gaps(q - h)) / (2 * h[k]))
         return np.array(columns).T
 
@@ -369,7 +358,7 @@ class Configurations:
             return self.gaps(moved)
 
         found = least_left(gaps, q[sought])
-        if found.left > GAP_CLOSED:
+        if found.left > tolerances.GAP_CLOSED:
             return None
         closed = q.copy()
         closed[sought] = found.x
@@ -400,7 +389,7 @@ class _Sensed:
         def values(s: np.ndarray, q: np.ndarray) -> np.ndarray:
             return np.array([(self.g(each, self.sense), self.y(each)) for each in q])
 
-        return Events(values, np.array([COMPUTED, SUMMED]), (0,))
+        return Events(values, np.array([tolerances.COMPUTED, tolerances.SUMMED]), (0,))
 
     def arrival(self, run: Run) -> Arrival:
         """Place where the condition holds; it may do so just where the motion turns back.
@@ -410,7 +399,7 @@ class _Sensed:
         """
         if run.crossing is None:
             raise NeverReached(f"the condition is not met as far as the motion was followed, up to {run.end:.6g}")
-        if run.crossing.index == 1 and abs(self.g(run.last, self.sense)) > CARRIED * self._largest(run):
+        if run.crossing.index == 1 and abs(self.g(run.last, self.sense)) > tolerances.CARRIED * self._largest(run):
             raise NeverReached(f"the motion turns back before, at {run.end:.6g}")
         return Arrival(self.sense * run.end, run.last)
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.codegen import RateFunction, RightHandSide
 from eomgen.frozen import dataclass
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, ITERATED, SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 PARTS = 8  # of a step: how often the functions are looked at
 MOST_PARTS = 4096  # of a step in which a function goes up and down many times
@@ -69,7 +69,7 @@ class Events:
     values: Callable[[np.ndarray, np.ndarray], np.ndarray]
     floors: np.ndarray
     either: tuple[int, ...] = ()
-    touch: float = CARRIED
+    touch: float = tolerances.CARRIED
     measured: Measured | None = None
 
 
@@ -116,7 +116,7 @@ class EventSearch:
     def _floors(self) -> np.ndarray:
         """Rounding errors of the functions; where both signs count, a share of the largest value so far."""
         floors, either = self.events.floors.copy(), list(self.events.either)
-        floors[either] = np.minimum(floors[either], ITERATED * self.largest[either])
+        floors[either] = np.minimum(floors[either], tolerances.ITERATED * self.largest[either])
         return floors
 
     def step(self, t_old: float, t_new: float, dense: Callable[[Any], np.ndarray]) -> Crossing | None:
@@ -213,7 +213,9 @@ def _low(value: Callable[[float], float], t: np.ndarray, g: np.ndarray, *, close
         return None
     from scipy.optimize import minimize_scalar
 
-    options = {"xatol": ITERATED * (t[2] - t[0])}  # from the middle: the search knows its unknown to half of the digits
+    options = {
+        "xatol": tolerances.ITERATED * (t[2] - t[0])
+    }  # from the middle: the search knows its unknown to half of the digits
     least = minimize_scalar(
         lambda z: value(t[1] + z), bounds=(t[0] - t[1], t[2] - t[1]), method="bounded", options=options
     )
@@ -236,7 +238,7 @@ def _root(value: Callable[[float], float], before: float, after: float) -> float
         return before
     if not value(after) < 0:
         return after
-    xtol = SOLVED * (after - before)
+    xtol = tolerances.SOLVED * (after - before)
     root = float(brentq(value, before, after, xtol=xtol, rtol=RELATIVE))
     step = float(xtol + RELATIVE * abs(root))
     while root < after and value(root) > 0:
@@ -286,7 +288,7 @@ def _root_within(z: np.ndarray, g: np.ndarray, known: float) -> float | None:
     fits = [Chebyshev.fit(z, values, DEGREE, domain=[-1, 1]) for values in (g, np.sign(z) * g)]
     apart = [float(np.max(np.abs(np.abs(fit(z)) - np.abs(g)))) for fit in fits]
     best = fits[int(np.argmin(apart))]
-    if not 0 < size or min(apart) > COMPUTED * size:
+    if not 0 < size or min(apart) > tolerances.COMPUTED * size:
         return None
     noise = max(known, min(apart)) / size
     slopes = [best, *(best.deriv(order) for order in range(1, MOST_ORDER + 1))]
@@ -317,6 +319,6 @@ def _newton(g: Any, slope: Any) -> float | None:
         z -= step
         if not abs(z) < NEARBY:
             return None
-        if abs(step) < SOLVED:
+        if abs(step) < tolerances.SOLVED:
             break
     return z

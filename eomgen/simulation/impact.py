@@ -22,7 +22,7 @@ from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
 from eomgen.simulation.phase_model import Values, slack_name
 from eomgen.symbolic.expression import Scalar, jacobian, substituted
-from eomgen.symbolic.numeric import COMPUTED, LEAST_CHANGE
+from eomgen.symbolic.numeric import tolerances
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u:
         held: rows (J, sigma) of the constraints.
         contacts: those of each contact; the first of them can only push.
     """
-    size = COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
+    size = tolerances.COMPUTED * max(1.0, float(np.max(np.abs(u), initial=0.0)))
     for count in range(len(contacts), -1, -1):
         for active in combinations(range(len(contacts)), count):
             after, impulses = _bordered(M, np.vstack([held, *(contacts[i] for i in active)]), u)
@@ -149,5 +149,7 @@ def _bordered(M: np.ndarray, J: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, 
     """(u+, impulses) with M (u+ - u) = J^T Lam and J u+ + sigma = 0; J holds sigma in its last column."""
     J, sigma = J[:, :-1], J[:, -1]
     columns = np.linalg.solve(M, J.T) if len(J) else np.zeros((len(u), 0))
-    impulses = np.linalg.lstsq(J @ columns, -(J @ u + sigma), rcond=LEAST_CHANGE)[0] if len(J) else np.zeros(0)
+    impulses = (
+        np.linalg.lstsq(J @ columns, -(J @ u + sigma), rcond=tolerances.LEAST_CHANGE)[0] if len(J) else np.zeros(0)
+    )
     return u + columns @ impulses, impulses

@@ -20,7 +20,7 @@ from eomgen.simulation.result import Kept, Phase, Trajectory
 from eomgen.simulation.singular import Flow, march_across
 from eomgen.simulation.solvers import HEYOKA, METHODS, Slope
 from eomgen.symbolic.expression import Typed, seconds
-from eomgen.symbolic.numeric import RUN, SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 SAMPLES = 1001
 MOST_SAMPLES = 10_000_000
@@ -35,8 +35,8 @@ def integrate(
     x0: Sequence[float] | np.ndarray | None = None,
     p: Sequence[float] | np.ndarray | None = None,
     inputs: Callable[[float], Sequence[float]] | None = None,
-    rtol: float = RUN,
-    atol: float = RUN,
+    rtol: float = tolerances.RUN,
+    atol: float = tolerances.RUN,
     method: str = "DOP853",
     samples: int | Sequence[float] | None = SAMPLES,
     energy: FunctionOfStates | None = None,
@@ -117,7 +117,7 @@ def drift_of(T: np.ndarray, V: np.ndarray) -> float:
     E = T + V
     moving = max(np.max(np.abs(T), initial=0.0), np.max(np.abs(V - V[:1]), initial=0.0))
     standing = np.max(np.abs(E), initial=0.0)
-    scale = moving if moving > SOLVED * standing else standing
+    scale = moving if moving > tolerances.SOLVED * standing else standing
     return float(np.max(np.abs(E - E[:1]), initial=0.0) / (scale if scale > 0 else 1.0))
 
 

@@ -21,16 +21,7 @@ from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Pro
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.result import RunStatus
 from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    DIFFERENCE_STEP,
-    FINEST_RUN,
-    LEAST_RTOL,
-    RUN,
-    PatienceEnded,
-    check_patience,
-    keep_what_there_is,
-)
+from eomgen.symbolic.numeric import PatienceEnded, check_patience, keep_what_there_is, tolerances
 
 MOST = 20_000  # states
 
@@ -113,8 +104,8 @@ class Stepping:
     """
 
     method: str = "DOP853"
-    rtol: float = RUN
-    atol: float = RUN
+    rtol: float = tolerances.RUN
+    atol: float = tolerances.RUN
     most_steps: int = MOST_STEPS
     stabilization: str = "projection"
     every: int | None = None
@@ -125,7 +116,7 @@ class Stepping:
 
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
-        step: Stepping = with_fields(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
+        step: Stepping = with_fields(self, rtol=max(SHARE * self.rtol, tolerances.LEAST_RTOL), atol=SHARE * self.atol)
         return step
 
     def hold(
@@ -401,7 +392,7 @@ def _stepped_to(f: StateRate, t: float, x: np.ndarray, end: float) -> np.ndarray
     if t == end or not np.all(np.isfinite(x)):
         return x
     with np.errstate(all="ignore"):
-        solver = DOP853(f, t, x, end, rtol=FINEST_RUN, atol=FINEST_RUN, first_step=abs(end - t))
+        solver = DOP853(f, t, x, end, rtol=tolerances.FINEST_RUN, atol=tolerances.FINEST_RUN, first_step=abs(end - t))
         for _ in range(MOST_FINE_STEPS):
             if solver.status != "running":
                 break
@@ -411,7 +402,7 @@ def _stepped_to(f: StateRate, t: float, x: np.ndarray, end: float) -> np.ndarray
 
 def _failed(f: StateRate, solver: Any) -> tuple[RunStatus, str]:
     """Why the step size went to nothing."""
-    ahead = solver.t + COMPUTED * max(1.0, abs(solver.t))
+    ahead = solver.t + tolerances.COMPUTED * max(1.0, abs(solver.t))
     if not np.all(np.isfinite(f(ahead, solver.y + (ahead - solver.t) * f(solver.t, solver.y)))):
         return "not finite", _no_value(solver.t)
     return "step too small", f"Stopped at t = {solver.t:.6g} s: the step size went to zero."
@@ -515,7 +506,7 @@ class Pace:
         with np.errstate(all="ignore"):
             for k, size in enumerate(np.abs(x)):
                 beside = x.copy()
-                beside[k] += (step := DIFFERENCE_STEP * (1 + float(size)))
+                beside[k] += (step := tolerances.DIFFERENCE_STEP * (1 + float(size)))
                 columns.append((np.asarray(self.f(t, beside)) - dx) / step)
         J = np.array(columns).T
         if not np.all(np.isfinite(J)):

@@ -33,7 +33,7 @@ from eomgen.simulation.constraint_drift import ARMED, REMEMBERED, STEEP
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import FORGOTTEN, HELD_SHORT, SEEN
 from eomgen.symbolic.expression import Node, Scalar, jacobian
-from eomgen.symbolic.numeric import DIFFERENCE_STEP, ITERATED, NEARLY_SINGULAR, PIVOT, ROUNDING, SOLVED, SUMMED
+from eomgen.symbolic.numeric import tolerances
 
 # -------- march -----------------------------------------------------------------------------------------------
 # march.c -> its functions and its structure, as Python sees them.
@@ -47,10 +47,10 @@ EASY = HELD_SHORT / 2  # h |lambda| of implicit steps with which DOP853 would go
 
 _CONSTANTS = {
     "MOST_SWEEPS": SWEEPS,
-    "SQUARE": ROUNDING,
+    "SQUARE": tolerances.ROUNDING,
     "GAP_ROUNDING": constraint_drift.ROUNDING,
-    "ROW_ROUNDING": ROUNDING,
-    "DAMPING": NEARLY_SINGULAR**2,
+    "ROW_ROUNDING": tolerances.ROUNDING,
+    "DAMPING": tolerances.NEARLY_SINGULAR**2,
     "PUT_BACK_STEPS": constraint_drift.STEPS,
     "PUT_BACK_FAR": constraint_drift.FAR,
     "LOST": constraint_drift.LOST,
@@ -58,15 +58,15 @@ _CONSTANTS = {
     "LARGEST_GROWTH": LARGEST,
     "SMALLEST_GROWTH": SMALLEST,
     "SAFETY": SAFETY,
-    "SAME_INSTANT": SOLVED,
+    "SAME_INSTANT": tolerances.SOLVED,
     "RESOLVED": event_location.RESOLVED,
     "EDGE": event_location.EDGE,
-    "TOUCHES": ITERATED,
+    "TOUCHES": tolerances.ITERATED,
     "STEEP": STEEP,
     "ARMED": ARMED,
     "MOST_AT_ONCE": MOST_AT_ONCE,
-    "SLOPE_STEP": DIFFERENCE_STEP,
-    "REGULAR_PIVOT": PIVOT,
+    "SLOPE_STEP": tolerances.DIFFERENCE_STEP,
+    "REGULAR_PIVOT": tolerances.PIVOT,
     "HELD_SHORT": HELD_SHORT,
     "EASY": EASY,
     "FORGOTTEN": FORGOTTEN,
@@ -230,13 +230,15 @@ class ManyStarts:
                     break
                 gaps, A = self._gaps(x[moving], p[moving])
                 size = np.max(np.abs(gaps), axis=1, initial=0.0)
-                goes_on = (size > ROUNDING * _size(x[moving])) & ~((best[moving] < SUMMED) & (size >= best[moving] / 2))
+                goes_on = (size > tolerances.ROUNDING * _size(x[moving])) & ~(
+                    (best[moving] < tolerances.SUMMED) & (size >= best[moving] / 2)
+                )
                 goes_on &= np.all(np.isfinite(gaps), axis=1) & np.all(np.isfinite(A), axis=(1, 2))
                 best[moving] = size
                 moving, gaps, A, size = moving[goes_on], gaps[goes_on], A[goes_on], size[goes_on]
                 x[np.ix_(moving, sought)] += _step(A, gaps, np.minimum(size, 1.0))
             left = np.max(np.abs(self._all.many(0.0, x, p)), axis=1, initial=0.0)
-        return np.asarray(left <= SUMMED * _size(x))
+        return np.asarray(left <= tolerances.SUMMED * _size(x))
 
     def _gaps(self, x: np.ndarray, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         found = self._slopes.many(0.0, x, p)

@@ -26,19 +26,7 @@ from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import Flow, ended_where_singular, march_across
 from eomgen.simulation.solvers import AUTO
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    DEGENERATE,
-    FAIR_RUN,
-    FINE_RUN,
-    FINEST_RUN,
-    FLOAT,
-    ROUNDING,
-    SOLVED,
-    evaluate,
-    nodes_between,
-    transform,
-)
+from eomgen.symbolic.numeric import FLOAT, evaluate, nodes_between, tolerances, transform
 from eomgen.symbolic.print import to_text
 from eomgen.symbolic.solve import roots
 
@@ -91,7 +79,7 @@ def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseR
         if crossing is None or crossing.index >= len(phase.bounds):
             yield PhaseRun(here, phase, run, None, None)
             return
-        soon = run.end - here.t <= COMPUTED
+        soon = run.end - here.t <= tolerances.COMPUTED
         hasty, count = hasty + 1 if soon else 0, count + 1
         ended = frozenset({*(ended if soon else ()), here.configuration})
         after = next_start(models, phase, crossing, ended)
@@ -139,15 +127,15 @@ def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
     Raises:
         DerivationError: the coordinate is named.
     """
-    if max(map(abs, x.tolist()), default=0.0) < COMPUTED / np.finfo(float).eps:
+    if max(map(abs, x.tolist()), default=0.0) < tolerances.COMPUTED / np.finfo(float).eps:
         return
     apart = np.spacing(np.abs(x))
-    for k in np.flatnonzero(apart[: len(phase.coordinates)] > COMPUTED):
+    for k in np.flatnonzero(apart[: len(phase.coordinates)] > tolerances.COMPUTED):
         beside = x.copy()
         beside[k] += apart[k]
         rate, other = phase.rate(t, x), phase.rate(t, beside)
         gained = np.abs(phase.rate(t, x + rate)[k]) + np.abs(rate[k])
-        if np.max(np.abs(other - rate)) > COMPUTED * np.max(np.abs(rate)) or 0 < gained < apart[k]:
+        if np.max(np.abs(other - rate)) > tolerances.COMPUTED * np.max(np.abs(rate)) or 0 < gained < apart[k]:
             name = phase.coordinates[k]
             why = "farther than it moves in a second" if 0 < gained < apart[k] else "and move otherwise"
             what = f"'{name}' starts at {x[k]:.6g}, where neighbouring doubles are {apart[k]:.3g} apart"
@@ -173,7 +161,7 @@ def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | 
     def values(t: np.ndarray, x: np.ndarray) -> np.ndarray:
         return np.hstack([phase.signals.watched(t, x), function.many(t, phase.functions.inner(x), phase.p)])
 
-    floors = np.append(floors, np.full(len(further), COMPUTED))
+    floors = np.append(floors, np.full(len(further), tolerances.COMPUTED))
     either = (len(floors) - 1,) if requested else ()
     return Events(values, floors, either, TOUCH * plan.how.rtol, whole)
 
@@ -203,7 +191,7 @@ def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
 
 
 def _finer(tolerance: float) -> float:
-    return max(tolerance / 1000, FINEST_RUN)
+    return max(tolerance / 1000, tolerances.FINEST_RUN)
 
 
 def _hasty(phase: PhaseModel, hasty: int) -> str:
@@ -267,7 +255,7 @@ class DenseMotion:
         weights = (-1.0) ** np.arange(DEGREE + 1)
         weights[[0, -1]] /= 2
         apart = ((2 * t - a - b) / (b - a))[:, None] - nodes
-        exact = np.abs(apart) < ROUNDING
+        exact = np.abs(apart) < tolerances.ROUNDING
         shares = weights / np.where(exact, 1.0, apart)
         shares = np.where(exact.any(axis=1)[:, None], exact, shares)
         found: np.ndarray = np.einsum("nk,nkx->nx", shares, self.states[k]) / shares.sum(axis=1)[:, None]
@@ -290,7 +278,7 @@ def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
         raise RunFailed(f"the run was cut: {run.message}", fix="a longer --patience, or a shorter run")
     kept = np.concatenate([part for track in run.tracks for part in track.t])
     edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
-    edges = edges[np.append(True, np.diff(edges) > ROUNDING * max(1.0, run.end - here.t))]
+    edges = edges[np.append(True, np.diff(edges) > tolerances.ROUNDING * max(1.0, run.end - here.t))]
     edges[-1] = run.end
     for _ in range(MOST_HALVINGS + 1):
         found = _through(phase_run, plan, edges)
@@ -324,9 +312,11 @@ def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
 
 
 LONGEST = 1e9  # s, of a search
-FINE = Stepping(AUTO, FINE_RUN, FINE_RUN, 100_000)
+FINE = Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, 100_000)
 SEARCH = replace(FINE, most_steps=4000)
-FAIR = replace(SEARCH, rtol=FAIR_RUN, atol=FAIR_RUN)  # where the finer one does not come across a singular position
+FAIR = replace(
+    SEARCH, rtol=tolerances.FAIR_RUN, atol=tolerances.FAIR_RUN
+)  # where the finer one does not come across a singular position
 
 
 @dataclass(frozen=True)
@@ -429,7 +419,7 @@ class FirstTime:
         for block in singular_blocks(self.equations.system.elimination, self.equations.system.scope):
             t, x = np.array([self.t0, run.end]), np.vstack([self._phase.state(self._here.values), run.last])
             before, there = self._phase.functions.evaluated(t, x, (block.determinant,))[:, 0]
-            if abs(there) < DEGENERATE * abs(before):
+            if abs(there) < tolerances.DEGENERATE * abs(before):
                 raise RunFailed(
                     f"{block} at that instant ({PLACE})",
                     fix="leave out `dependent`: then their rates belong to the state",
@@ -439,7 +429,7 @@ class FirstTime:
         """The first t, from the start on, at which a condition on t alone holds."""
         t = self.equations.symbols.t
         values = [float(evaluate((root,), self.values, FLOAT)[0]) for root in roots(self.condition, t)]
-        later = [value for value in values if value >= self.t0 - SOLVED]
+        later = [value for value in values if value >= self.t0 - tolerances.SOLVED]
         if later:
             return min(later)
         if values:
@@ -447,7 +437,7 @@ class FirstTime:
         function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
         x = np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
         events = Events(
-            lambda t, _: function.many(t, np.tile(x, (len(t), 1)), self._phase.p), np.full(1, COMPUTED), (0,)
+            lambda t, _: function.many(t, np.tile(x, (len(t), 1)), self._phase.p), np.full(1, tolerances.COMPUTED), (0,)
         )
         run = march(lambda t, _: np.ones(1), (self.t0, LONGEST), np.zeros(1), how=SEARCH, events=events)
         if run.crossing is None:

@@ -23,7 +23,7 @@ from eomgen.simulation.contacts import Configuration, bounds_of, has_phases, on_
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
-from eomgen.symbolic.numeric import COMPUTED, SHARE, SOON
+from eomgen.symbolic.numeric import tolerances
 
 
 @dataclass(frozen=True)
@@ -73,13 +73,13 @@ def _ending_together(phase: PhaseModel, crossing: Crossing) -> frozenset[str]:
     bounds, t, x = phase.bounds, crossing.t, crossing.x
     if bounds[crossing.index].kind != "ends" or sum(bound.kind == "ends" for bound in bounds) < 2:
         return frozenset()
-    later = np.array([t, t + SOON])
-    margins = phase.signals.watched(later, np.vstack([x, x + SOON * phase.rate(t, x)]))
+    later = np.array([t, t + tolerances.SOON])
+    margins = phase.signals.watched(later, np.vstack([x, x + tolerances.SOON * phase.rate(t, x)]))
     at_zero, falls = margins[0] <= phase.signals.floors(t, x), margins[0] - margins[1]
     found = [
         bound.owner
         for bound, ends, fall in zip(bounds, at_zero, falls, strict=True)
-        if bound.kind == "ends" and ends and 0 < SHARE * falls[crossing.index] < fall
+        if bound.kind == "ends" and ends and 0 < tolerances.SHARE * falls[crossing.index] < fall
     ]
     return frozenset(found if len(found) > 1 else ())
 
@@ -173,7 +173,7 @@ def _apart(gap: float, rate: float, values: Values) -> bool:
 
 
 def _length(values: Values) -> float:
-    return 1e2 * COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
+    return 1e2 * tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if not name.endswith("'"))])
 
 
 def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
@@ -374,7 +374,7 @@ def agrees(phase: PhaseModel, t: float, values: Values, *, sliding: Mapping[str,
     requested = [contact for contact in phase.contacts if contact.name not in apart]
     signs = [_signs(phase.watch.mode(contact), contact, found, sliding.get(contact.name, 0)) for contact in requested]
     return not any(
-        force < -COMPUTED * forces or acceleration < -COMPUTED * accelerations
+        force < -tolerances.COMPUTED * forces or acceleration < -tolerances.COMPUTED * accelerations
         for pairs in signs
         for force, acceleration in pairs
     )
@@ -393,7 +393,7 @@ def _standing(
             accelerations[name] = found[name, "slide'"]
         elif not mode.closed and name not in apart:
             accelerations[name] = found[name, "gap''"]
-    return tuple(name for name, a in accelerations.items() if abs(a) <= COMPUTED * size)
+    return tuple(name for name, a in accelerations.items() if abs(a) <= tolerances.COMPUTED * size)
 
 
 def _signs(

@@ -42,7 +42,7 @@ from eomgen.simulation.contacts import Configuration, ContactEvents, ContactSign
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.expression import Node, depends_on, jacobian
-from eomgen.symbolic.numeric import COMPUTED, LEAST_CHANGE
+from eomgen.symbolic.numeric import tolerances
 
 Fed = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 """(p, t, x) -> p at a state"""
@@ -141,7 +141,7 @@ class PhaseModel:
     def valueless(self, t: float, x: np.ndarray) -> Valueless | None:
         """First quantity without a value in a state, or just after it; None where everything has one."""
         with np.errstate(all="ignore"):
-            after = COMPUTED * max(1.0, abs(t)) * np.nan_to_num(self.rate(t, x))
+            after = tolerances.COMPUTED * max(1.0, abs(t)) * np.nan_to_num(self.rate(t, x))
         found = (valueless(self.system, self._values(t, here)) for here in (x, x + after))
         return next((each for each in found if each is not None), None)
 
@@ -290,7 +290,7 @@ class PhaseModel:
             return False
         x = self.state(values)
         _, size = self.signals.sizes(t, x)
-        return bool(np.max(np.abs(self.rate(t, x)), initial=0.0) <= COMPUTED * size)
+        return bool(np.max(np.abs(self.rate(t, x)), initial=0.0) <= tolerances.COMPUTED * size)
 
     @cached_property
     def _slackening(self) -> RightHandSide:
@@ -300,7 +300,7 @@ class PhaseModel:
 
 def smallest_speed(values: Values) -> float:
     """Smallest speed that is larger than rounding, relative to the fastest of the rates."""
-    return COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
+    return tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
 
 
 def slack_name(constraint: str) -> str:
@@ -366,5 +366,5 @@ class ExactSlope:
         rates, residual, M, J = np.split(np.asarray(self.function(t, x, self.p)), ends)
         M, J = M.reshape(n, n), J.reshape(k, n)
         matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
-        solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=LEAST_CHANGE)[0]
+        solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=tolerances.LEAST_CHANGE)[0]
         return np.vstack([rates.reshape(-1, m), solved[:n]])

@@ -29,7 +29,7 @@ from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
 from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression import Node, Scalar, symbols_of
-from eomgen.symbolic.numeric import COMPUTED, NEARLY_SINGULAR, ROUNDING
+from eomgen.symbolic.numeric import tolerances
 
 OPEN = ContactMode(closed=False)
 
@@ -292,10 +292,10 @@ class DerivedAt:
         known = np.all(np.isfinite(J), axis=1)
         gaps, J = np.split(np.where(known[:, None], J, 0.0), [len(self._given)], axis=1)
         J = J.reshape(n, len(free.constraints.closing), len(free.symbols.u))
-        found = known & np.all(np.abs(gaps) <= COMPUTED, axis=1)
-        found &= _singular_value(J, self._rank) > NEARLY_SINGULAR
+        found = known & np.all(np.abs(gaps) <= tolerances.COMPUTED, axis=1)
+        found &= _singular_value(J, self._rank) > tolerances.NEARLY_SINGULAR
         rows, speeds = self._determining
-        found &= _singular_value(J[:, rows][:, :, speeds], len(rows)) > NEARLY_SINGULAR
+        found &= _singular_value(J[:, rows][:, :, speeds], len(rows)) > tolerances.NEARLY_SINGULAR
         return np.asarray(found)
 
     @property
@@ -380,5 +380,5 @@ def _singular_value(J: np.ndarray, rank: int) -> np.ndarray:
         return np.zeros(len(J))
     lengths = np.linalg.norm(J, axis=2, keepdims=True)
     longest = np.max(lengths, axis=1, keepdims=True)
-    unit = J / np.where(lengths > ROUNDING * longest, lengths, np.inf)
+    unit = J / np.where(lengths > tolerances.ROUNDING * longest, lengths, np.inf)
     return np.asarray(np.linalg.svd(unit, compute_uv=False)[:, rank - 1])

@@ -32,7 +32,7 @@ from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Kept, OnDemand, Phase, Trajectory
 from eomgen.symbolic.expression import Expression, Scalar, parse
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 SystemCondition = Callable[[System], Scalar]
 """A function that is to become 0, over the symbols, accelerations and multipliers of a system."""
@@ -106,7 +106,7 @@ def met(phase_run: PhaseRun, until: PhaseCondition) -> bool:
     """True if the condition holds where a phase ends, and did not hold all along."""
     sizes = _sizes(phase_run, until)
     largest = float(np.max(sizes))
-    return bool(sizes[-1] <= COMPUTED * max(1.0, largest) < largest)
+    return bool(sizes[-1] <= tolerances.COMPUTED * max(1.0, largest) < largest)
 
 
 def ended(runs: Iterable[PhaseRun], until: PhaseCondition) -> Iterator[PhaseRun]:
@@ -126,7 +126,7 @@ def ended(runs: Iterable[PhaseRun], until: PhaseCondition) -> Iterator[PhaseRun]
 def _begins(before: PhaseRun, phase_run: PhaseRun, until: PhaseCondition) -> bool:
     """True if the condition holds where a phase begins, and did not at the end of the one before."""
     last, largest = (float(find(_sizes(before, until))) for find in (lambda sizes: sizes[-1], np.max))
-    enough = COMPUTED * max(1.0, largest)
+    enough = tolerances.COMPUTED * max(1.0, largest)
     return last > enough and bool(_sizes(phase_run, until)[0] <= enough)
 
 

@@ -20,7 +20,7 @@ from eomgen.mechanics.constraints import STILL
 from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, named_reactions
 from eomgen.mechanics.reactions import Reactions
 from eomgen.symbolic.expression import Scalar
-from eomgen.symbolic.numeric import RANK_NEARBY, SHARE, SUMMED, UNBALANCED, balanced
+from eomgen.symbolic.numeric import balanced, tolerances
 
 AT_ONCE = 2_000_000  # entries of C that are held in memory at once
 
@@ -150,7 +150,7 @@ def _solutions(
     if not A.shape[2] or not sound.any():
         found[sound] = 0.0
         return found
-    A = np.where(np.abs(A) > SUMMED * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
+    A = np.where(np.abs(A) > tolerances.SUMMED * np.abs(A).max(axis=1, keepdims=True), A, 0.0)
     _, rows, columns = balanced(np.abs(A[sound]).max(axis=0))
     A, b, C = A * rows[:, None] * columns, b * rows, C * columns
     rho, regular = balanced_from_leaves(A[sound], b[sound], order(A[sound]))
@@ -164,12 +164,12 @@ def _solutions(
 def _where_singular(A: np.ndarray, b: np.ndarray, C: np.ndarray) -> np.ndarray:
     """C rho, nan where the null space of A has a part in it; all nan where no finite rho holds the balance."""
     U, sizes, V = np.linalg.svd(A)
-    rank = int(np.sum(sizes > RANK_NEARBY * max(sizes, default=0.0)))
+    rank = int(np.sum(sizes > tolerances.RANK_NEARBY * max(sizes, default=0.0)))
     rho = V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank])
-    if np.linalg.norm(A @ rho - b) > UNBALANCED * np.linalg.norm(b):
+    if np.linalg.norm(A @ rho - b) > tolerances.UNBALANCED * np.linalg.norm(b):
         return np.full(len(C), np.nan)
     traces = np.abs(C @ V[rank:].T).max(axis=1, initial=0.0)
-    return np.where(traces > SHARE * np.linalg.norm(C, axis=1), np.nan, C @ rho)
+    return np.where(traces > tolerances.SHARE * np.linalg.norm(C, axis=1), np.nan, C @ rho)
 
 
 SLIDES = 1e2 * float(STILL)  # |v|, at which friction is all but along it [m/s]
@@ -273,5 +273,5 @@ def _regular(R: np.ndarray, block: np.ndarray) -> np.ndarray:
     pivots = np.abs(np.diagonal(R[:, :size, :size], axis1=1, axis2=2))
     if pivots.shape[1] < size:
         return np.zeros(len(R), dtype=bool)
-    found: np.ndarray = (pivots > RANK_NEARBY * np.linalg.norm(block, axis=1)).all(axis=1)
+    found: np.ndarray = (pivots > tolerances.RANK_NEARBY * np.linalg.norm(block, axis=1)).all(axis=1)
     return found

@@ -17,7 +17,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import Pickled, dataclass
 from eomgen.model import OUTPUT
 from eomgen.symbolic.expression import Unit
-from eomgen.symbolic.numeric import SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 NO_EQUATIONS = "nothing is known of the equations behind these numbers"  # given by hand, or read from a pickle
 SHOWN = 80  # characters of names on a line
@@ -400,7 +400,7 @@ class Trajectory:
     @property
     def still(self) -> str:
         """Sentence that the start is an equilibrium, with what to do; "" where something moves."""
-        if len(self.t) < 2 or not self.coordinates or np.max(np.abs(self.x - self.x[0])) > SOLVED:
+        if len(self.t) < 2 or not self.coordinates or np.max(np.abs(self.x - self.x[0])) > tolerances.SOLVED:
             return ""
         near = f"--start {self.coordinates[0]}=..."
         return f"From this start nothing moves: it is an equilibrium. Start near it ({near}), or with a speed."

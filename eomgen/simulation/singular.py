@@ -22,7 +22,7 @@ from eomgen.simulation.constraint_drift import EnergyLevel, Nearness, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.solvers import LateSlope, StateRate
-from eomgen.symbolic.numeric import FAIR_RUN, FINEST_RUN, RUN, RUNS_AGREE, WIDE_STEP
+from eomgen.symbolic.numeric import tolerances
 
 STEPS = 100  # tolerances of one step by which they may differ
 NEAR = 0.02  # of a determinant's largest value: how small a minimum may be the sign of a zero
@@ -31,7 +31,7 @@ LAST = 1e-2  # of a determinant's largest value: where it is larger, the end of 
 Again = Callable[[float, np.ndarray, float], np.ndarray]
 
 
-def ended_where_singular(run: Run, what: Undetermined, again: Again, *, rtol: float = RUN) -> Run:
+def ended_where_singular(run: Run, what: Undetermined, again: Again, *, rtol: float = tolerances.RUN) -> Run:
     """The run, cut where a vanishing determinant led it astray.
 
     Args:
@@ -44,7 +44,7 @@ def ended_where_singular(run: Run, what: Undetermined, again: Again, *, rtol: fl
         values = np.nan_to_num(what.determinants(run.t, run.x)).reshape(len(run.t), -1)
     largest = np.max(np.abs(values), axis=0)
     values = values / np.where(largest > 0, largest, 1.0)
-    allowed = max(RUNS_AGREE, STEPS * rtol)
+    allowed = max(tolerances.RUNS_AGREE, STEPS * rtol)
     zeros = sorted(
         (i, k) for k in range(values.shape[1]) for i in vanishing_after(values[:, k]) if not _carried(run, i)
     )
@@ -300,7 +300,7 @@ def _passed(
 def _time_to(flow: Flow, t: float, x: np.ndarray, nearness: Nearness) -> float | None:
     """tau = s/|s'|: the time in which the nearness would vanish; None where it does not fall."""
     dx = flow.f(t, x)
-    step = WIDE_STEP * (1 + np.max(np.abs(x))) / (1 + np.max(np.abs(dx)))
+    step = tolerances.WIDE_STEP * (1 + np.max(np.abs(x))) / (1 + np.max(np.abs(dx)))
     here, after = nearness.at(t, x), nearness.at(t + step * 1e-2, x + step * 1e-2 * dx)
     slope = (after - here) / (step * 1e-2)
     return here / -slope if slope < 0 else None
@@ -322,7 +322,7 @@ def _continued(
         found, other = (np.array([fit(end) for fit in each]) for each in fits)
         if nearness.at(end, found) >= BEYOND * near:
             beyond = found if flow.projection is None else flow.projection.closed(end, found, 0.0)[0]
-            rtol, atol = max(flow.how.rtol, FAIR_RUN), max(flow.how.atol, FAIR_RUN)
+            rtol, atol = max(flow.how.rtol, tolerances.FAIR_RUN), max(flow.how.atol, tolerances.FAIR_RUN)
             allowed = AGREE * (rtol * (1 + np.max(np.abs(found))) + atol)
             if np.max(np.abs(found - other)) > allowed or np.max(np.abs(beyond - found)) > allowed:
                 return None
@@ -337,7 +337,15 @@ def _before(flow: Flow, t: float, x: np.ndarray, window: float, many: int) -> tu
 
     nodes = t - window / 2 * (1 - np.cos(np.pi * np.arange(many) / (many - 1)))
     with np.errstate(all="ignore"):
-        run = solve_ivp(flow.f, (t, t - window), x, method="DOP853", rtol=FINEST_RUN, atol=FINEST_RUN, t_eval=nodes)
+        run = solve_ivp(
+            flow.f,
+            (t, t - window),
+            x,
+            method="DOP853",
+            rtol=tolerances.FINEST_RUN,
+            atol=tolerances.FINEST_RUN,
+            t_eval=nodes,
+        )
     good = run.success and run.y.shape[1] == many and np.all(np.isfinite(run.y))
     if not good:
         return nodes, None

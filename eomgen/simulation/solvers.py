@@ -19,7 +19,7 @@ from eomgen.frozen import dataclass
 from eomgen.model import Model, leaves_of
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression import Expression
-from eomgen.symbolic.numeric import BEST, LEAST_RTOL, SAME_PLACE, SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 
 def breakpoints_of(model: Model) -> tuple[float, ...]:
@@ -41,7 +41,7 @@ def step(solver: Any, breakpoints: Sequence[float], end: float) -> None:
         NotFinite: the right-hand side or its slope has no value.
     """
     if breakpoints:
-        k = bisect_right(breakpoints, solver.t + SOLVED * max(1.0, abs(solver.t)))
+        k = bisect_right(breakpoints, solver.t + tolerances.SOLVED * max(1.0, abs(solver.t)))
         solver.t_bound = min([end, *breakpoints[k : k + 1]])
         if hasattr(solver, "_lsoda_solver"):
             solver._lsoda_solver._integrator.rwork[0] = solver.t_bound
@@ -311,7 +311,7 @@ class Accuracy:
     @property
     def digits(self) -> int:
         """Number of correct digits at the end."""
-        return max(0, math.floor(-math.log10(max(self.error, BEST)))) if self.until is None else 0
+        return max(0, math.floor(-math.log10(max(self.error, tolerances.BEST)))) if self.until is None else 0
 
     def as_dict(self) -> dict[str, float | None]:
         return {"digits": self.digits, "error": self.error if math.isfinite(self.error) else None, "until": self.until}
@@ -325,7 +325,7 @@ class Accuracy:
 
 def finer(tolerance: float) -> float:
     """The tolerance of the run that one is held against; a coarser one where there is no finer."""
-    return tolerance / FINER if tolerance / FINER >= LEAST_RTOL else tolerance * FINER
+    return tolerance / FINER if tolerance / FINER >= tolerances.LEAST_RTOL else tolerance * FINER
 
 
 def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | None:
@@ -339,7 +339,9 @@ def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | 
     if run.coordinates + run.speeds != other.coordinates + other.speeds or not len(common):
         return None
     ended = common[-1] < run.t[-1]  # the other came to another end
-    if ended and abs(run.t[-1] - other.t[-1]) <= SAME_PLACE * (run.t[-1] - run.t[0]):  # both at the same event
+    if ended and abs(run.t[-1] - other.t[-1]) <= tolerances.SAME_PLACE * (
+        run.t[-1] - run.t[0]
+    ):  # both at the same event
         common, ended = np.append(common, run.t[-1]), False
         mine, its = np.append(mine, len(run.t) - 1), np.append(its, len(other.t) - 1)
     largest = np.max(np.abs(run.x), axis=0, initial=0.0)

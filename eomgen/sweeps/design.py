@@ -26,7 +26,7 @@ from eomgen.files import json_text
 from eomgen.frozen import dataclass
 from eomgen.model import Model, Taken, TypedNumbers, loads, nearest, refuse_what_is_not_set, with_values
 from eomgen.sensitivities import slope_requested
-from eomgen.symbolic.numeric import RUN
+from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
 
 DesignKind = Literal["random", "sobol", "lhs"]
@@ -272,8 +272,8 @@ class Stepped:
     """Settings of the integration of each run."""
 
     time: float = 10.0
-    rtol: float = RUN
-    atol: float = RUN
+    rtol: float = tolerances.RUN
+    atol: float = tolerances.RUN
     method: str = "DOP853"
 
 

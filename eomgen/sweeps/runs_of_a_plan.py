@@ -49,7 +49,7 @@ from eomgen.sweeps.workers import (
     value_of_run,
 )
 from eomgen.symbolic.expression import Typed, seconds
-from eomgen.symbolic.numeric import RUN, SOLVED, another_stretch
+from eomgen.symbolic.numeric import another_stretch, tolerances
 
 PLAN, LEDGER, TABLE, PARQUET, CRITICAL = "plan.json", "ledger.sqlite", "table.csv", "table.parquet", "critical.csv"
 BLOCK = 100_000  # runs whose rows are looked for at once
@@ -190,8 +190,8 @@ def sweep(
     workers: int = 1,
     executor: Any = None,
     out: str | Path | None = None,
-    rtol: float = RUN,
-    atol: float = RUN,
+    rtol: float = tolerances.RUN,
+    atol: float = tolerances.RUN,
     method: str = "DOP853",
 ) -> Sweep:
     """Many runs of a model, each by its number alone; runs that are done in `out` are not repeated.
@@ -574,7 +574,7 @@ def bisected(
         return found
 
     try:
-        root = float(brentq(value, a, b, xtol=SOLVED * max(abs(a), abs(b)), rtol=SOLVED))
+        root = float(brentq(value, a, b, xtol=tolerances.SOLVED * max(abs(a), abs(b)), rtol=tolerances.SOLVED))
         left = abs(value(root))
     except RunFailed as error:
         return number, reported, name, None, None, error.what

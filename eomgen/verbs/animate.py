@@ -44,7 +44,7 @@ from eomgen.questions import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation import Stepping, Trajectory
 from eomgen.symbolic.expression import Typed
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 from eomgen.verbs.outcome import with_start_reported
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
@@ -353,7 +353,7 @@ def _ending(path: str) -> str:
 
 def _shown(run: Trajectory, times: np.ndarray, showing: Showing, strip: bool) -> Movie:
     """The frames up to where the run ended; of a strip that shows one place over and over those of one round."""
-    here = times[times <= run.t[-1] * (1 + COMPUTED)] if len(run.t) else times[:0]
+    here = times[times <= run.t[-1] * (1 + tolerances.COMPUTED)] if len(run.t) else times[:0]
     movie = movie_of(run, here, trail=showing.trail, forces=showing.forces)
     if strip and len(here) > 1 and movie.stands_still and (one := _round(run, float(here[1] - here[0]))):
         return movie_of(run, one * np.arange(len(here)) / len(here), trail=showing.trail, forces=showing.forces)

@@ -56,7 +56,7 @@ from eomgen.questions import Answers, solve
 from eomgen.simulation import ReactionColumns
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Fraction, parse
-from eomgen.symbolic.numeric import ROUNDING, doing
+from eomgen.symbolic.numeric import doing, tolerances
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
 from eomgen.verbs.outcome import listed, with_start_reported
@@ -232,7 +232,7 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
         values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
     except (MissingValues, DerivationError, ModelError) as error:
         return {}, f"{error.what}; {error.fix}" if isinstance(error, DerivationError) and error.fix else error.what
-    rounding = ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
+    rounding = tolerances.ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
     return {
         n: float(x) if abs(x) > rounding else 0.0
         for n, x in zip(columns.names, values, strict=True)

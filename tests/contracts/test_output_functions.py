@@ -26,8 +26,8 @@ from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.instant import second_definition
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import CARRIED
 
 pytestmark = pytest.mark.slow
 
@@ -332,7 +332,9 @@ def test_its_unit_is_the_one_in_which_its_number_grows(name, call):
         factor *= SIZES["time"] if "speed" in function.kinds[k] else 1
     found = value_of(name, call)
     assert math.isfinite(found)
-    assert value_of(name, call, units=True) == pytest.approx(float(factor) * found, rel=CARRIED, abs=CARRIED)
+    assert value_of(name, call, units=True) == pytest.approx(
+        float(factor) * found, rel=tolerances.CARRIED, abs=tolerances.CARRIED
+    )
 
 
 def test_functions_of_small_motions_are_none_of_a_state():

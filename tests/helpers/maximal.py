@@ -27,9 +27,9 @@ from eomgen.mechanics.reactions.equilibrium import BodyNumbers
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.dense import balanced, independent, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
 
 
 def free_body_accelerations(system: System, state: State) -> np.ndarray:
@@ -74,8 +74,8 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     J = without_rounding(A[multipliers, speeds])
     A[:, multipliers] *= np.any(J, axis=1)  # what says nothing pushes nothing
     A[multipliers, speeds] = J
-    regular = independent(J, smallest=LEAST_CHANGE)
-    return dense_solution(A, right, regular=regular, smallest=LEAST_CHANGE)[speeds]
+    regular = independent(J, smallest=tolerances.LEAST_CHANGE)
+    return dense_solution(A, right, regular=regular, smallest=tolerances.LEAST_CHANGE)[speeds]
 
 
 def _put_bodies(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, speeds: slice) -> None:

@@ -17,8 +17,8 @@ from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.start.exact import declared_start
 from eomgen.proof.trials import Trials
 from eomgen.study import study_of
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
 
 BALL = """
 eomgen = 1
@@ -403,7 +403,7 @@ def test_states_in_which_ties_close_do_so_to_their_last_digits(tmp_path):
     norms = norms_of(graph.system.constraints)
     for _, supply in Trials(graph).states.supplies:
         for place, _ in zip(supply, range(2), strict=False):
-            assert all(abs(x) < CERTAIN_AT_50**1.2 for x in evaluate(norms, place.state, fifty_digits()))
+            assert all(abs(x) < tolerances.CERTAIN_AT_50**1.2 for x in evaluate(norms, place.state, fifty_digits()))
 
 
 def test_kinetic_energies_that_are_given_count_in_the_second_definitions(tmp_path):

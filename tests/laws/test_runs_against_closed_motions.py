@@ -19,7 +19,7 @@ from scipy.interpolate import CubicSpline
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 pytestmark = pytest.mark.slow
 
@@ -502,7 +502,9 @@ def test_a_condition_that_holds_as_phases_change_ends_the_run():
         assert run["x"][-1] == pytest.approx(v / 4 + v**2 / (0.6 * G), abs=1e-6)
     run = ran(PUSHED.replace("HEIGHT", "2"), 5, until="y' = 0")
     assert (
-        run.status == "event" and run.t[-1] == pytest.approx(np.sqrt(4 / G), abs=1e-6) and abs(run["y'"][-1]) < COMPUTED
+        run.status == "event"
+        and run.t[-1] == pytest.approx(np.sqrt(4 / G), abs=1e-6)
+        and abs(run["y'"][-1]) < tolerances.COMPUTED
     )
     assert "closes" in run.phases[0].ended_by
 

@@ -26,7 +26,7 @@ from eomgen.codegen.program import Assign, Program
 from eomgen.codegen.targets.base import OUTPUTS, RHS, Called, Description, Emitted, FileContent, Role, Target, header
 from eomgen.codegen.targets.c import CONSTANTS, apart, c_functions, c_text
 from eomgen.errors import RunFailed, ToolMissing
-from eomgen.symbolic.numeric import BEST, JUMPS, RUN
+from eomgen.symbolic.numeric import JUMPS, tolerances
 
 ROLES = ("rhs", "outputs", "reactions")
 UNTIL_STUCK = (0.2, 0.1, 0.05, 0.02)  # s, that its own test simulates: the longest that a solver without events can
@@ -126,8 +126,8 @@ def source(stem: str, emitted: Sequence[Emitted]) -> str:
         "CONSTANTS": re.findall(CONSTANTS, parts[0])[0],
         "FIRST_X": _braces(start[0]),
         "FIRST_P": _braces(start[1]),
-        "TOLERANCE": repr(RUN),
-        "SMALLEST": repr(BEST),
+        "TOLERANCE": repr(tolerances.RUN),
+        "SMALLEST": repr(tolerances.BEST),
         "TOKEN": f'"{token(stem, emitted)}"',
         "MAKE_CONSTANTS": f"{stem}_constants",
         "EVALUATE": f"{stem}_evaluate",
@@ -245,7 +245,7 @@ def fmu_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     sizes = {"parameters": len(program.symbols.parameters), "inputs": len(program.symbols.inputs)}
     kinds = [(reported.role.name, first) for (_, reported), first in zip(kept, firsts, strict=True)]
     times = UNTIL_STUCK if _jumps(program) else UNTIL_STUCK[:1]
-    test = _TEST.format(times=times, run=RUN, stem=stem, states=len(program.states), kinds=kinds, **sizes)
+    test = _TEST.format(times=times, run=tolerances.RUN, stem=stem, states=len(program.states), kinds=kinds, **sizes)
     return {f"{stem}.fmu": packed.getvalue(), f"test_{stem}_fmu.py": test}
 
 

@@ -21,7 +21,7 @@ from eomgen.codegen.targets.base import (
     functions_by,
 )
 from eomgen.errors import ToolMissing
-from eomgen.symbolic.numeric import DEPENDENT_EASE, TINIEST
+from eomgen.symbolic.numeric import tolerances
 
 _TEST = '''\
 """Held against the answers in test_vectors.json: python -m pytest"""
@@ -147,11 +147,11 @@ def solve_factors(M, J, L, weight, mobility, Y, S, order):
     mean = sum((rows[i][i] for i in range(n)), 0.0)/n
     d = [1/sqrt(_where_positive(rows[i][i], rows[i][i], mean)) for i in range(n)]
     J = [[J[m*n + i]*d[i] for i in range(n)] for m in range(k)]
-    sizes = [1/sqrt(sum((x*x for x in row), {TINIEST!r})) for row in J]
+    sizes = [1/sqrt(sum((x*x for x in row), {tolerances.TINIEST!r})) for row in J]
     J = _matrix([[x*size for x in row] for row, size in zip(J, sizes)], k, n)
     M = _matrix([[rows[i][j]*d[i]*d[j] for j in range(n)] for i in range(n)], n, n)
     A = _factors(M + J.T @ J)
-    L[:] = M, J, A, _factors(J @ _solved(A, J.T) + {DEPENDENT_EASE!r}*_one(k)), d, sizes
+    L[:] = M, J, A, _factors(J @ _solved(A, J.T) + {tolerances.DEPENDENT_EASE!r}*_one(k)), d, sizes
 
 
 '''
@@ -166,7 +166,7 @@ def solve_by(M, J, L, weight, mobility, Y, S, order, f, g):
         more = _solved(A, left + J.T @ open_)
         pull = open_ - J @ more
         for _ in range({POWER - 1}):
-            pull = pull - {DEPENDENT_EASE!r}*_solved(S, pull)
+            pull = pull - {tolerances.DEPENDENT_EASE!r}*_solved(S, pull)
         pull = _solved(S, pull)
         a, lam = a + more + _solved(A, J.T @ pull), lam + pull + open_
     f[:] = [a[i, 0]*d[i] for i in range(n)]

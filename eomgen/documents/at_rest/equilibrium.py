@@ -58,7 +58,7 @@ from eomgen.proof import (
     unchecked,
 )
 from eomgen.symbolic.expression import Node, Scalar, Unit
-from eomgen.symbolic.numeric import SAME_PLACE
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
 # -------- equilibrium result ----------------------------------------------------------------------------------
@@ -341,11 +341,11 @@ def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
     for k, name in enumerate(names):
         if k == first:
             continue
-        if moved[k] <= SAME_PLACE:
+        if moved[k] <= tolerances.SAME_PLACE:
             reported.append(f"{name} = {in_own_unit(model, name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
             continue
         offsets = {sign: points[:, k] - sign * points[:, first] for sign in (1, -1)}
-        sign = next((s for s, x in offsets.items() if np.ptp(x) <= SAME_PLACE), 0)
+        sign = next((s for s, x in offsets.items() if np.ptp(x) <= tolerances.SAME_PLACE), 0)
         away = in_own_unit(model, name, float(abs(offsets[sign or 1][0])), 9)
         plus = "+" if float(offsets[sign or 1][0]) >= 0 else "-"
         other = f"{'-' if sign < 0 else ''}{names[first]} {plus} {away}"

@@ -41,7 +41,7 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.model import Couple, Model, PointForce, SpreadLoad, exact_parameters
 from eomgen.symbolic.expression import ZERO, Node, Scalar
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, SAME_PLACE, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import to_text
 
 # -------- picture ---------------------------------------------------------------------------------------------
@@ -262,7 +262,7 @@ def draw_structure(panel: Any, scene: StaticScene) -> None:
     for load, name in scene.spreads():
         _spread(panel, scene, load, name)
     for tip, force, color, label in scene.forces:
-        if math.hypot(*force) > COMPUTED * scene.largest:
+        if math.hypot(*force) > tolerances.COMPUTED * scene.largest:
             vector = scene.length(force)
             arrow(panel, tip, vector, color=color, label=label, outward=is_freer_outward(scene.lines, tip, vector))
     for at, sense, color, label in scene.couples():
@@ -291,7 +291,7 @@ def _members(panel: Any, scene: StaticScene) -> None:
             continue
         (value,) = scene.sketch.numbers((reaction.value,))
         a, b = (np.array(scene.sketch.position((node, ZERO))) for node in (first, second))
-        small = abs(value) < COMPUTED * scene.largest
+        small = abs(value) < tolerances.COMPUTED * scene.largest
         color = "#808080" if small else TENSION if value > 0 else COMPRESSION
         name_along(panel, "0" if small else scene.label(reaction.value), (a, b), color)
         panel.plot(*np.array([a, b]).T, color=color, linewidth=1.8, zorder=2)
@@ -353,7 +353,9 @@ def influence_panel(panel: Any, line: InfluenceLine, values: Mapping[Node, float
 def _is_level(line: InfluenceLine, values: Mapping[Node, float]) -> bool:
     heights = [_numbers((span.start[1], span.end[1]), values) for span in line.spans]
     starts = [_numbers((span.start[0], span.end[0]), values) for span in line.spans]
-    return bool(np.ptp(heights) < COMPUTED * max(1.0, np.abs(heights).max())) and all(b >= a for a, b in starts)
+    return bool(np.ptp(heights) < tolerances.COMPUTED * max(1.0, np.abs(heights).max())) and all(
+        b >= a for a, b in starts
+    )
 
 
 def _extreme(extreme: Extreme, values: Mapping[Node, float], scale: Scale) -> tuple[float, float]:
@@ -385,8 +387,10 @@ def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
     width = max((abs(x) for x, _ in points), default=1.0) or 1.0
     shown: list[tuple[float, ...]] = []
     for x, y in sorted(points, key=lambda point: -abs(point[1])):  # the largest choose their places first
-        twin = any(abs(x - a) < SAME_PLACE * width and abs(y - b) <= COMPUTED * largest for a, b in shown)
-        if abs(y) > COMPUTED * largest and not twin:
+        twin = any(
+            abs(x - a) < tolerances.SAME_PLACE * width and abs(y - b) <= tolerances.COMPUTED * largest for a, b in shown
+        )
+        if abs(y) > tolerances.COMPUTED * largest and not twin:
             shown.append((x, y))
     names = [PlacedName(figures(y), (x, y), INK, 8.0, rank) for rank, (x, y) in enumerate(shown)]
     panel.add_artist(NamesArtist(names, [np.column_stack(line.get_data()) for line in panel.lines[1:]]))

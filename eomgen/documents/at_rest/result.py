@@ -51,7 +51,7 @@ from eomgen.proof import (
 )
 from eomgen.study import study_at_rest
 from eomgen.symbolic.expression import Scalar
-from eomgen.symbolic.numeric import COMPUTED, doing
+from eomgen.symbolic.numeric import doing, tolerances
 from eomgen.symbolic.print import to_text
 
 MOST_REPORTED = 8  # reactions whose virtual work is read again
@@ -111,7 +111,7 @@ class Statics(Result):
     def broken(self) -> tuple[str, ...]:
         """Violated conditions of contacts, in words: then the structure is not at rest like this."""
         margins = self._numbers([(c.broken, c.margin) for c in self.conditions])
-        return tuple(words for words, margin in margins.items() if margin < -COMPUTED)
+        return tuple(words for words, margin in margins.items() if margin < -tolerances.COMPUTED)
 
     @cached_property
     def sections(self) -> Sections:

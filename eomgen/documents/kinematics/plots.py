@@ -16,7 +16,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import FIXED, Centrodes, KinematicState, Mechanism
 from eomgen.mechanics.kinematics import field_of
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, order, substituted, symbols_of
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, evaluate
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 # -------- centrode plot ---------------------------------------------------------------------------------------
 # Centrodes, an instant -> a panel: the curve in the ground, and the body's own that rolls on it, as it lies then.
@@ -83,7 +83,7 @@ def _configurations(system: System, body: str, values: State) -> list[State]:
         rates, length = (0, *(row[0] for row in scope.N)), _reach(system, values)
     else:
         spin = abs(float(evaluate((field_of(system.motion, body).w[2],), values, FLOAT)[0]))
-        rates, length = (1, *scope.rates), math.pi / spin if spin > COMPUTED else 1.0
+        rates, length = (1, *scope.rates), math.pi / spin if spin > tolerances.COMPUTED else 1.0
     slope = _slope(system, rates, values)
     before, after = (_followed(system, slope, values, sign * length / STEPS) for sign in (-1, 1))
     return [*reversed(before), values, *after]

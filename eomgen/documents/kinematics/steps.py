@@ -62,7 +62,7 @@ from eomgen.symbolic.expression import (
     times,
     transposed,
 )
-from eomgen.symbolic.numeric import COMPUTED, ZERO_AT_50, Work
+from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size, to_text
 from eomgen.symbolic.solve import vanishes
 
@@ -538,7 +538,9 @@ def cell(state: KinematicState, x: Scalar) -> Cell:
     number = state.number(x)
     if number is None:
         return x if text_size(x) <= 2 * LONGEST else Omitted(((x,),))
-    return f"{0.0 if abs(number) < (ZERO_AT_50 if state.exact else COMPUTED) else number:.{DIGITS}g}"
+    return (
+        f"{0.0 if abs(number) < (tolerances.ZERO_AT_50 if state.exact else tolerances.COMPUTED) else number:.{DIGITS}g}"
+    )
 
 
 def in_numbers(state: KinematicState, step: Step) -> Step:

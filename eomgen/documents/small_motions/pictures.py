@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import LinearEquations, Mode, Modes, SmallMotions, state_matrix_of
 from eomgen.model import Range, exact_parameters
 from eomgen.symbolic.expression import Node
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, ITERATED, WIDE_STEP, NoValue, evaluate
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
 
 # -------- picture ---------------------------------------------------------------------------------------------
 # Modes -> a picture: the system swung out in each mode over its reference, or the shapes as bars.
@@ -85,7 +85,7 @@ def _at_rest(modes: Modes) -> Sketch:
 
 def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch) -> float:
     """Amplitude of a mode's picture: no point of the drawing moves by more than PART of its extent."""
-    aside = {**values, **{q: values[q] + WIDE_STEP * x.real for q, x in mode.shape.items()}}
+    aside = {**values, **{q: values[q] + tolerances.WIDE_STEP * x.real for q, x in mode.shape.items()}}
     there = Sketch(system, aside)
     moved = [
         abs(b - a).max()
@@ -93,7 +93,7 @@ def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch
         for a, b in zip(here.lines(link), there.lines(link), strict=True)
     ]
     largest = max(moved, default=0.0)
-    return PART * here.extent * WIDE_STEP / largest if largest > 0 else 0.0
+    return PART * here.extent * tolerances.WIDE_STEP / largest if largest > 0 else 0.0
 
 
 def _bars(panel: Any, modes: Modes, mode: Mode) -> None:
@@ -164,7 +164,7 @@ def dashes(curves: Sequence[np.ndarray]) -> list[Any]:
         [
             k
             for k, other in enumerate(curves)
-            if np.allclose(other, own, rtol=COMPUTED, atol=COMPUTED * np.abs(own).max())
+            if np.allclose(other, own, rtol=tolerances.COMPUTED, atol=tolerances.COMPUTED * np.abs(own).max())
         ]
         for own in curves
     ]
@@ -185,7 +185,7 @@ def _right_angles(phases: Sequence[np.ndarray]) -> np.ndarray:
 def _frequencies(A: np.ndarray) -> np.ndarray:
     """Frequencies from below the slowest to above the fastest mode [rad/s]."""
     sizes = np.abs(np.linalg.eigvals(A))
-    moving = sizes[sizes > ITERATED * sizes.max()] if sizes.max() > 0 else np.ones(1)
+    moving = sizes[sizes > tolerances.ITERATED * sizes.max()] if sizes.max() > 0 else np.ones(1)
     low, high = np.log10(moving.min()) - DECADES, np.log10(moving.max()) + DECADES
     found: np.ndarray = np.logspace(low, high, FINE)
     return found

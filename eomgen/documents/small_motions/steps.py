@@ -50,7 +50,7 @@ from eomgen.mechanics.start import known_exactly
 from eomgen.mechanics.state import Entries
 from eomgen.proof import PrintedModes
 from eomgen.symbolic.expression import Node, Scalar, depends_on, is_zero, over, symbols_of
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, SOLVED, evaluate, numbers_of
+from eomgen.symbolic.numeric import FLOAT, evaluate, numbers_of, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
@@ -175,7 +175,7 @@ def _symmetric(modes: Modes, A: Entries) -> bool:
     if modes.small.exact is None:
         n = range(len(A))
         largest = max((abs(x) for row in A for x in row), default=0)
-        return all(abs(A[i][j] - A[j][i]) <= COMPUTED * largest for i in n for j in n)
+        return all(abs(A[i][j] - A[j][i]) <= tolerances.COMPUTED * largest for i in n for j in n)
     return all(is_zero(modes.tidy(A[i][j] - A[j][i])) for i in range(len(A)) for j in range(i))
 
 
@@ -261,7 +261,7 @@ def _in_numbers(coefficients: np.ndarray) -> Law:
     terms = [
         (f"{x:.7g}".replace("+0", "").replace("-0", "-"), n - k)
         for k, x in enumerate(coefficients)
-        if abs(x) > SOLVED * largest
+        if abs(x) > tolerances.SOLVED * largest
     ]
     plain = [c + {0: "", 1: "*s"}.get(k, f"*s^{k}") for c, k in terms]
     latex = [_latex_number(c) + {0: "", 1: " s"}.get(k, f" s^{{{k}}}") for c, k in terms]

@@ -43,13 +43,6 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    OPEN_GAP,
-    RANK,
-    SHARE,
-    SOLVED,
-    TINIEST,
     Newton,
     NoValue,
     all_roots,
@@ -57,6 +50,7 @@ from eomgen.symbolic.numeric import (
     fifty_digits,
     lengths_of,
     of_one_length,
+    tolerances,
 )
 
 SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
@@ -104,7 +98,7 @@ def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int
 def _differs(declared: Scalar, q: Node, state: State) -> bool:
     """True if a coordinate differs from its declared start."""
     before = float(evaluate((declared,), state, fifty_digits())[0])
-    return abs(float(state[q]) - before) > COMPUTED * (1 + abs(before))
+    return abs(float(state[q]) - before) > tolerances.COMPUTED * (1 + abs(before))
 
 
 def with_gaps_closed(constraints: Constraints, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
@@ -161,7 +155,7 @@ def open_by(x: Scalar, symbols: Sequence[Node], state: State) -> float:
     except (NoValue, ZeroDivisionError):
         return float("inf")
     steepest = float(max((abs(slope) for slope in slopes), default=0))
-    return value if value > OPEN_GAP * terms and value > COMPUTED * steepest else 0.0
+    return value if value > tolerances.OPEN_GAP * terms and value > tolerances.COMPUTED * steepest else 0.0
 
 
 def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
@@ -195,7 +189,7 @@ _OF_TERMS: dict[str, Callable[..., Any]] = {
 
 
 TRIES = 12  # places from which they are sought
-ALONG_A_BRANCH = Newton(enough=SOLVED, steps=50, smallest=RANK)
+ALONG_A_BRANCH = Newton(enough=tolerances.SOLVED, steps=50, smallest=tolerances.RANK)
 
 
 @dataclass(frozen=True)
@@ -230,7 +224,7 @@ def fork_at(constraints: Constraints, state: State) -> Fork | None:
     J = _matrix(constraints, state)
     lengths = lengths_of(J, 1, keepdims=True)
     U, sizes, _ = np.linalg.svd(of_one_length(J))
-    here = int(np.sum(sizes > RANK))
+    here = int(np.sum(sizes > tolerances.RANK))
     if here == len(constraints.closing):
         return None
     more = rank_of_constraints(constraints) - here
@@ -238,19 +232,19 @@ def fork_at(constraints: Constraints, state: State) -> Fork | None:
         return None
     shares = np.max(np.abs(U[:, here:]), axis=1)
     names = dict.fromkeys(
-        row.constraint for row, share in zip(constraints.closing, shares, strict=True) if share > SHARE
+        row.constraint for row, share in zip(constraints.closing, shares, strict=True) if share > tolerances.SHARE
     )
     return Fork(tuple(names), more, U[:, here:].T / np.where(lengths > 0, lengths, 1.0).T)
 
 
 def leads_on(constraints: Constraints, fork: Fork, state: State) -> bool:
     """True if accelerations exist with these speeds: J a + gamma = 0."""
-    return bool(_Search(constraints, fork, state, ()).size(np.zeros(0)) <= CARRIED)
+    return bool(_Search(constraints, fork, state, ()).size(np.zeros(0)) <= tolerances.CARRIED)
 
 
 def is_at_rest(constraints: Constraints, state: State) -> bool:
     """True if all speeds are 0 in the state."""
-    return all(abs(state[u]) <= SOLVED for u in constraints.motion.scope.symbols.u)
+    return all(abs(state[u]) <= tolerances.SOLVED for u in constraints.motion.scope.symbols.u)
 
 
 def speeds_along(
@@ -315,10 +309,10 @@ class _Search:
         values = self._at(d, (*(row.velocity for row in self.constraints.closing), *self.constraints.gamma))
         u = np.array([float(self._moved(d)[x]) for x in self.constraints.motion.scope.symbols.u])
         J, fastest = np.abs(_matrix(self.constraints, self.state)), np.max(np.abs(u), initial=0.0)
-        of_speed = max(np.max(J @ np.abs(u), initial=0.0), np.max(np.abs(values[:k]), initial=0.0), TINIEST)
+        of_speed = max(np.max(J @ np.abs(u), initial=0.0), np.max(np.abs(values[:k]), initial=0.0), tolerances.TINIEST)
         own = np.abs(self.fork.left) @ (np.abs(values[k:]) + np.max(J, initial=0.0) * fastest**2)
         f = np.append(values[:k], self.fork.left @ values[k:])
-        return f, np.append(np.full(k, of_speed), np.maximum(own, TINIEST))
+        return f, np.append(np.full(k, of_speed), np.maximum(own, tolerances.TINIEST))
 
     def _slope(self, d: np.ndarray) -> np.ndarray:
         k = len(self.constraints.closing)

@@ -20,24 +20,9 @@ from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.state import Numbers
 from eomgen.model import Model, exact_parameters, first_guesses, start_values
 from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian, sqrt
-from eomgen.symbolic.numeric import (
-    CLOSED_AT_50,
-    DEGENERATE,
-    LEAST_CHANGE,
-    RANK,
-    ROUNDED_AWAY,
-    SAME_PLACE,
-    SOLVED,
-    SUMMED,
-    Newton,
-    NoValue,
-    balanced,
-    evaluate,
-    fifty_digits,
-    lengths_of,
-)
+from eomgen.symbolic.numeric import Newton, NoValue, balanced, evaluate, fifty_digits, lengths_of, tolerances
 
-CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)
+CLOSING = Newton(enough=tolerances.CLOSED_AT_50, stalls=tolerances.SUMMED, damped=True, again=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
@@ -192,7 +177,7 @@ def closed(
     found = nearest_root((*gaps_of(constraints), *norms_of(constraints)), state, free, sizes)
     if found is None:
         return None
-    return found | {q: state[q] for q in free if abs(found[q] - state[q]) < ROUNDED_AWAY}
+    return found | {q: state[q] for q in free if abs(found[q] - state[q]) < tolerances.ROUNDED_AWAY}
 
 
 def nearest_root(
@@ -231,7 +216,7 @@ def speeds_closed(constraints: Constraints, state: State) -> State:
     if not constraints.closing or not u:
         return state
     J, open_rate = _rates(constraints, state)
-    step = np.linalg.lstsq(J, -open_rate, rcond=LEAST_CHANGE)[0]
+    step = np.linalg.lstsq(J, -open_rate, rcond=tolerances.LEAST_CHANGE)[0]
     return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}
 
 
@@ -300,7 +285,7 @@ def nearest_speeds(constraints: Constraints, state: State, tiers: Tiers, M: np.n
         step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier], block)
         found = found + J[:, columns[k]] @ step[columns[k]]
     size = np.max(abs(J) @ abs(step) + abs(open_rate))
-    if np.any(abs(J @ step + open_rate) > RANK * size):
+    if np.any(abs(J @ step + open_rate) > tolerances.RANK * size):
         return None
     return state | {x: state[x] + float(d) for x, d in zip(u, step, strict=True) if d}
 
@@ -312,12 +297,12 @@ def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray, M: np.ndarray | 
     P = np.eye(len(J))
     if others.shape[1]:
         unit = others / _slopes(others)
-        P = P - unit @ np.linalg.pinv(unit, rcond=RANK)
+        P = P - unit @ np.linalg.pinv(unit, rcond=tolerances.RANK)
     unit = _unit(J, M)
     rows = P @ J @ unit
-    rows = np.where(abs(rows) > RANK * np.max(abs(J @ unit)), rows, 0.0)
-    open_ = np.where(abs(P @ left) > SOLVED * np.max(abs(left), initial=0.0), P @ left, 0.0)
-    found: np.ndarray = unit @ np.linalg.lstsq(rows, -open_, rcond=RANK)[0]
+    rows = np.where(abs(rows) > tolerances.RANK * np.max(abs(J @ unit)), rows, 0.0)
+    open_ = np.where(abs(P @ left) > tolerances.SOLVED * np.max(abs(left), initial=0.0), P @ left, 0.0)
+    found: np.ndarray = unit @ np.linalg.lstsq(rows, -open_, rcond=tolerances.RANK)[0]
     return found
 
 
@@ -342,7 +327,7 @@ def regular(constraints: Constraints, state: State, free: Sequence[Node]) -> boo
     J = [_slope(constraints, each, free) for each in (state, _another(constraints, state, free))]
     _, rows, columns = balanced(J[1])
     here, there = (np.linalg.svd(rows[:, None] * each * columns, compute_uv=False) for each in J)
-    smallest = RANK * np.max(there, initial=0.0)
+    smallest = tolerances.RANK * np.max(there, initial=0.0)
     return bool(np.sum(here > smallest) >= np.sum(there > smallest))
 
 
@@ -352,7 +337,7 @@ def _another(constraints: Constraints, state: State, free: Sequence[Node]) -> St
         other = generic_state(constraints)
     except (DerivationError, MissingValues):
         return scattered_state(constraints)
-    same = all(abs(other[q] - state[q]) < SAME_PLACE for q in free)
+    same = all(abs(other[q] - state[q]) < tolerances.SAME_PLACE for q in free)
     return scattered_state(constraints) if same else other
 
 
@@ -402,7 +387,9 @@ def _moved(constraints: Constraints, state: State, free: Sequence[Node]) -> Cons
         values = evaluate(gaps, state, fifty_digits())
     except (NoValue, ZeroDivisionError):
         return None
-    if any(abs(x) > SOLVED * max(size, DEGENERATE) for x, size in zip(values, sizes, strict=True)):
+    if any(
+        abs(x) > tolerances.SOLVED * max(size, tolerances.DEGENERATE) for x, size in zip(values, sizes, strict=True)
+    ):
         return None
     return replace(constraints, rows=tuple(row for row in constraints.rows if row not in others))
 
@@ -434,7 +421,7 @@ def _turned_back(constraints: Constraints, before: State, found: State, guessed:
         if not turns:
             continue
         back = found | {q: found[q] - turns * turn}
-        if all(abs(x) <= CLOSED_AT_50 for x in evaluate(gaps_of(constraints), back, fifty_digits())):
+        if all(abs(x) <= tolerances.CLOSED_AT_50 for x in evaluate(gaps_of(constraints), back, fifty_digits())):
             found = back
     return found
 
@@ -459,8 +446,8 @@ def _walked(
         assert found is not None
         J = _slope(constraints, found, free) * sizes
         left = np.array([float(wanted[q] - found[q]) for q in free]) / sizes
-        along = left - np.linalg.pinv(J, rcond=RANK) @ (J @ left)
-        if np.max(abs(along), initial=0.0) < SOLVED:
+        along = left - np.linalg.pinv(J, rcond=tolerances.RANK) @ (J @ left)
+        if np.max(abs(along), initial=0.0) < tolerances.SOLVED:
             break
         moved = found | {q: found[q] + float(d) for q, d in zip(free, sizes * along, strict=True)}
         found = closed(constraints, moved, free, sizes) or found
@@ -479,7 +466,7 @@ def _slope(constraints: Constraints, state: State, free: Sequence[Node]) -> np.n
 def _slopes(J: np.ndarray) -> np.ndarray:
     """Length of each column of J, bounded below so that none is 0."""
     lengths = lengths_of(J, 0)
-    return np.asarray(np.maximum(lengths, DEGENERATE * (np.max(lengths, initial=0.0) or 1.0)))
+    return np.asarray(np.maximum(lengths, tolerances.DEGENERATE * (np.max(lengths, initial=0.0) or 1.0)))
 
 
 def bilateral(constraints: Constraints, ending: Sequence[str], holds: Sequence[str]) -> Constraints:

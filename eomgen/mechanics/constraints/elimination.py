@@ -22,7 +22,7 @@ from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics import Scope, shorter, with_speeds_named
 from eomgen.mechanics.state import Split
 from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations, order, substituted
-from eomgen.symbolic.numeric import RANK, NoValue, dense, rank
+from eomgen.symbolic.numeric import NoValue, dense, rank, tolerances
 from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]
@@ -178,7 +178,7 @@ def _following(J: np.ndarray, rows: list[int], dependent: tuple[int, ...], kept:
 def _released_by(J_d: np.ndarray) -> list[int]:
     """Dependent speed of each row, all different, that becomes free without that row: its entry of J_d^-1 is not 0."""
     moved = abs(np.linalg.inv(J_d)).T
-    found = cramer.matching([np.flatnonzero(row > RANK * max(row)).tolist() for row in moved])
+    found = cramer.matching([np.flatnonzero(row > tolerances.RANK * max(row)).tolist() for row in moved])
     return [found[i] for i in range(len(J_d))]
 
 
@@ -243,7 +243,7 @@ class _LinearRows:
                 J = (rows_where_closed(self.constraints, state) / dense.divisor(lengths))[rows]
                 J_d = J[:, self.dependent]
                 whole = np.linalg.det(J_d.T @ J_d)
-                if whole > RANK and rank(J) == len(self.rows):  # on another branch they need not follow
+                if whole > tolerances.RANK and rank(J) == len(self.rows):  # on another branch they need not follow
                     shares.append(np.linalg.det(J_d[: len(self.rows)]) ** 2 / whole)
         return min(shares, default=1.0) < LEAN * max(shares, default=1.0)
 

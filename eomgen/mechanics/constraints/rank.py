@@ -39,10 +39,6 @@ from eomgen.symbolic.expression import (
     tangent,
 )
 from eomgen.symbolic.numeric import (
-    CERTAIN_AT_50,
-    RANK,
-    RANK_NEARBY,
-    SHARE,
     NoValue,
     Work,
     closed_entries,
@@ -50,6 +46,7 @@ from eomgen.symbolic.numeric import (
     fifty_digits,
     independent_rows,
     lengths_of,
+    tolerances,
 )
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
@@ -239,7 +236,7 @@ def redundant_rows(constraints: Constraints, state: State | None = None) -> tupl
     if not closing:
         return ()
     J = rows_where_closed(constraints, state or generic_state(constraints))
-    kept = independent_rows(J, RANK_NEARBY)
+    kept = independent_rows(J, tolerances.RANK_NEARBY)
     return tuple(
         Redundant(
             row.constraint,
@@ -264,13 +261,15 @@ def rows_alike(constraints: Constraints) -> tuple[int, ...]:
         J = rows_where_closed(constraints, generic_state(constraints))
     except (DerivationError, MissingValues, NoValue):
         return own
-    kept, lengths, found = independent_rows(J, RANK_NEARBY), lengths_of(J, 1), list(own)
+    kept, lengths, found = independent_rows(J, tolerances.RANK_NEARBY), lengths_of(J, 1), list(own)
     for i in own:
         if i in kept or not lengths[i]:
             continue
         shares = np.linalg.lstsq(J[kept].T, J[i], rcond=None)[0] * lengths[kept] / lengths[i]
         near = (lengths[kept] < LONGER * lengths[i]) & (LONGER * lengths[kept] > lengths[i])
-        sharing = {found[k] for k, share, one in zip(kept, shares, near, strict=True) if one and abs(share) > SHARE}
+        sharing = {
+            found[k] for k, share, one in zip(kept, shares, near, strict=True) if one and abs(share) > tolerances.SHARE
+        }
         found = [min(sharing | {i}) if number in sharing | {i} else number for number in found]
     return tuple(found)
 
@@ -293,7 +292,7 @@ def rows_held_twice(constraints: Constraints, redundant: Sequence[Redundant], st
     rows = [*closing, *reacting]
     touched = {body for row in reacting for body, _ in row.wrenches}
     lines = closed_entries(powers_of_rows(constraints.motion, rows, state, touched))
-    kept = independent_rows(lines, RANK_NEARBY)
+    kept = independent_rows(lines, tolerances.RANK_NEARBY)
     found = []
     for i in range(len(closing), len(rows)):
         if i not in kept:
@@ -315,7 +314,7 @@ def _others(constraint: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]
     if not kept:
         return ()
     shares = np.linalg.lstsq(np.array([row for _, row in kept]).T, line, rcond=None)[0]
-    names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > SHARE)
+    names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > tolerances.SHARE)
     return tuple(name for name in dict.fromkeys(names) if name != constraint)
 
 
@@ -470,7 +469,7 @@ class _Forms:
         rows = [self.numbers(form) for form in (*self.held, *forms)]
         A = np.array([row / (lengths_of(row) or 1) for row in rows])
         _, sizes, V = np.linalg.svd(A)
-        return V[int(np.sum(sizes > RANK)) :].T
+        return V[int(np.sum(sizes > tolerances.RANK)) :].T
 
     def closes(self, form: DifferentialForm, allowed: np.ndarray) -> bool:
         """dw(X, Y) = 0 of all that is allowed."""
@@ -478,7 +477,7 @@ class _Forms:
         slopes = self.numbers([x for row in jacobian(form, self.y) for x in row]).reshape(n, n)
         turning = slopes.T - slopes  # entry (a, b): dw_b/dy_a - dw_a/dy_b
         size = max(1.0, float(np.abs(turning).max(initial=0)))
-        return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < RANK * size)
+        return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < tolerances.RANK * size)
 
 
 def integrability_of(constraints: Constraints) -> Integrability | None:
@@ -538,7 +537,7 @@ def _reached(forms: _Forms) -> int:
         newest = []
         for field in brackets:
             value = forms.numbers(field)
-            if np.linalg.norm(value) > CERTAIN_AT_50 and _rank([*(v for _, v in found), value]) > len(found):
+            if np.linalg.norm(value) > tolerances.CERTAIN_AT_50 and _rank([*(v for _, v in found), value]) > len(found):
                 found.append((field, value))
                 newest.append(field)
     return len(found)
@@ -563,7 +562,7 @@ def _bracket(y: Sequence[Node], X: DifferentialForm, Y: DifferentialForm) -> Dif
 
 def _rank(rows: Sequence[np.ndarray]) -> int:
     scaled = [row / (lengths_of(row) or 1) for row in rows]
-    return int(np.linalg.matrix_rank(np.array(scaled), tol=RANK)) if scaled else 0
+    return int(np.linalg.matrix_rank(np.array(scaled), tol=tolerances.RANK)) if scaled else 0
 
 
 # -- in closed form --------------------------------------------------------------------------------

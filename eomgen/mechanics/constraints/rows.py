@@ -47,7 +47,7 @@ from eomgen.symbolic.expression import (
     substituted,
     times,
 )
-from eomgen.symbolic.numeric import AT_AN_EDGE, FLOAT, PRIME_FIELD, SOLVED, evaluate, fifty_digits
+from eomgen.symbolic.numeric import FLOAT, PRIME_FIELD, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 # -------- constraints ------------------------------------------------------------------------------------------------
@@ -335,7 +335,7 @@ def _aside(rng: Random) -> Fraction:
 def _is_met(motion: Motion, gap: Scalar) -> bool:
     """True if the gap of bodies that all stand still vanishes at the model's own values: 0.2 and r with r = 0.2."""
     value = None if motion.scope.symbols.u else SystemScene(motion).value_at_start(gap)
-    return value is not None and abs(value) < SOLVED
+    return value is not None and abs(value) < tolerances.SOLVED
 
 
 def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
@@ -418,7 +418,7 @@ def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
 
 def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
     """Distance left to each edge, at which a motion ends."""
-    return tuple(edge.vanishes - Fraction(AT_AN_EDGE) for edge in edges)
+    return tuple(edge.vanishes - Fraction(tolerances.AT_AN_EDGE) for edge in edges)
 
 
 def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, ...]:

@@ -42,7 +42,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import LEAST_CHANGE, REFINED_AT_50, NoValue, dense, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, dense, evaluate, fifty_digits, tolerances
 
 # -------- accelerations ---------------------------------------------------------------------------------------
 # Equations of motion, state -> accelerations with more digits than doubles have.
@@ -78,7 +78,7 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
     if dense.scaled_condition(dense.weighted(M, J)) > SINGULAR:  # what no mass measures the constraints may say
         raise NoValue("the mass matrix is singular")
     wide[n:] *= J != 0
-    regular = k == 0 or dense.rank(J, smallest=LEAST_CHANGE) == k
+    regular = k == 0 or dense.rank(J, smallest=tolerances.LEAST_CHANGE) == k
     inverse = _inverse(np.block([[M, -J.T], [J, np.zeros((k, k))]]), regular=regular)
     right = np.array([*values[n * (n + k) : len(values) - k], *(-y for y in values[len(values) - k :])], dtype=object)
     return _refined(wide, n, right, inverse)
@@ -88,7 +88,7 @@ def _inverse(A: np.ndarray, *, regular: bool) -> np.ndarray:
     """Its inverse in doubles, scaled first; where rows follow from others that which leaves least."""
     scaled, rows, columns = dense.balanced(A)
     try:
-        found = np.linalg.inv(scaled) if regular else np.linalg.pinv(scaled, rcond=LEAST_CHANGE)
+        found = np.linalg.inv(scaled) if regular else np.linalg.pinv(scaled, rcond=tolerances.LEAST_CHANGE)
     except np.linalg.LinAlgError as error:
         raise NoValue("the equations of motion are singular") from error
     return np.asarray(columns[:, None] * found * rows)
@@ -109,7 +109,7 @@ def _refined(wide: np.ndarray, n: int, right: np.ndarray, inverse: np.ndarray) -
         x = x + step
         below, pushes = A.times(x[:n]), A.transposed_times(np.concatenate([np.zeros(n, dtype=object), x[n:]]))
         left = right - below + np.concatenate([pushes, np.zeros(len(x) - n, dtype=object)])
-        if max(map(abs, step[:n])) <= REFINED_AT_50 * max(map(abs, x[:n])):
+        if max(map(abs, step[:n])) <= tolerances.REFINED_AT_50 * max(map(abs, x[:n])):
             return list(x[:n])
     raise NoValue("the accelerations are not determined to the digits of doubles")
 

@@ -29,10 +29,7 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import (
-    COMPUTED,
-    DIFFERENCE_AT_50,
     PIECEWISE,
-    SOON,
     Choices,
     NoValue,
     Switch,
@@ -45,6 +42,7 @@ from eomgen.symbolic.numeric import (
     fifty_digits,
     piecewise_nodes,
     switches_of,
+    tolerances,
 )
 from eomgen.symbolic.print import to_text
 from eomgen.symbolic.solve import vanishes
@@ -235,14 +233,14 @@ def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
     division = division_of(equations, (x,))
     if division is None:
         return EVERYWHERE
-    moving, near = moving_symbols(equations.system), of_50_digits(DIFFERENCE_AT_50)
+    moving, near = moving_symbols(equations.system), of_50_digits(tolerances.DIFFERENCE_AT_50)
     for switch in switches_of((x,), moving):
         for state in division.found.values():
             try:
                 for end in switch.places(state):
                     sides = [switch.moved(state, end + sign * near, moving) for sign in (-1, 1)]
                     values = [evaluate((x,), side, fifty_digits())[0] for side in sides if side is not None]
-                    if len(values) == 2 and abs(values[0] - values[1]) > COMPUTED * (1 + abs(values[0])):
+                    if len(values) == 2 and abs(values[0] - values[1]) > tolerances.COMPUTED * (1 + abs(values[0])):
                         return division.where(lambda piece: piece == division.start)
             except (NoValue, ZeroDivisionError):
                 continue
@@ -359,7 +357,7 @@ class _Search:
 
     def _soon(self, state: State) -> Iterator[State]:
         """States just after one."""
-        for step in (SOON, 10 * SOON, 100 * SOON):
+        for step in (tolerances.SOON, 10 * tolerances.SOON, 100 * tolerances.SOON):
             middle = self._moved(state, state, step / 2)
             later = None if middle is None else self._moved(state, middle, step)
             if later is not None:

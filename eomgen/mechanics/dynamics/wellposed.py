@@ -18,19 +18,7 @@ from eomgen.mechanics.kinematics import BodyLink, mass_properties
 from eomgen.mechanics.state import Doubles
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
-from eomgen.symbolic.numeric import (
-    FLOAT,
-    LARGEST_SQUARED,
-    RANK,
-    SHARE,
-    SOLVED,
-    SQUARED_AT_50,
-    SUMMED,
-    NoValue,
-    evaluate,
-    fifty_digits,
-    of_one_length,
-)
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, of_one_length, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 # -------- wellposed -------------------------------------------------------------------------------------------
@@ -160,9 +148,9 @@ def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
     """True if all motions have kinetic energy, those that the constraints forbid too: M is regular in the state."""
     M = Doubles({node: float(x) for node, x in state.items()}).array(equations.M, len(equations.M))
     sizes = np.diag(M)
-    if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
+    if not np.all(np.isfinite(M)) or not np.all(sizes > tolerances.SOLVED * max(sizes)):
         return False
-    return bool(np.linalg.eigvalsh(M / np.outer(np.sqrt(sizes), np.sqrt(sizes)))[0] > RANK)
+    return bool(np.linalg.eigvalsh(M / np.outer(np.sqrt(sizes), np.sqrt(sizes)))[0] > tolerances.RANK)
 
 
 def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, float] | None:
@@ -171,7 +159,7 @@ def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, fl
     entries = evaluate([x for row in (*equations.M, *equations.J) for x in row], state, fifty_digits())
     rows = np.array(entries, dtype=object).reshape(-1, len(u))
     sizes = np.diag(rows[: len(u)])
-    counts = sizes > SQUARED_AT_50 * max(sizes)
+    counts = sizes > tolerances.SQUARED_AT_50 * max(sizes)
     scale = np.array([1 / x**0.5 if counted else 1 for x, counted in zip(sizes, counts, strict=True)])
     rows = rows * scale  # in numbers of any size: M of a length of 1e300 m is no double
     rows[: len(u)] *= scale[:, None]
@@ -179,7 +167,7 @@ def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, fl
     rows[len(u) :] /= longest[len(u) :, None]
     rows = rows.astype(float)
     _, values, directions = np.linalg.svd(np.vstack([rows[: len(u)], of_one_length(rows[len(u) :])]))
-    if values[-1] > SUMMED * values[0]:
+    if values[-1] > tolerances.SUMMED * values[0]:
         return None
     least = scale.astype(float) * directions[-1]
     return dict(zip(u, least / np.max(np.abs(least)), strict=True))
@@ -187,10 +175,10 @@ def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, fl
 
 def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Problem:
     """Problem that names a body that turns without inertia, or coordinates that move no mass."""
-    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > SHARE]
+    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > tolerances.SHARE]
     names = ", ".join(f"'{name}'" for name in moving)
     for link in system.motion.links:
-        if max(abs(w) for w in _spin(link, u, state)) > SHARE:
+        if max(abs(w) for w in _spin(link, u, state)) > tolerances.SHARE:
             what = f"body '{link.name}' can turn about an axis about which it has no inertia"
             fix = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
             return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", fix=fix)
@@ -266,7 +254,7 @@ def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
     """The largest part of a system in a state, where that is too large to be calculated with; None where none is."""
     sizes = [(_size(part, values), where, name) for where, name, part in _parts(system)]
     size, where, name = max(sizes, default=(0.0, "", ""))
-    if not LARGEST_SQUARED < size < math.inf:
+    if not tolerances.LARGEST_SQUARED < size < math.inf:
         return None
     what = f"{name} is of the size {size:.3g} there, beyond what doubles can follow; give it a smaller value"
     return Valueless(where, what)

@@ -19,7 +19,7 @@ from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import place_near
 from eomgen.mechanics.state import Split
 from eomgen.symbolic.expression import Node, jacobian
-from eomgen.symbolic.numeric import SAME_PLACE, SUMMED, dense, rank
+from eomgen.symbolic.numeric import dense, rank, tolerances
 from eomgen.symbolic.solve import vanishes
 
 ASIDE = 0.01  # distance from the first equilibrium at which another one is sought
@@ -95,10 +95,10 @@ class _Near:
         A = self.statics.slopes(slopes, place[: len(self.statics.q)], floats)
         n = len(self.statics.q)
         order = [*range(n, A.shape[1]), *sorted(range(n), key=self._place_in_order)]
-        free = Split.in_order(dense.without_noise(A, SUMMED, axis=1), order).free
+        free = Split.in_order(dense.without_noise(A, tolerances.SUMMED, axis=1), order).free
         return [q for k, q in enumerate(self.statics.q) if k in free]
 
     def _place_in_order(self, k: int) -> tuple[bool, bool, int]:
         """Key of a coordinate in the choice: first those that move away from the guess, then those only guessed."""
-        still = abs(self.here[k] - self.guess[k]) <= SAME_PLACE * (1 + abs(self.guess[k]))
+        still = abs(self.here[k] - self.guess[k]) <= tolerances.SAME_PLACE * (1 + abs(self.guess[k]))
         return bool(still), not is_guess(self.statics.system.scope.model, self.statics.q[k].name), -k

@@ -32,7 +32,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import ZERO_AT_50, NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
 from eomgen.symbolic.solve import vanishes
 
@@ -122,7 +122,7 @@ class StaticEquations:
             at = evaluate(self.Q, there | {x: digits.number(v) for x, v in values.items()}, digits)
         except (NoValue, ZeroDivisionError):
             at = [0] * len(self.Q)
-        sought = [k for k in sought if abs(at[k]) <= ZERO_AT_50]
+        sought = [k for k in sought if abs(at[k]) <= tolerances.ZERO_AT_50]
         empty = [k for k in sought if is_zero(simplest(substituted((self.Q[k],), values)[0], Work.VALUE))]
         Q = tuple(0 if k in empty else force for k, force in enumerate(self.Q))
         return replace(self, Q=Q, nowhere=tuple((self.q[k], self.Q[k]) for k in empty)) if empty else self

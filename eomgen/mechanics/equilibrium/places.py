@@ -34,13 +34,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import (
-    COMPUTED,
     FLOAT,
-    NEAR_ROOT,
-    NEARLY_SINGULAR,
-    RANK,
-    SAME_PLACE,
-    UNBALANCED,
     Descent,
     Layers,
     NoValue,
@@ -50,6 +44,7 @@ from eomgen.symbolic.numeric import (
     fifty_digits,
     isolated,
     rank,
+    tolerances,
 )
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import (
@@ -311,8 +306,8 @@ class _Search:
         if not J.size or not np.all(np.isfinite(J)):
             return True
         Q, *others = (self.statics.slopes((self.statics.Q,), z[:n] + d, self.floats)[0] for d in (0, 0.3, -0.2))
-        lam = np.linalg.lstsq(J.T, -Q, rcond=NEARLY_SINGULAR)[0]
-        return bool(np.all(abs(Q + J.T @ lam) <= UNBALANCED * np.nanmax(np.abs([Q, *others]))))
+        lam = np.linalg.lstsq(J.T, -Q, rcond=tolerances.NEARLY_SINGULAR)[0]
+        return bool(np.all(abs(Q + J.T @ lam) <= tolerances.UNBALANCED * np.nanmax(np.abs([Q, *others]))))
 
     # -- in order ----------------------------------------------------------------------------------
 
@@ -325,7 +320,7 @@ class _Search:
             for k, q in enumerate(self.statics.q):
                 if q in self._turning:
                     z[k] = -((-z[k] + math.pi) % math.tau - math.pi)
-                    z[k] = math.pi if abs(z[k] + math.pi) < SAME_PLACE else z[k]
+                    z[k] = math.pi if abs(z[k] + math.pi) < tolerances.SAME_PLACE else z[k]
             if not any(np.all(abs(z - other)[:n] <= np.maximum(reach, more)) for other, more in unique):
                 unique.append((z, reach))
         places = sorted((z for z, _ in unique), key=lambda z: self._distance(z[:n]))
@@ -343,7 +338,7 @@ def _about(z: np.ndarray, boxes: np.ndarray, halves: np.ndarray) -> np.ndarray:
     """Mask of the undecided boxes that belong to the root at z: those that lie about it without a wide gap."""
     away = np.max(np.abs(boxes - z) - halves, axis=1, initial=0.0)
     ends = np.max(np.abs(boxes - z) + halves, axis=1, initial=0.0)
-    kept, radius = np.zeros(len(boxes), dtype=bool), NEAR_ROOT * COMPUTED
+    kept, radius = np.zeros(len(boxes), dtype=bool), tolerances.NEAR_ROOT * tolerances.COMPUTED
     for k in np.argsort(away):
         if away[k] > CLUSTER * radius:
             break
@@ -355,7 +350,7 @@ def _balancing(J: np.ndarray, Q: np.ndarray) -> np.ndarray:
     """The multipliers for which Q + J^T lam is least; 0 where it has no value."""
     if not (np.all(np.isfinite(J)) and np.all(np.isfinite(Q))):
         return np.zeros(len(J))
-    return np.asarray(np.linalg.lstsq(J.T, -Q, rcond=RANK)[0])
+    return np.asarray(np.linalg.lstsq(J.T, -Q, rcond=tolerances.RANK)[0])
 
 
 # -------- closed rest -----------------------------------------------------------------------------------------
@@ -452,7 +447,7 @@ class ClosedForms:
             if q in turning:
                 candidates = [sign * x for x in _round_components(q.graph) for sign in (1, -1)]
             candidates += [start_value(scope, q)] * starts
-            near = [x for x in candidates if abs(located.value(x) - number) <= COMPUTED * (1 + abs(number))]
+            near = [x for x in candidates if abs(located.value(x) - number) <= tolerances.COMPUTED * (1 + abs(number))]
             if near:
                 found[q] = near[0]
         return found

@@ -26,19 +26,7 @@ from eomgen.mechanics.start import known_exactly, shown_numbers, values_of_param
 from eomgen.mechanics.state import Doubles
 from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRows, State, depends_on_any, jacobian, symbols_of
-from eomgen.symbolic.numeric import (
-    ASIDE_STEP,
-    CARRIED,
-    COMPUTED,
-    DEGENERATE,
-    FLOAT,
-    SAME_PLACE,
-    TINIEST,
-    ZERO_AT_50,
-    NoValue,
-    evaluate,
-    rank,
-)
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, rank, tolerances
 
 # -------- search ----------------------------------------------------------------------------------------------
 # System -> its equilibria: every place at which all forces balance, exact where possible, and their stability.
@@ -344,7 +332,7 @@ class _Search:
         single = [rank(np.delete(J, i, axis=0)) < rank(J) for i in range(len(J))]
         kept = dict(zip(statics.q, z[:n], strict=True))
         kept |= {lam: x for lam, x, one in zip(statics.lam, z[n:], single, strict=True) if one}
-        return {node: 0.0 if abs(x) < ZERO_AT_50 else float(x) for node, x in kept.items()}
+        return {node: 0.0 if abs(x) < tolerances.ZERO_AT_50 else float(x) for node, x in kept.items()}
 
 
 # -------- locked ----------------------------------------------------------------------------------------------
@@ -374,7 +362,7 @@ def is_balanced_in_locked(statics: StaticEquations, place: State) -> bool:
     return all(
         _is_free(statics, motion, lock, state)
         for lock in locks_of(motion)
-        if abs(_numbers([lock.determinant], state)[0]) < DEGENERATE
+        if abs(_numbers([lock.determinant], state)[0]) < tolerances.DEGENERATE
     )
 
 
@@ -388,7 +376,7 @@ def _is_free(statics: StaticEquations, motion: Motion, lock: Lock, state: dict[N
     left, largest = np.inf, 0.0
     for _ in range(3):
         aside = rng.uniform(0.5, 1, len(statics.q))
-        beside = _shifted(statics, state, ASIDE_STEP * aside)
+        beside = _shifted(statics, state, tolerances.ASIDE_STEP * aside)
         W, D = _numbers(axes, beside).reshape(3, 3).T, _numbers(slopes, beside).reshape(3, -1)
         if np.linalg.matrix_rank(D) < 3:  # the angles are not free each: it cannot turn about n
             return True
@@ -436,7 +424,7 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
             except Indeterminate:
                 continue
             known = all(x in values for x in symbols_of((value,)))
-            if known and evaluate((value,), values, FLOAT)[0] < -COMPUTED:
+            if known and evaluate((value,), values, FLOAT)[0] < -tolerances.COMPUTED:
                 found.append(component.owner)
     return tuple(dict.fromkeys(found))
 
@@ -453,7 +441,7 @@ def passed_contacts(system: System, numbers: Mapping[Node, float]) -> tuple[str,
     known |= {system.symbols.t: 0.0, **numbers}
     sought = {name: gap for name, gap in gaps.items() if gap is not None and known.keys() >= {*symbols_of((gap,))}}
     values = evaluate(tuple(sought.values()), known, FLOAT)
-    return tuple(name for name, gap in zip(sought, values, strict=True) if gap < -CARRIED)
+    return tuple(name for name, gap in zip(sought, values, strict=True) if gap < -tolerances.CARRIED)
 
 
 # -------- families --------------------------------------------------------------------------------------------
@@ -561,12 +549,12 @@ class _Way:
     def _along(self, z: np.ndarray) -> np.ndarray | None:
         """t, its part of the coordinates 1 long; None where there is not one such direction."""
         _, slopes = self._at(z)
-        slopes = slopes / np.maximum(np.max(np.abs(slopes), axis=1, keepdims=True), TINIEST)
+        slopes = slopes / np.maximum(np.max(np.abs(slopes), axis=1, keepdims=True), tolerances.TINIEST)
         _, sizes, axes = np.linalg.svd(slopes)
-        rank = int(np.sum(sizes > CARRIED * max(sizes, default=0.0)))
+        rank = int(np.sum(sizes > tolerances.CARRIED * max(sizes, default=0.0)))
         null = axes[rank:, : len(self.statics.q)]
         _, moved, mixed = np.linalg.svd(null.T) if len(null) else (None, np.zeros(0), None)
-        if mixed is None or int(np.sum(moved > CARRIED)) != 1:
+        if mixed is None or int(np.sum(moved > tolerances.CARRIED)) != 1:
             return None
         t = mixed[0] @ axes[rank:]
         return np.asarray(t / np.linalg.norm(t[: len(self.statics.q)]))
@@ -577,13 +565,13 @@ class _Way:
         unit = np.where(np.arange(len(z)) < n, 1.0, np.maximum(np.abs(z), 1.0))  # multipliers change as they are large
         for _ in range(CORRECTIONS):
             F, slopes = self._at(z)
-            size = np.maximum(np.max(np.abs(slopes), axis=1), TINIEST)
-            if np.all(np.abs(F) <= SAME_PLACE * CARRIED * size):
+            size = np.maximum(np.max(np.abs(slopes), axis=1), tolerances.TINIEST)
+            if np.all(np.abs(F) <= tolerances.SAME_PLACE * tolerances.CARRIED * size):
                 return z if np.linalg.norm((z - start)[:n]) < STRIDE / 2 else None
             rows = np.vstack([slopes / size[:, None], np.append(t[:n], np.zeros(len(z) - n))]) * unit
             if not np.all(np.isfinite(rows)):
                 return None
-            z = z - unit * np.linalg.lstsq(rows, np.append(F / size, 0.0), rcond=CARRIED)[0]
+            z = z - unit * np.linalg.lstsq(rows, np.append(F / size, 0.0), rcond=tolerances.CARRIED)[0]
         return None
 
     def curve(self, z: np.ndarray) -> Curve | None:
@@ -629,7 +617,7 @@ def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.nd
         places = [statics.q.index(e) for e in four if e in statics.q]
         if places and float(z[places] @ guess[places]) < 0:
             z[places] = -z[places]
-        z[places] = np.where(abs(z[places]) < ZERO_AT_50, 0.0, z[places])
+        z[places] = np.where(abs(z[places]) < tolerances.ZERO_AT_50, 0.0, z[places])
     return z
 
 
@@ -639,7 +627,7 @@ def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: 
     J = statics.slopes(statics.J, z[:n], values)
     H = -Doubles(values).array(slopes, n)
     _, sizes, axes = np.linalg.svd(J)
-    Z = axes[int(np.sum(sizes > CARRIED * sizes[0])) :].T
+    Z = axes[int(np.sum(sizes > tolerances.CARRIED * sizes[0])) :].T
     symbols = statics.system.symbols
     given = {**{x: 0.0 for x in (*symbols.q, *symbols.u)}, symbols.t: 0.0}
     (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
@@ -655,8 +643,8 @@ def _given(statics: StaticEquations, values: Mapping[Node, float]) -> dict[Node,
 def _is_one(statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:
     """True if two places are the same, or belong to one family."""
     (z, marks), (y, others) = one, other
-    if np.all(abs(z - y)[: len(statics.q)] <= SAME_PLACE):
+    if np.all(abs(z - y)[: len(statics.q)] <= tolerances.SAME_PLACE):
         return True
-    size = TINIEST + np.max(abs(np.concatenate([marks, others])))
-    flat = np.min(abs(marks[1:]), initial=np.inf) <= CARRIED * size
-    return bool(flat and np.all(abs(marks - others) <= SAME_PLACE * size))
+    size = tolerances.TINIEST + np.max(abs(np.concatenate([marks, others])))
+    flat = np.min(abs(marks[1:]), initial=np.inf) <= tolerances.CARRIED * size
+    return bool(flat and np.all(abs(marks - others) <= tolerances.SAME_PLACE * size))

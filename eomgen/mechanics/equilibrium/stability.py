@@ -18,14 +18,6 @@ from eomgen.mechanics.start import values_of_parameters
 from eomgen.symbolic.exact import readable, sign_of_terms, simplest
 from eomgen.symbolic.expression import Node, Scalar, gradient, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import (
-    AT_A_MULTIPLE_ROOT,
-    BESIDE_A_PLACE,
-    COMPUTED,
-    LEAST_CHANGE,
-    RANK_NEARBY,
-    ROUNDING,
-    TINIEST,
-    ZERO_AT_50,
     NoValue,
     Work,
     balanced,
@@ -33,6 +25,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     rank,
+    tolerances,
     without_noise,
 )
 from eomgen.symbolic.solve import LinearSystem, cramer, general_solution, vanishes
@@ -154,14 +147,16 @@ class _Place:
         n = len(self.statics.q)
         if not len(J):
             return list(range(n))
-        scaled = balanced(without_noise(J, ROUNDING, axis=1))[0]
-        r = int(np.linalg.matrix_rank(scaled, tol=RANK_NEARBY))
+        scaled = balanced(without_noise(J, tolerances.ROUNDING, axis=1))[0]
+        r = int(np.linalg.matrix_rank(scaled, tol=tolerances.RANK_NEARBY))
         if r < self._generic_rank:
             return None
         following: list[int] = []
         for k in sorted(range(n), key=self._late):  # columns of the dependent coordinates, one by one
             more = [*following, k]
-            if len(following) < r and np.linalg.matrix_rank(scaled[:, more], tol=RANK_NEARBY) > len(following):
+            if len(following) < r and np.linalg.matrix_rank(scaled[:, more], tol=tolerances.RANK_NEARBY) > len(
+                following
+            ):
                 following = more
         return [k for k in range(n) if k not in following]
 
@@ -199,7 +194,7 @@ class _Place:
         Z[list(along), range(len(along))] = 1
         others = [k for k in range(len(self.statics.q)) if k not in along]
         if others:
-            Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=LEAST_CHANGE)[0]
+            Z[others] = -np.linalg.lstsq(J[:, others], J[:, list(along)], rcond=tolerances.LEAST_CHANGE)[0]
         return np.asarray(Z.T @ self._numbers(self._H) @ Z)
 
     def _exact_K(self, along: Sequence[int]) -> StiffnessRows | None:
@@ -250,7 +245,7 @@ class _Place:
         if self._is_conservative and self.chosen is None:
             return True
         K = self._numeric_K(self._numbers(self.statics.J), along)
-        return bool(np.all(abs(K - K.T) <= COMPUTED * np.max(abs(K), initial=0)))
+        return bool(np.all(abs(K - K.T) <= tolerances.COMPUTED * np.max(abs(K), initial=0)))
 
     @cached_property
     def _is_conservative(self) -> bool:
@@ -280,17 +275,17 @@ class _Place:
     def _by_numbers(self, K: np.ndarray, single: bool) -> tuple[str, str]:
         size = np.abs(np.diagonal(K)) + np.max(np.abs(K), axis=1, initial=0)
         terms = self._size_of_terms
-        scale = 1 / np.sqrt(np.where(size > COMPUTED * terms, size, max(terms, TINIEST)))
+        scale = 1 / np.sqrt(np.where(size > tolerances.COMPUTED * terms, size, max(terms, tolerances.TINIEST)))
         eigenvalues = np.linalg.eigvalsh((K + K.T) / 2 * np.outer(scale, scale))
-        if np.min(eigenvalues) > COMPUTED:
+        if np.min(eigenvalues) > tolerances.COMPUTED:
             return STABLE, "V has a minimum there"
-        if np.min(eigenvalues) < -COMPUTED:
+        if np.min(eigenvalues) < -tolerances.COMPUTED:
             highest = np.max(eigenvalues)
-            if abs(highest) <= COMPUTED:
+            if abs(highest) <= tolerances.COMPUTED:
                 return UNSTABLE, "V falls from there"
             return UNSTABLE, f"V has a {'maximum' if highest < 0 else 'saddle'} there"
         if self.chosen is not None and self.chosen.smooth:
-            return _drifting(int(np.sum(eigenvalues <= COMPUTED)), len(K))
+            return _drifting(int(np.sum(eigenvalues <= tolerances.COMPUTED)), len(K))
         if single and self.chosen is None:
             return by_higher_derivatives(self.statics, self.state)
         return "undecided", "the second variation of V vanishes in some direction"
@@ -317,7 +312,7 @@ def _drifting(neutral: int, degrees_of_freedom: int) -> tuple[str, str]:
 
 def _as_exact(K: np.ndarray, size: float) -> StiffnessRows:
     """The entries, what is rounding of their terms 0."""
-    return tuple(tuple(float(x) if abs(x) > ROUNDING * size else 0.0 for x in row) for row in K)
+    return tuple(tuple(float(x) if abs(x) > tolerances.ROUNDING * size else 0.0 for x in row) for row in K)
 
 
 def _minors(K: StiffnessRows) -> tuple[Scalar, ...]:
@@ -354,7 +349,7 @@ def states_beside(state: Mapping[Node, Any], coordinates: Sequence[Node]) -> Ite
     Args:
         state: values of everything, with 50 digits.
     """
-    for share in (-BESIDE_A_PLACE, 0.7 * BESIDE_A_PLACE):
+    for share in (-tolerances.BESIDE_A_PLACE, 0.7 * tolerances.BESIDE_A_PLACE):
         yield {**state, **{q: state[q] + share * max(1, abs(state[q])) for q in coordinates}}
 
 
@@ -393,8 +388,8 @@ class _Way:
         near = max(self._at(P, state, 0.0) for state in states_beside(self.state, self.statics.q))
         away = ({**self.state, **{q: self.state[q] + shift for q in self.statics.q}} for shift in AWAY)
         far = max(self._at(P, state, 0.0) for state in away)
-        share = COMPUTED if order < MULTIPLE else AT_A_MULTIPLE_ROOT
-        return value if abs(value) > max(share * near, ZERO_AT_50 * far) else 0.0
+        share = tolerances.COMPUTED if order < MULTIPLE else tolerances.AT_A_MULTIPLE_ROOT
+        return value if abs(value) > max(share * near, tolerances.ZERO_AT_50 * far) else 0.0
 
     def _at(self, P: Scalar, state: Mapping[Node, Any], otherwise: float | None = None) -> float:
         """P; its size, or this where it has none."""

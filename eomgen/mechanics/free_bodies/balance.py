@@ -43,7 +43,7 @@ from eomgen.symbolic.expression import (
     times,
     vector_of,
 )
-from eomgen.symbolic.numeric import ELIMINATED_AT_50, NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.solve import Solution
 
 # -------- balance ---------------------------------------------------------------------------------------------
@@ -378,7 +378,7 @@ def is_balanced(balance: Balance, solution: Solution) -> bool:
         sizes = [abs(x) for x in evaluate(left, state, fifty_digits())]
     except NoValue:
         return False
-    return bool(max(sizes) < ELIMINATED_AT_50)
+    return bool(max(sizes) < tolerances.ELIMINATED_AT_50)
 
 
 def unbalanced(balance: Balance, solution: Solution) -> DerivationError:

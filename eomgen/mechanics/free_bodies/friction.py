@@ -41,7 +41,7 @@ from eomgen.symbolic.expression import (
     sqrt,
     substituted,
 )
-from eomgen.symbolic.numeric import ZERO_AT_50
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.solve import LinearSystem, Solution, ValuesAt, components, cramer, unique_solution
 
 # -------- friction --------------------------------------------------------------------------------------------
@@ -400,7 +400,7 @@ def _slopes(pairs: Mapping[Node, EqualPushes], symbols: tuple[Node, ...], values
     """G_rs, what vanishes at a generic state left out."""
     rows = [[gradient(N, symbols) for N in pair] for pair in pairs.values()]
     flat = [abs(x) for x in values([g for row in rows for slopes in row for g in slopes])]
-    least, sizes = ZERO_AT_50 * max(flat, default=0), iter(flat)
+    least, sizes = tolerances.ZERO_AT_50 * max(flat, default=0), iter(flat)
     kept = [[[g if next(sizes) > least else 0 for g in slopes] for slopes in row] for row in rows]
     return [list(zip(*row, strict=True)) for row in kept]
 

@@ -45,7 +45,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import RANK_NEARBY, evaluate, fifty_digits, floats_of, rank
+from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, rank, tolerances
 
 # -------- unit wrenches ---------------------------------------------------------------------------------------
 # Motion -> Effects: what forces, couples, joints and constraints do to each body, in the axes of its equations.
@@ -589,7 +589,7 @@ class _Numbers:
 
 
 def _rank(columns: np.ndarray) -> int:
-    return rank(columns, smallest=RANK_NEARBY)
+    return rank(columns, smallest=tolerances.RANK_NEARBY)
 
 
 def _of_body(

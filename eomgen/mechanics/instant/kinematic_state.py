@@ -43,7 +43,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, ZERO_AT_50, Work
+from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
 SHORT = 400  # characters of all values of a state that a reader can take
@@ -168,7 +168,7 @@ class KinematicState:
     @cached_property
     def values(self) -> ScalarValues:
         """Values of scalars at the model's parameters."""
-        return ScalarValues(self.system.scope, ZERO_AT_50 if self.exact else COMPUTED)
+        return ScalarValues(self.system.scope, tolerances.ZERO_AT_50 if self.exact else tolerances.COMPUTED)
 
     def number(self, x: Scalar) -> float | None:
         """Value of a scalar at the model's parameters; None where one that it needs has no value."""

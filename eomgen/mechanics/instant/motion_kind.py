@@ -39,7 +39,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import ZERO_AT_50, Newton, NoValue, Work, evaluate, fifty_digits
+from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.solve import vanishes
 
 # -------- motion kind -----------------------------------------------------------------------------------------
@@ -428,7 +428,7 @@ class Possible:
             raise DerivationError(
                 "the motion is singular near the start", "coordinates", fix="start apart from the dead centre"
             ) from None
-        return bool(max(map(abs, values)) < ZERO_AT_50)
+        return bool(max(map(abs, values)) < tolerances.ZERO_AT_50)
 
     @cached_property
     def states(self) -> tuple[State, ...]:

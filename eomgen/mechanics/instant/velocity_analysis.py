@@ -35,17 +35,7 @@ from eomgen.symbolic.expression import (
     parse,
     substituted,
 )
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    ELIMINATED_AT_50,
-    RANK,
-    Work,
-    digits_at,
-    evaluate,
-    fifty_digits,
-    independent_rows,
-    lengths_of,
-)
+from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, independent_rows, lengths_of, tolerances
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
 
@@ -471,7 +461,7 @@ def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
     rows = [(row, row.gap) for row in system.constraints.closing if row.gap is not None]
     gaps = substituted([gap for _, gap in rows], places)
     for (row, _), gap in zip(rows, gaps, strict=True):
-        if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > COMPUTED:
+        if not holds_identically(gap) and abs(value := _at_own_values(system, gap)) > tolerances.COMPUTED:
             along = f" along {row.component}" if row.component in ("x", "y", "z") else ""
             raise DerivationError(
                 f"'{row.constraint}' does not close at the start: it is open by {value:.4g}{along}",
@@ -512,7 +502,7 @@ def solution_of(
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
     found = general_solution(
         LinearSystem(rows, [line.right for line in lines], len(unknowns), digits_at(values)),
-        Pivots(tolerance=ELIMINATED_AT_50 if near is None else RANK),
+        Pivots(tolerance=tolerances.ELIMINATED_AT_50 if near is None else tolerances.RANK),
     )
     result = {}
     for j, constant in found.constants.items():
@@ -537,7 +527,7 @@ def _matrix(lines: Sequence[GivenRow], unknowns: Sequence[Node], values: State) 
 
 def _rank(matrix: np.ndarray) -> int:
     """Rank of A in the augmented matrix [A | b]."""
-    return len(independent_rows(matrix[:, :-1], RANK))
+    return len(independent_rows(matrix[:, :-1], tolerances.RANK))
 
 
 def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, constraints: int) -> None:
@@ -548,7 +538,7 @@ def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, constra
     Raises:
         DerivationError: all of them are named.
     """
-    kept = independent_rows(matrix[:, :-1], RANK)
+    kept = independent_rows(matrix[:, :-1], tolerances.RANK)
     basis = matrix[kept]
     for i, line in enumerate(lines):
         if i in kept:
@@ -556,11 +546,11 @@ def _refuse_contradiction(lines: Sequence[GivenRow], matrix: np.ndarray, constra
         before = [k for k in range(len(kept)) if kept[k] < i]
         shares = np.linalg.lstsq(basis[before][:, :-1].T, matrix[i, :-1], rcond=None)[0] if before else np.zeros(0)
         rest = matrix[i, -1] - shares @ basis[before][:, -1]
-        if abs(rest) > RANK * max(1.0, float(np.max(np.abs(matrix[:, -1])))):
+        if abs(rest) > tolerances.RANK * max(1.0, float(np.max(np.abs(matrix[:, -1])))):
             others = dict.fromkeys(
                 lines[kept[k]].said
                 for k, share in zip(before, shares, strict=True)
-                if abs(share) > RANK and lines[kept[k]].said != UNSAID
+                if abs(share) > tolerances.RANK and lines[kept[k]].said != UNSAID
             )
             against = f" contradicts {', '.join(others)}" if others else " cannot hold: nothing there can move so"
             if i < constraints:

@@ -46,7 +46,6 @@ from eomgen.symbolic.expression import (
 from eomgen.symbolic.numeric import (
     PIECEWISE,
     PRIME_FIELD,
-    ZERO_AT_50,
     Choices,
     NoMeaning,
     NoValue,
@@ -56,6 +55,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     follows,
+    tolerances,
 )
 from eomgen.symbolic.print import text_size
 
@@ -232,7 +232,7 @@ def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[No
     except NoValue:
         return [False] * len(rates)
     size = max((abs(x) for x in (*here, *there)), default=0)
-    return [abs(x - y) > ZERO_AT_50 * max(1, size) for x, y in zip(here, there, strict=True)]
+    return [abs(x - y) > tolerances.ZERO_AT_50 * max(1, size) for x, y in zip(here, there, strict=True)]
 
 
 def _read_of_time(rate: Scalar, others: Sequence[Node]) -> Scalar | None:

@@ -28,7 +28,7 @@ from eomgen.symbolic.expression import (
     over,
     substituted,
 )
-from eomgen.symbolic.numeric import COMPUTED, FLOAT, PIECEWISE, Work, digits_at, evaluate
+from eomgen.symbolic.numeric import FLOAT, PIECEWISE, Work, digits_at, evaluate, tolerances
 from eomgen.symbolic.solve import LinearSystem, Solution, general_solution, vanishes
 
 # -------- speeds ----------------------------------------------------------------------------------------------
@@ -156,7 +156,7 @@ class FreeSpeed:
         """
         (bias,) = substituted((slope,), {self._speed: 0})
         found, own = self._number(slope), self._number(bias)
-        if abs(found) <= COMPUTED * (abs(found - own) + abs(own)):
+        if abs(found) <= tolerances.COMPUTED * (abs(found - own) + abs(own)):
             found = 0.0 if self.accelerations is None else self._number(self._acceleration)
         return -1 if found < 0 else 1
 

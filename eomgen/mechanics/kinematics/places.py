@@ -30,7 +30,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import CARRIED, FLOAT, Work, evaluate
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate, tolerances
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import has_period, roots, vanishes
 
@@ -59,7 +59,7 @@ class Located:
     def agrees(self, x: Scalar, node: Node) -> bool:
         """True if x has the value that is known of the node."""
         number = self.numbers.get(node, math.nan)
-        return abs(self.value(x) - number) <= CARRIED * (1 + abs(number))
+        return abs(self.value(x) - number) <= tolerances.CARRIED * (1 + abs(number))
 
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
         """The candidate with the value known of the node, the nearest of several; whole turns added if it has them.

@@ -28,7 +28,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import RANK, SOLVED, fifty_digits
+from eomgen.symbolic.numeric import fifty_digits, tolerances
 
 # -------- first order -----------------------------------------------------------------------------------------
 # System -> FirstOrder: its equations of motion with their first derivatives, and what may stay independent.
@@ -190,7 +190,7 @@ def _elsewhere(reference: ReferenceMotion) -> dict[Node, Any]:
 
 def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
     """True for each column that is the same in both matrices, up to rounding."""
-    return np.asarray(np.all(abs(A - B) <= SOLVED * abs(A).max(initial=0), axis=0))
+    return np.asarray(np.all(abs(A - B) <= tolerances.SOLVED * abs(A).max(initial=0), axis=0))
 
 
 # -------- slopes ----------------------------------------------------------------------------------------------
@@ -222,7 +222,7 @@ def slopes_at(first: FirstOrder, state: Mapping[Node, Any], *, single: bool = Fa
     below = 0.0 - changes[:nu]
     if single:
         left = abs(K @ changes - slopes).max(axis=0, initial=0.0)
-        below[:, left > RANK * (1.0 + abs(slopes).max(axis=0, initial=0.0))] = np.nan
+        below[:, left > tolerances.RANK * (1.0 + abs(slopes).max(axis=0, initial=0.0))] = np.nan
     both = np.vstack([np.hstack([at["S_q"], N, np.zeros((nq, w))]), below])
     return both[:, : nq + nu], both[:, nq + nu :]
 

@@ -53,7 +53,7 @@ from eomgen.mechanics.linearization.steady import family_of, steady_start
 from eomgen.mechanics.state import Exact, NumberField, Numbers
 from eomgen.model import exact_parameters, refuse_motion
 from eomgen.symbolic.expression import Node, ScalarRow, depends_on_any, operations, order, substituted
-from eomgen.symbolic.numeric import COMPUTED, REGULAR, SQUARED_SINE, NoValue, dense, fifty_digits
+from eomgen.symbolic.numeric import NoValue, dense, fifty_digits, tolerances
 
 # -------- linearization ---------------------------------------------------------------------------------------
 # System -> Linearization: the equations of small motions, exact where they can be, and in numbers.
@@ -278,7 +278,7 @@ def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) ->
 
 def _without_value(reference: ReferenceMotion) -> DerivationError:
     solved, value = reference.system.declared, Numbers(reference.numbers).of
-    lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
+    lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= tolerances.REGULAR]
     part = None if lost else valueless(reference.system, {x: float(y) for x, y in reference.numbers.items()})
     if part is not None:
         fix = "let what acts be regular there, or start elsewhere"
@@ -414,7 +414,7 @@ def _other_rest(
 def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
     """The speed that does not stay as it is; "" where all do."""
     reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
-    wrong = unsettled(reducing, COMPUTED)
+    wrong = unsettled(reducing, tolerances.COMPUTED)
     return first.system.symbols.u[reducing.choice.speeds.free[wrong[0]]].name if wrong else ""
 
 
@@ -495,7 +495,9 @@ def refuse_corners(
     symbols, rng = first.system.symbols, Random(7)
     changes = _changed(first, choice, reference, raw, kept)
     for _ in range(SIDES):
-        aside = {x: fifty_digits().number(1) * SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
+        aside = {
+            x: fifty_digits().number(1) * tolerances.SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)
+        }
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
             rough = [f"the friction of '{name}'" for name, factor, _ in frictions(first.system) if _cornered((factor,))]
             named = [*filter(None, [acting(first.system.loads, _cornered)]), *dict.fromkeys(rough)]
@@ -566,9 +568,11 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
         DerivationError: the speed that moves nothing is named, where it is one.
     """
     M, Z = floats(equations.M), abs(floats(reducing.at.Z))
-    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.at.M)) @ Z), SQUARED_SINE * abs(M).max())
+    least = np.maximum(
+        tolerances.REGULAR * np.diagonal(Z.T @ abs(floats(reducing.at.M)) @ Z), tolerances.SQUARED_SINE * abs(M).max()
+    )
     idle = [u.name for u, x, size in zip(equations.speeds, np.diagonal(M), least, strict=True) if abs(x) <= size]
-    if idle or dense.scaled_condition(M) > 1 / REGULAR:
+    if idle or dense.scaled_condition(M) > 1 / tolerances.REGULAR:
         moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
         raise DerivationError(
             f"the mass matrix is singular at the place: {moved}",
@@ -592,13 +596,15 @@ def _changed(
     def found(shift: tuple[tuple[Node, Any], ...]) -> bool:
         reducing = Reducing(first, choice, Numbers({**reference.numbers, **dict(shift)}))
         try:
-            if (not reference.at_rest or any(x is not t for x, _ in shift)) and unsettled(reducing, COMPUTED):
+            if (not reference.at_rest or any(x is not t for x, _ in shift)) and unsettled(
+                reducing, tolerances.COMPUTED
+            ):
                 return True
             there = list(_compared(reduced_of(reducing, reference), kept)) if shift else here
         except (NoValue, ZeroDivisionError):
             return True
         pairs = zip(here, there, strict=True)
-        return any(np.any(abs(A - B) > COMPUTED * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
+        return any(np.any(abs(A - B) > tolerances.COMPUTED * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
 
     return lambda shift: found(tuple((x, reference.numbers[x] + d) for x, d in shift.items() if x in held))
 

@@ -29,24 +29,7 @@ from eomgen.mechanics.start import values_of_parameters
 from eomgen.mechanics.state import Entries, Numbers
 from eomgen.symbolic.exact import book_form, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero
-from eomgen.symbolic.numeric import (
-    COEFFICIENT_AT_50,
-    COMPUTED,
-    ITERATED,
-    NEARLY_SINGULAR,
-    RANK,
-    ROUNDING,
-    SAME_EIGENVALUE,
-    SHARE,
-    SOLVED,
-    SUMMED,
-    WIDE_SPECTRUM,
-    NoValue,
-    Work,
-    dense,
-    evaluate,
-    fifty_digits,
-)
+from eomgen.symbolic.numeric import NoValue, Work, dense, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size
 
 # -------- modes -----------------------------------------------------------------------------------------------
@@ -185,7 +168,7 @@ class Modes:
         assert mode.frequency is not None
         if mode.frequency == 0:
             return 0
-        near = [w for value, w in candidates if abs(value - mode.frequency) <= COMPUTED * mode.frequency]
+        near = [w for value, w in candidates if abs(value - mode.frequency) <= tolerances.COMPUTED * mode.frequency]
         return near[0] if near else None
 
     # -- by name -----------------------------------------------------------------------------------------------
@@ -370,13 +353,13 @@ def _is_undamped(small: SmallMotions) -> bool:
         return False
     M, C, K = (floats(x) for x in (e.M, e.C, e.K))
     size = abs(M).max() * np.sqrt(abs(K).max() / abs(M).max())
-    return bool(abs(C).max() <= SUMMED * size) and _is_symmetric(K, 1)
+    return bool(abs(C).max() <= tolerances.SUMMED * size) and _is_symmetric(K, 1)
 
 
 def _is_symmetric(A: np.ndarray, sign: int) -> bool:
     """True if A = sign A^T, each entry compared with the size of its own row and column, so that slow motions count."""
     rows = np.maximum(abs(A).max(axis=1), abs(A).max(axis=0))
-    limit = ITERATED * np.minimum.outer(rows, rows) + ROUNDING * abs(A).max()
+    limit = tolerances.ITERATED * np.minimum.outer(rows, rows) + tolerances.ROUNDING * abs(A).max()
     return bool(np.all(abs(A - sign * A.T) <= limit))
 
 
@@ -401,7 +384,7 @@ def _general(small: SmallMotions, still: int) -> list[Mode]:
     values, vectors = eigenpairs(small.state_matrix)
     order = np.argsort(abs(values))
     moving = vectors[: len(small.numbers.coordinates)]  # 0 where speeds alone change, as that of a boat that glides
-    moving = np.where(abs(moving) > RANK * abs(vectors).max(axis=0, initial=0), moving, 0)
+    moving = np.where(abs(moving) > tolerances.RANK * abs(vectors).max(axis=0, initial=0), moving, 0)
     real = [moving[:, k].imag if values[k].imag < 0 else moving[:, k].real for k in order[:still]]  # drawn to a pair
     zeros = [_shape(small, x.astype(complex), 0) for x in real]
     values, vectors = merged(values[order[still:]]), vectors[:, order[still:]]
@@ -420,8 +403,8 @@ def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
     e = small.numbers
     gyroscopic = small.is_second_order and _is_symmetric(floats(e.C), -1) and _is_symmetric(floats(e.K), 1)
     largest = abs(values).max(initial=0)
-    turning = COMPUTED * abs(values) + SOLVED * largest
-    real = np.full(len(values), COMPUTED * largest) if gyroscopic else turning
+    turning = tolerances.COMPUTED * abs(values) + tolerances.SOLVED * largest
+    real = np.full(len(values), tolerances.COMPUTED * largest) if gyroscopic else turning
     return [
         complex(0 if abs(x.real) <= fades else x.real, 0 if abs(x.imag) <= turns else x.imag)
         for x, fades, turns in zip(values, real, turning, strict=True)
@@ -438,11 +421,13 @@ def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -
 def _shape(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> dict[Node, complex]:
     """The coordinates of the whole model in one mode, the largest 1; parts of the size of rounding are 0."""
     whole = floats(small.whole.P) @ _with_others(small, v, eigenvalue)
-    largest = whole[np.argmax(abs(whole) * (1 - COMPUTED * np.arange(len(whole))))] if len(whole) else 0
+    largest = whole[np.argmax(abs(whole) * (1 - tolerances.COMPUTED * np.arange(len(whole))))] if len(whole) else 0
     whole = whole / largest if largest else whole
 
     def clean(x: complex) -> complex:
-        return complex(0 if abs(x.real) < ITERATED else x.real, 0 if abs(x.imag) < ITERATED else x.imag)
+        return complex(
+            0 if abs(x.real) < tolerances.ITERATED else x.real, 0 if abs(x.imag) < tolerances.ITERATED else x.imag
+        )
 
     return {q: clean(x) for q, x in zip(small.whole.all, whole, strict=True)}
 
@@ -503,13 +488,13 @@ def _leads_on(small: SmallMotions, drift: np.ndarray) -> bool:
     except (DerivationError, NoValue, ZeroDivisionError, np.linalg.LinAlgError):
         return False
     pairs = [(floats(getattr(small.numbers, name)), floats(getattr(beside, name))) for name in "MCKFE"]
-    return all(A.shape == B.shape and np.all(abs(A - B) <= COMPUTED * (1 + abs(A))) for A, B in pairs)
+    return all(A.shape == B.shape and np.all(abs(A - B) <= tolerances.COMPUTED * (1 + abs(A))) for A, B in pairs)
 
 
 def _grows_like_time(small: SmallMotions, drift: np.ndarray, values: Sequence[complex]) -> str:
     """Sentence that says which coordinates grow like t: 0 is a defective eigenvalue (fewer modes than its order)."""
     shape = _shape(small, drift.astype(complex), 0)
-    names = ", ".join(q.name for q, x in shape.items() if abs(x) > SHARE) or "some speeds"
+    names = ", ".join(q.name for q, x in shape.items() if abs(x) > tolerances.SHARE) or "some speeds"
     others = "; all other motions oscillate or fade" if any(values) else ""
     return f"{names} grows like t, as the eigenvalue 0 has fewer modes than it counts for{others}"
 
@@ -519,7 +504,7 @@ def _drifting(modes: Sequence[Mode]) -> str:
     moving = [
         q.name
         for q in (modes[0].shape if modes else ())
-        if any(mode.eigenvalue == 0 and abs(mode.shape[q]) > SHARE for mode in modes)
+        if any(mode.eigenvalue == 0 and abs(mode.shape[q]) > tolerances.SHARE for mode in modes)
     ]
     names = ", ".join(moving) or "some speeds"
     others = "; all other motions oscillate or fade" if any(mode.eigenvalue for mode in modes) else ""
@@ -566,7 +551,7 @@ def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _is_wide(values: np.ndarray) -> bool:
     sizes = abs(values)
-    return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < WIDE_SPECTRUM * sizes.max()
+    return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < tolerances.WIDE_SPECTRUM * sizes.max()
 
 
 def _as_floats(A: Any, kind: type) -> np.ndarray:
@@ -597,7 +582,7 @@ def _of_polynomial(e: LinearEquations, polynomial: Polynomial, trial: Mapping[No
         return None
     unit = fifty_digits().number(1) * float(largest)
     sizes = [abs(c) * unit**k for k, c in enumerate(evaluate(polynomial.coefficients, trial, fifty_digits()))]
-    return next((k for k, x in enumerate(sizes) if x > COEFFICIENT_AT_50 * sizes[-1]), None)
+    return next((k for k, x in enumerate(sizes) if x > tolerances.COEFFICIENT_AT_50 * sizes[-1]), None)
 
 
 def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
@@ -611,7 +596,7 @@ def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
 
 def _without_rounding(A: Entries, rows: int) -> np.ndarray:
     found = floats(A) if rows else np.zeros((0, 0))
-    return dense.without_noise(found, ROUNDING)
+    return dense.without_noise(found, tolerances.ROUNDING)
 
 
 def _by_rank(A: np.ndarray, B: np.ndarray) -> int:
@@ -619,7 +604,7 @@ def _by_rank(A: np.ndarray, B: np.ndarray) -> int:
     n, found = len(A), 0
     for k in range(1, n + 1):
         chain = np.kron(np.eye(k), A) - np.kron(np.eye(k, k=1), B)
-        missing = k * n - dense.rank(chain, smallest=RANK)
+        missing = k * n - dense.rank(chain, smallest=tolerances.RANK)
         if missing <= found:
             break
         found = missing
@@ -634,7 +619,7 @@ def merged(values: np.ndarray) -> np.ndarray:
     values = values.copy()
     for group in _groups(values):
         mean = values[group].mean()
-        if len(group) > 1 and abs(mean.real) <= SAME_EIGENVALUE**1.5 * abs(mean):
+        if len(group) > 1 and abs(mean.real) <= tolerances.SAME_EIGENVALUE**1.5 * abs(mean):
             values[group] = 1j * values[group].imag
     return values
 
@@ -642,7 +627,7 @@ def merged(values: np.ndarray) -> np.ndarray:
 def _groups(values: Sequence[complex] | np.ndarray) -> list[list[int]]:
     groups: list[list[int]] = []
     for k in np.argsort(np.imag(values), kind="stable"):
-        near = [g for g in groups if abs(values[g[-1]] - values[k]) <= SAME_EIGENVALUE * abs(values[k])]
+        near = [g for g in groups if abs(values[g[-1]] - values[k]) <= tolerances.SAME_EIGENVALUE * abs(values[k])]
         near[0].append(int(k)) if near else groups.append([int(k)])
     return groups
 
@@ -654,7 +639,7 @@ def defective(e: LinearEquations, values: Sequence[complex]) -> bool:
         x = 1j * np.mean([values[k].imag for k in group])
         if len(group) > 1 and x.imag > 0 and not any(values[k].real for k in group):
             whole = np.block([[A, x.imag * B], [-x.imag * B, A]])  # of real and imaginary parts
-            if len(whole) - dense.rank(whole, smallest=NEARLY_SINGULAR) < 2 * len(group):
+            if len(whole) - dense.rank(whole, smallest=tolerances.NEARLY_SINGULAR) < 2 * len(group):
                 return True
     return False
 
@@ -668,7 +653,7 @@ def drifting(e: LinearEquations, zeros: int) -> np.ndarray | None:
         zeros: how many eigenvalues are 0.
     """
     A, B = _pencil(e)
-    nullity = len(A) - dense.rank(A, smallest=RANK)
+    nullity = len(A) - dense.rank(A, smallest=tolerances.RANK)
     if not 0 < nullity < zeros:
         return None
     U, _, V = np.linalg.svd(A)

@@ -28,7 +28,7 @@ from eomgen.mechanics.linearization.reference import EQUILIBRIUM, ReferenceMotio
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import NumberField, Numbers
 from eomgen.symbolic.expression import Fraction, Node, Scalar, tangent
-from eomgen.symbolic.numeric import CARRIED, COORDINATE_AT_50, NEARLY_SINGULAR, RANK, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, tolerances
 
 
 @dataclass(frozen=True, eq=False)
@@ -170,14 +170,14 @@ class ParameterSlopes:
         reducing = Reducing(first, choice, Numbers(reference.numbers))
         e = reducing.equations
         K = floats(e.K)
-        step = -np.linalg.lstsq(K, left, rcond=RANK)[0]
-        if np.max(abs(K @ step + left), initial=0.0) > CARRIED * np.max(abs(left), initial=0.0):
+        step = -np.linalg.lstsq(K, left, rcond=tolerances.RANK)[0]
+        if np.max(abs(K @ step + left), initial=0.0) > tolerances.CARRIED * np.max(abs(left), initial=0.0):
             raise DerivationError(
                 "the equilibrium ends, or forks, at these values: it has no slope",
                 fix="take other values of the parameters",
             )
         found = aside + floats(reducing.P) @ step
-        return np.where(abs(found) < COORDINATE_AT_50, 0.0, found)
+        return np.where(abs(found) < tolerances.COORDINATE_AT_50, 0.0, found)
 
     @cached_property
     def equations(self) -> LinearEquations:
@@ -209,7 +209,10 @@ class ParameterSlopes:
         values, left, right = scipy.linalg.eig(A, left=True, right=True)
         k = int(np.argmin(abs(values - near)))
         l, r = left[:, k].conj(), right[:, k]
-        if abs(l @ r) < NEARLY_SINGULAR or np.sum(abs(values - values[k]) <= NEARLY_SINGULAR * abs(values[k])) > 1:
+        if (
+            abs(l @ r) < tolerances.NEARLY_SINGULAR
+            or np.sum(abs(values - values[k]) <= tolerances.NEARLY_SINGULAR * abs(values[k])) > 1
+        ):
             raise DerivationError(
                 "several motions have this frequency: each changes in its own way",
                 fix="take values at which they differ",

@@ -20,7 +20,7 @@ from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
 from eomgen.model import quaternions_of, rotation_of
 from eomgen.symbolic.expression import Matrix, Node, apply, vector_of
-from eomgen.symbolic.numeric import COMPUTED, RANK, ROUNDING, SOLVED, fifty_digits, without_noise
+from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
 
 # -------- reduction -------------------------------------------------------------------------------------------
 # Reference -> LinearEquations: the equations of motion to first order, constraints and dependent speeds eliminated.
@@ -166,7 +166,7 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
     e = reducing.equations
     places, speeds = ([max(1.0, abs(x)) for x in reducing.field.of(part)] for part in (e.coordinates, e.speeds))
     rows = [_size(K, places) + _size(C, speeds) + _size(M, speeds) for K, C, M in zip(e.K, e.C, e.M, strict=True)]
-    return [i for i in left if abs(found[i]) > SOLVED * rows[i]]
+    return [i for i in left if abs(found[i]) > tolerances.SOLVED * rows[i]]
 
 
 def _size(row: list[Any], unit: list[float]) -> float:
@@ -204,7 +204,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
     """
     kept = list(range(len(equations.coordinates)))
     K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
-    K, F = without_noise(K, COMPUTED), without_noise(F, COMPUTED)
+    K, F = without_noise(K, tolerances.COMPUTED), without_noise(F, tolerances.COMPUTED)
     while len(kept) > len(equations.speeds):
         unseen = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])]
         still = [j for j in kept if not np.any(E[j]) and not np.any(F[j, kept])]
@@ -218,7 +218,7 @@ def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Colle
 
 def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
     """Indices among `kept` of coordinates on which the motion depends, or that have a speed of their own."""
-    K, F, E = (without_noise(floats(x), COMPUTED) for x in (equations.K, equations.F, equations.E))
+    K, F, E = (without_noise(floats(x), tolerances.COMPUTED) for x in (equations.K, equations.F, equations.E))
     own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
     seen = {j for j in kept if np.any(K[:, j])} | {*own}
     while more := {j for j in kept if np.any(F[[*seen], j])} - seen:
@@ -242,8 +242,8 @@ def equations_without_rounding(e: LinearEquations, nearby: np.ndarray) -> Linear
     M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
     usual = np.sqrt(abs(M).max(initial=0)) * np.sqrt(abs(K).max(initial=0))
     masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M counts against those of its own two speeds, however light
-    M = np.where(abs(M) > SOLVED * np.outer(masses, masses), M, 0.0)
-    K = np.where(abs(K) > COMPUTED * nearby, K, 0.0)
+    M = np.where(abs(M) > tolerances.SOLVED * np.outer(masses, masses), M, 0.0)
+    K = np.where(abs(K) > tolerances.COMPUTED * nearby, K, 0.0)
     return replace(e, M=[[*row] for row in M.tolist()], C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
 
 
@@ -252,7 +252,7 @@ def _rounded(A: np.ndarray, usual: float = 0) -> Entries:
         return [[*row] for row in A.tolist()]
     sizes = abs(A)
     near = np.minimum(sizes.max(axis=1)[:, None], sizes.max(axis=0)[None, :])
-    least = np.maximum(SOLVED * near, ROUNDING * max(usual, sizes.max()))
+    least = np.maximum(tolerances.SOLVED * near, tolerances.ROUNDING * max(usual, sizes.max()))
     return [[*row] for row in np.where(sizes > least, A, 0.0).tolist()]
 
 
@@ -274,7 +274,7 @@ def _can_be_of_second_order(field: NumberField, equations: LinearEquations) -> b
     if len(equations.coordinates) != n:
         return False
     E = np.array([[field.size(x) for x in row] for row in equations.E])
-    return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=RANK) == n))
+    return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=tolerances.RANK) == n))
 
 
 def is_second_order(equations: LinearEquations) -> bool:
@@ -328,7 +328,7 @@ def restricted(
     o = [j for j in range(len(names)) if j not in c]
     if not o:
         return _taken(equations, c)
-    M, C, K = (without_noise(floats(x), COMPUTED) for x in (decided.M, decided.C, decided.K))
+    M, C, K = (without_noise(floats(x), tolerances.COMPUTED) for x in (decided.M, decided.C, decided.K))
     if not any(np.any(x[np.ix_(c, o)]) for x in (M, C, K)):
         return _taken(equations, c)
     if np.any(K[o]) or np.any(K[:, o]) or np.any(C[np.ix_(o, o)]) or _drives(decided, C, c, o):

@@ -18,7 +18,7 @@ from eomgen.mechanics.kinematics import Located, places_of, start_values
 from eomgen.mechanics.start import refuse_lost, start_state, values_of_parameters
 from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
-from eomgen.symbolic.numeric import SOLVED, evaluate, fifty_digits
+from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 # -------- reference -------------------------------------------------------------------------------------------
 # System -> Reference: the equilibrium, or the steady motion, about which small motions are sought.
@@ -70,7 +70,7 @@ class ReferenceMotion:
     def moving(self) -> dict[Node, Any]:
         """The coordinates that move in the reference, and their rates."""
         rates = evaluate(self.system.scope.rates, self.numbers, fifty_digits())
-        return {q: rate for q, rate in zip(self.system.symbols.q, rates, strict=True) if abs(rate) > SOLVED}
+        return {q: rate for q, rate in zip(self.system.symbols.q, rates, strict=True) if abs(rate) > tolerances.SOLVED}
 
     @property
     def trial(self) -> dict[Node, Any]:

@@ -20,19 +20,7 @@ from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
 from eomgen.mechanics.state import Exact, Numbers, Split
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, is_zero, operations, substituted
-from eomgen.symbolic.numeric import (
-    BEST,
-    COMPUTED,
-    COORDINATE_AT_50,
-    ITERATED,
-    RANK,
-    SUMMED,
-    Newton,
-    NoValue,
-    Work,
-    evaluate,
-    fifty_digits,
-)
+from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import vanishes
 
@@ -47,7 +35,7 @@ from eomgen.symbolic.solve import vanishes
 # that leaves enough to move: `start` of a coordinate without `near`, `speed` of a coordinate without `near`.
 
 
-STEADILY = Newton(still=SUMMED, steps=40, smallest=RANK, double=0.02, longest=0.3)
+STEADILY = Newton(still=tolerances.SUMMED, steps=40, smallest=tolerances.RANK, double=0.02, longest=0.3)
 STATED, GUESSED, OPEN = 0, 1, 2  # by the model: held, marked by `near`, not said
 
 
@@ -96,7 +84,7 @@ def _steady(first: FirstOrder, choice: Choice, state: Mapping[Node, Any], change
     values = {x.name: float(state[x]) for x in (*symbols.q, *symbols.u)}
     independent = (*(symbols.q[k] for k in choice.places.free), *(symbols.u[k] for k in choice.speeds.free))
     return Steady(
-        {name: 0.0 if abs(x) < COORDINATE_AT_50 else x for name, x in values.items()},
+        {name: 0.0 if abs(x) < tolerances.COORDINATE_AT_50 else x for name, x in values.items()},
         tuple(x for x, one in zip(independent, changed, strict=True) if one),
     )
 
@@ -193,7 +181,7 @@ class Here:
         w = max(abs(float(self.state[u])) for u in e.speeds)
         M, C, K, F, E = (abs(floats(x)) for x in (e.M, e.C, e.K, e.F, e.E))
         sizes = (max(K.max(), C.max() * w, M.max() * w * w), max(F.max(), E.max() * w))
-        return K > COMPUTED * sizes[0], F > COMPUTED * sizes[1]
+        return K > tolerances.COMPUTED * sizes[0], F > tolerances.COMPUTED * sizes[1]
 
     @cached_property
     def rates(self) -> np.ndarray:
@@ -218,7 +206,7 @@ class Here:
         w = self.sizes[-1]
         inertia = np.append(abs(floats(self.equations.M)).max(axis=1) * w * w, np.ones(len(self.still)))
         largest = (abs(self.slopes) * self.sizes).max(axis=1)
-        return np.asarray(np.maximum(largest, COMPUTED * inertia))
+        return np.asarray(np.maximum(largest, tolerances.COMPUTED * inertia))
 
     @property
     def sizes(self) -> np.ndarray:
@@ -231,7 +219,9 @@ class Here:
     @property
     def is_balanced(self) -> bool:
         moving = abs(self.rates[self.still])
-        return not unsettled(self.reducing, ITERATED) and bool(np.all(moving <= ITERATED * max(1.0, *abs(self.rates))))
+        return not unsettled(self.reducing, tolerances.ITERATED) and bool(
+            np.all(moving <= tolerances.ITERATED * max(1.0, *abs(self.rates)))
+        )
 
     def moved(self, step: np.ndarray) -> Here:
         """The state after a step of the independent variables, the dependent ones following.
@@ -442,7 +432,8 @@ class _Writing:
         at = np.array([float(numbers[x]) for x in unknowns])
         places = places_of_rest(sought, {x: v for x, v in numbers.items() if x not in unknowns}, at)
         others = tuple(
-            {x: float(v) if abs(v) > BEST else 0.0 for x, v in zip(unknowns, z, strict=True)} for z in places.found
+            {x: float(v) if abs(v) > tolerances.BEST else 0.0 for x, v in zip(unknowns, z, strict=True)}
+            for z in places.found
         )
         closed = tuple(self._solved(conditions, self._beside(at)) for at in others)
         return replace(family, others=others, closed=closed, complete=places.complete, where=places.where)

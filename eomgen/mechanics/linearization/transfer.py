@@ -15,7 +15,7 @@ from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.state import Entries, Exact
 from eomgen.symbolic.exact import Expansion, TooLarge, reduced
 from eomgen.symbolic.expression import Node, is_zero, operations, over
-from eomgen.symbolic.numeric import ITERATED, Work, evaluate, fifty_digits
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.solve import cramer
 
 # -------- transfer --------------------------------------------------------------------------------------------
@@ -88,7 +88,9 @@ def transfers_in_numbers(e: LinearEquations, A: np.ndarray, B: np.ndarray) -> tu
             coupled = A.copy()
             coupled[:, j] -= B[:, k]
             closed = np.poly(coupled)
-            above = np.where(abs(closed - below) > ITERATED * (abs(closed) + abs(below)), closed - below, 0.0)
+            above = np.where(
+                abs(closed - below) > tolerances.ITERATED * (abs(closed) + abs(below)), closed - below, 0.0
+            )
             found.append(TransferFunction(q, w, *map(_of_floats, (np.trim_zeros(above, "f"), below))))
     return tuple(found)
 

@@ -54,7 +54,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import COMPUTED, ELIMINATED_AT_50, NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 
 def imbalance(reactions: Reactions, state: State, rng: Random) -> str:
@@ -90,10 +90,10 @@ def _of_bodies(balance: Balance, numbers: BodyNumbers, x: np.ndarray) -> str:
     for (i, j, _), value in zip(entries, numbers.array(tuple(value for _, _, value in entries)), strict=True):
         total[i] += value * x[j]
         size[i] += abs(value * x[j])
-    wrong = np.flatnonzero(~(np.abs(total) <= COMPUTED * size))
+    wrong = np.flatnonzero(~(np.abs(total) <= tolerances.COMPUTED * size))
     if not len(wrong):
         return ""
-    if COMPUTED * size[wrong[0]] < ELIMINATED_AT_50 * size.max():
+    if tolerances.COMPUTED * size[wrong[0]] < tolerances.ELIMINATED_AT_50 * size.max():
         raise NoValue("small forces are lost by rounding against the largest force")
     e = balance.equations[wrong[0]]
     return f"body '{e.body}' is out of balance along {DIRECTIONS[e.direction]}"
@@ -166,7 +166,7 @@ def _of_pairs(wrenches: _Wrenches) -> str:
         if not _is_inner(wrenches.system, component):
             continue
         rows = [k for k in wrenches.rows if k < 3 or not _takes_a_couple(wrenches.system, component)]
-        if any(abs(total[j, k]) > COMPUTED * (1 + size[j].max()) for k in rows):
+        if any(abs(total[j, k]) > tolerances.COMPUTED * (1 + size[j].max()) for k in rows):
             return f"{component.name} does not act on its bodies in opposite ways"
     return ""
 
@@ -205,7 +205,7 @@ def _of_the_whole(wrenches: _Wrenches, x: np.ndarray) -> str:
     applied = _applied(wrenches)
     total = x @ unit + applied - rates
     scale = 1 + np.abs(x) @ size.max(axis=1, initial=0.0) + np.abs(applied).max() + np.abs(rates).max()
-    wrong = [k for k in wrenches.rows if not abs(total[k]) <= COMPUTED * scale]
+    wrong = [k for k in wrenches.rows if not abs(total[k]) <= tolerances.COMPUTED * scale]
     return f"all forces and reactions do not make up the rate of the momentum: {DIRECTIONS[wrong[0]]}" if wrong else ""
 
 

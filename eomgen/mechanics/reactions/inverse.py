@@ -62,7 +62,7 @@ from eomgen.symbolic.expression import (
     substituted,
     times,
 )
-from eomgen.symbolic.numeric import RANK_NEARBY, dense, transplanted
+from eomgen.symbolic.numeric import dense, tolerances, transplanted
 from eomgen.symbolic.solve import cramer
 
 NAME = "name the actuated coordinates or inputs, one for each degree of freedom"
@@ -207,7 +207,7 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
     constraints, nu = system.constraints, len(system.symbols.u)
     state = generic_state(constraints)
     A, J = Numbers(state).array(columns, nu), Numbers(state).on_manifold(constraints.J, nu)
-    whole, own = (dense.rank(rows, smallest=RANK_NEARBY) for rows in (np.vstack([A, J]), J))
+    whole, own = (dense.rank(rows, smallest=tolerances.RANK_NEARBY) for rows in (np.vstack([A, J]), J))
     reported = f"{len(names)} actuated, and {nu - own} degrees of freedom"
     if whole < nu:
         raise UsageError(f"{reported}: {nu - whole} would have no actuator", fix=NAME)
@@ -440,7 +440,7 @@ def _dependent(system: System, J: Sequence[Sequence[Scalar]]) -> list[int]:
     """The speeds that follow from the others at the start, if it is not special; the last ones rather."""
     many = len(system.symbols.u)
     for state in _states(system):
-        split = Split.of(Numbers(state).array(J, many), range(many), RANK_NEARBY)
+        split = Split.of(Numbers(state).array(J, many), range(many), tolerances.RANK_NEARBY)
         if len(split.following) == len(J):
             break
     return [*split.following]

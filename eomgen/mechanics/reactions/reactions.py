@@ -62,7 +62,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import RANK_NEARBY, Work
+from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.solve import Solution
 
 
@@ -470,7 +470,7 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
     if touched:
         unheld[[not e.coefficients for e in balance.equations]] = 0
     worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
-    if np.max(np.abs(unheld)) < RANK_NEARBY:
+    if np.max(np.abs(unheld)) < tolerances.RANK_NEARBY:
         return None
     equation = balance.equations[worst]
     direction = DIRECTIONS[equation.direction]
@@ -504,14 +504,14 @@ def _placed_together(balance: Balance, unheld: np.ndarray) -> str:
         unheld: motions along the rows without reaction and coordinate, one a column.
     """
     U, sizes, _ = np.linalg.svd(unheld, full_matrices=False)
-    basis = U[:, sizes > RANK_NEARBY]
+    basis = U[:, sizes > tolerances.RANK_NEARBY]
     bodies = list(dict.fromkeys(e.body for e in balance.equations))
     parts = {body: basis[[e.body == body for e in balance.equations]] for body in bodies}
     share = {body: float(np.linalg.norm(part, 2)) if part.size else 0.0 for body, part in parts.items()}
-    if any(x > 1 - RANK_NEARBY for x in share.values()):  # it moves by itself
+    if any(x > 1 - tolerances.RANK_NEARBY for x in share.values()):  # it moves by itself
         return ""
     system, given = balance.system, driven_coordinates(balance.system.scope.model)
-    links = [link for link in system.motion.links if share.get(link.name, 0.0) > RANK_NEARBY]
+    links = [link for link in system.motion.links if share.get(link.name, 0.0) > tolerances.RANK_NEARBY]
     for q in system.symbols.q:
         moved = [f"'{link.name}'" for link in links if depends_on_any(link.s, (q,))]
         if len(moved) > 1 and q.name not in given:
@@ -531,7 +531,7 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
         if e.coefficients:
             G[i, list(e.coefficients)] = numbers(list(e.coefficients.values()))
     U, sizes, _ = np.linalg.svd(G)
-    free = U[:, int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :]
+    free = U[:, int(np.sum(sizes > tolerances.RANK_NEARBY * max(sizes, default=1.0))) :]
     return free, _allowed(balance, numbers)
 
 
@@ -565,4 +565,4 @@ def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
         return moved
     J = np.array(numbers([x for row in kept for x in row])).reshape(len(kept), -1)
     _, sizes, V = np.linalg.svd(J)
-    return np.asarray(moved @ V[int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :].T)
+    return np.asarray(moved @ V[int(np.sum(sizes > tolerances.RANK_NEARBY * max(sizes, default=1.0))) :].T)

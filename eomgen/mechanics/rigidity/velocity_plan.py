@@ -32,7 +32,7 @@ from eomgen.symbolic.expression import (
     substituted,
     vector_of,
 )
-from eomgen.symbolic.numeric import ZERO_AT_50, Work, evaluate, fifty_digits
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
 
 # -------- velocity plan ---------------------------------------------------------------------------------------
 # Velocities of all bodies at one configuration -> Plan: velocities of points, spins, centres of rotation, work.
@@ -188,7 +188,7 @@ class VelocityPlan:
             return True
         known = beside if not any(type(x) is Node for x in beside) else self.numbers(beside)
         size = max(map(abs, known), default=0)
-        return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers(nodes))
+        return all(abs(x) <= tolerances.ZERO_AT_50 * size for x in self.numbers(nodes))
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         """Values of scalars at these parameters, with 50 digits."""
@@ -287,7 +287,7 @@ def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
 def turning_by_one(plan: VelocityPlan) -> Scalar:
     """1/w of the first block that turns about one axis; 1 where none does."""
     for part in chain(_bodies(plan), _members(plan)):
-        turning = [k for k, w in enumerate(part.numbers[:3]) if abs(w) > ZERO_AT_50]
+        turning = [k for k, w in enumerate(part.numbers[:3]) if abs(w) > tolerances.ZERO_AT_50]
         if len(turning) == 1:
             return plan.simple(over(1, part.motion()[0][turning[0]]))
     return 1
@@ -358,7 +358,9 @@ class _Group:
         if node not in self.known:
             _, _, w, v_x, v_y, _ = self.parts[0].numbers
             vx, vy, x, y = moving
-            self.known[node] = abs(vx - v_x + w * y) < ZERO_AT_50 and abs(vy - v_y - w * x) < ZERO_AT_50
+            self.known[node] = (
+                abs(vx - v_x + w * y) < tolerances.ZERO_AT_50 and abs(vy - v_y - w * x) < tolerances.ZERO_AT_50
+            )
         return self.known[node]
 
 
@@ -393,7 +395,7 @@ def _numbers_of(one: NodeNumbers, other: NodeNumbers) -> tuple[Any, ...]:
     """Spin and velocity of a member from its nodes, w = r x (v_2 - v_1) / r.r; () if its length changes."""
     (vx, vy, x, y), (wx, wy, x_2, y_2) = one, other
     ax, ay, dx, dy = wx - vx, wy - vy, x_2 - x, y_2 - y
-    if abs(ax * dx + ay * dy) > ZERO_AT_50:
+    if abs(ax * dx + ay * dy) > tolerances.ZERO_AT_50:
         return ()
     w = (dx * ay - dy * ax) / (dx * dx + dy * dy) if ax or ay else 0
     return 0, 0, w, vx + w * y, vy - w * x, 0
@@ -414,7 +416,7 @@ def _of_ends(plan: VelocityPlan, ends: tuple[str, str]) -> tuple[Vector, Vector]
 
 
 def _agree(one: Sequence[Any], other: Sequence[Any]) -> bool:
-    return all(abs(x - y) < ZERO_AT_50 for x, y in zip(one, other, strict=True))
+    return all(abs(x - y) < tolerances.ZERO_AT_50 for x, y in zip(one, other, strict=True))
 
 
 def _joined(plan: VelocityPlan, group: list[_Part]) -> RigidBlock:

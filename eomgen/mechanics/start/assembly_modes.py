@@ -16,18 +16,7 @@ from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.state import Doubles, Split
 from eomgen.model import PointForce, in_own_unit, numeric_parameters
 from eomgen.symbolic.expression import Node, Scalar, State, is_zero, jacobian, symbols_of
-from eomgen.symbolic.numeric import (
-    BRANCHES_MEET,
-    COMPUTED,
-    FLOAT,
-    GAP_CLOSED,
-    RANK_NEARBY,
-    SAME_PLACE,
-    SOLVED,
-    Newton,
-    all_roots,
-    evaluate,
-)
+from eomgen.symbolic.numeric import FLOAT, Newton, all_roots, evaluate, tolerances
 
 # -------- assembly modes --------------------------------------------------------------------------------------
 # System, start -> Branches: in which ways the loops close while the independent coordinates stay.
@@ -39,7 +28,7 @@ from eomgen.symbolic.numeric import (
 
 TRIES = 30  # for each coordinate that follows
 MOST = 8  # of these
-CLOSING_IN_FLOATS = Newton(enough=GAP_CLOSED, steps=40, again=True)
+CLOSING_IN_FLOATS = Newton(enough=tolerances.GAP_CLOSED, steps=40, again=True)
 
 
 @dataclass(frozen=True)
@@ -152,7 +141,7 @@ class _Search:
         """True if no other branch meets this one there, judged by the slopes against those at the start."""
         scale = np.linalg.norm(self._at(self.here)[1], axis=0)
         sizes = np.linalg.svd(J / np.where(scale > 0, scale, 1.0), compute_uv=False)
-        return bool(sizes[-1] > BRANCHES_MEET * sizes[0])
+        return bool(sizes[-1] > tolerances.BRANCHES_MEET * sizes[0])
 
     def _is_upright(self, place: np.ndarray) -> bool:
         return all(x > 0 for x in evaluate(self.agreeing, self._state(place), FLOAT))
@@ -171,7 +160,7 @@ class _Search:
         return np.asarray(np.where(self.turns, (d + np.pi) % (2 * np.pi) - np.pi, d))
 
     def same(self, one: np.ndarray, other: np.ndarray) -> bool:
-        return bool(np.max(np.abs(self.apart(one, other))) < SAME_PLACE)
+        return bool(np.max(np.abs(self.apart(one, other))) < tolerances.SAME_PLACE)
 
     def branch(self, place: np.ndarray) -> AssemblyMode:
         values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
@@ -184,7 +173,7 @@ class _Search:
 
 def _plain(x: float) -> float:
     """A value found by an iteration; what is rounding of it is 0."""
-    return float(x) if abs(x) > SOLVED else 0.0
+    return float(x) if abs(x) > tolerances.SOLVED else 0.0
 
 
 def _search(system: System, start: Mapping[str, float]) -> _Search | None:
@@ -222,13 +211,13 @@ def _split(system: System, free: Sequence[Node], J: np.ndarray) -> Split:
     def place(k: int) -> tuple[bool, bool, int]:
         return free[k].name not in dependent, not is_guess(system.scope.model, free[k].name), -k
 
-    return Split.in_order(J, sorted(range(len(free)), key=place), RANK_NEARBY)
+    return Split.in_order(J, sorted(range(len(free)), key=place), tolerances.RANK_NEARBY)
 
 
 def _is_angle(gaps: Sequence[Any], known: State, q: Node) -> bool:
     """True if a whole turn of the coordinate changes no gap."""
     before, after = (evaluate(gaps, {**known, q: known[q] + turn}, FLOAT) for turn in (0.3, 0.3 + 2 * math.pi))
-    return bool(np.allclose(before, after, atol=COMPUTED))
+    return bool(np.allclose(before, after, atol=tolerances.COMPUTED))
 
 
 # -------- assembly sides --------------------------------------------------------------------------------------
@@ -291,6 +280,6 @@ def _is_left(system: System, state: Mapping[Node, Any], links: list[BodyLink], p
     P, Q, R, *others = [complex(*numbers[k : k + 2]) for k in range(0, len(numbers), 2)]
     area = ((Q - P).conjugate() * (R - P)).imag
     size = max(abs(Q - P), abs(R - P)) ** 2
-    if any(abs(other - R) ** 2 > COMPUTED * size for other in others):
+    if any(abs(other - R) ** 2 > tolerances.COMPUTED * size for other in others):
         return None
-    return None if abs(area) <= COMPUTED * size else area > 0
+    return None if abs(area) <= tolerances.COMPUTED * size else area > 0

@@ -32,19 +32,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
     tangent,
 )
-from eomgen.symbolic.numeric import (
-    CARRIED,
-    COMPUTED,
-    RANK,
-    ZERO_AT_50,
-    NoValue,
-    Work,
-    digits_at,
-    evaluate,
-    fifty_digits,
-    number_of,
-    numbers_of,
-)
+from eomgen.symbolic.numeric import NoValue, Work, digits_at, evaluate, fifty_digits, number_of, numbers_of, tolerances
 from eomgen.symbolic.solve import LinearSystem, general_solution, unique_solution
 
 # -------- exact start -----------------------------------------------------------------------------------------
@@ -118,7 +106,9 @@ class ExactStart:
         """Speeds that do not depend on parameters without a value, next to their numbers; {} where one does."""
         symbols, (first, second) = self.system.symbols, (each.begun.values for each in self._sought)
         open_ = [u for u in symbols.u if u not in found]
-        steady = all(abs(first[u.name] - second[u.name]) <= COMPUTED * (1 + abs(first[u.name])) for u in open_)
+        steady = all(
+            abs(first[u.name] - second[u.name]) <= tolerances.COMPUTED * (1 + abs(first[u.name])) for u in open_
+        )
         if not open_ or not steady or any(q not in found for q in symbols.q):
             return {}
         places = {x: y for x, y in found.items() if x not in symbols.u}
@@ -388,12 +378,12 @@ def _kept(
     Raises:
         DerivationError: these do not do, or may do so in several ways.
     """
-    if not moved and not np.any(np.abs(left) > CARRIED):
+    if not moved and not np.any(np.abs(left) > tolerances.CARRIED):
         return seeds
     A = Numbers(numbers).array(jacobian(scalars, silent), len(silent))
-    step, _, rank, _ = np.linalg.lstsq(A, -np.array(left), rcond=RANK)
+    step, _, rank, _ = np.linalg.lstsq(A, -np.array(left), rcond=tolerances.RANK)
     several = rank < np.count_nonzero(np.any(A, axis=0)) or not {*moved} <= {*silent}
-    if several or np.max(abs(A @ step + left)) > CARRIED * max(1.0, np.max(np.abs(left))):
+    if several or np.max(abs(A @ step + left)) > tolerances.CARRIED * max(1.0, np.max(np.abs(left))):
         names = ", ".join(f"'{x.name}'" for x in silent or moved)
         raise DerivationError(
             f"the constraints do not determine how the start changes with {what}{f': of {names}' if names else ''}",
@@ -406,7 +396,9 @@ def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapp
     """Variables whose start the constraints move away from the value that the model says."""
     found = Numbers(numbers).of([said[x] for x in variables])
     own = [float(numbers[x]) for x in variables]
-    return [x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > CARRIED * max(1.0, abs(b))]
+    return [
+        x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > tolerances.CARRIED * max(1.0, abs(b))
+    ]
 
 
 # -------- values at rest --------------------------------------------------------------------------------------
@@ -556,7 +548,7 @@ class ScalarValues:
     """
 
     scope: Scope
-    tolerance: float = ZERO_AT_50
+    tolerance: float = tolerances.ZERO_AT_50
 
     def of(self, scalars: Iterable[Scalar]) -> list[Any]:
         """The values, with 50 digits."""

@@ -50,20 +50,7 @@ from eomgen.model import (
     start_values,
 )
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, minus, substituted, symbols_of
-from eomgen.symbolic.numeric import (
-    COMPUTED,
-    COORDINATE_AT_50,
-    FLOAT,
-    LARGEST_AT_50,
-    OPEN_GAP,
-    SAME_PLACE,
-    SUMMED,
-    NoValue,
-    all_roots,
-    evaluate,
-    fifty_digits,
-    least_left,
-)
+from eomgen.symbolic.numeric import FLOAT, NoValue, all_roots, evaluate, fifty_digits, least_left, tolerances
 
 # -------- initial state ---------------------------------------------------------------------------------------
 # System -> the state at the start: dependent coordinates where the constraints put them, and the constraints found to
@@ -136,7 +123,7 @@ def refuse_lost(places: Mapping[Node, Any]) -> None:
         DerivationError: the first of them is named.
     """
     for node, x in places.items():
-        if abs(x) > LARGEST_AT_50:
+        if abs(x) > tolerances.LARGEST_AT_50:
             what = f"'{node.name}' is at {float(x):.6g}, where no digit is left of a small motion"
             raise DerivationError(what, f"coordinates.{node.name}", "start nearer to 0, an angle less whole turns")
 
@@ -232,7 +219,9 @@ def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | 
     J = Numbers(state).array(system.constraints.J, len(u))
     moved = M @ np.array([float(after[x] - state[x]) for x in u])
     impulses = np.linalg.lstsq(J.T, moved, rcond=None)[0]
-    if any(impulses[k] < -COMPUTED * np.max(np.abs(impulses)) for k, _ in rows):  # another one would have to hold on
+    if any(
+        impulses[k] < -tolerances.COMPUTED * np.max(np.abs(impulses)) for k, _ in rows
+    ):  # another one would have to hold on
         return state, ()
     return after, hit
 
@@ -287,7 +276,7 @@ def _changes(
     return tuple(
         _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in called)
         for x in own
-        if abs(after[x.name] - before[x.name]) > COMPUTED * (1 + abs(before[x.name]))
+        if abs(after[x.name] - before[x.name]) > tolerances.COMPUTED * (1 + abs(before[x.name]))
     )
 
 
@@ -301,7 +290,7 @@ def _change(model: Model, name: str, values: tuple[float, float], called: bool) 
 
 def _rounded(x: Any, given: float) -> float:
     """A number of 50 digits as a float; 0 where it is rounding, and not given."""
-    return 0.0 if abs(x) < COORDINATE_AT_50 and float(x) != given else float(x)
+    return 0.0 if abs(x) < tolerances.COORDINATE_AT_50 and float(x) != given else float(x)
 
 
 def start_speeds(system: System) -> dict[Node, Scalar]:
@@ -531,14 +520,18 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     rng = Random(1)
     starts = [here, *(here + np.array([rng.uniform(-REACH, REACH) for _ in free]) for _ in range(TRIES))]
     best, *_ = all_roots(
-        search.least, starts, lambda place: (round(search.size(place) / COMPUTED), float(np.linalg.norm(place - here)))
+        search.least,
+        starts,
+        lambda place: (round(search.size(place) / tolerances.COMPUTED), float(np.linalg.norm(place - here))),
     )
     values = search.at(best)[: len(gaps)]
     size = float(np.max(np.abs(values), initial=0.0))
     rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
-    named = [row.constraint for row, x in zip(rows, values, strict=False) if abs(x) > OPEN_GAP * size]
-    places = {q.name: float(x) if abs(x) > SAME_PLACE else 0.0 for q, x in zip(free, best, strict=True)}
-    shut = size <= COMPUTED and (size <= SUMMED or _closes(system, state, dict(zip(free, best, strict=True))))
+    named = [row.constraint for row, x in zip(rows, values, strict=False) if abs(x) > tolerances.OPEN_GAP * size]
+    places = {q.name: float(x) if abs(x) > tolerances.SAME_PLACE else 0.0 for q, x in zip(free, best, strict=True)}
+    shut = size <= tolerances.COMPUTED and (
+        size <= tolerances.SUMMED or _closes(system, state, dict(zip(free, best, strict=True)))
+    )
     return Miss(places, 0.0, ()) if shut else Miss(places, size, tuple(dict.fromkeys(named)))
 
 

@@ -19,7 +19,7 @@ from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
 from eomgen.model import Contact, Model, contacts_of, exact_parameters, rough_contacts
 from eomgen.symbolic.expression import Scalar, State, function, sqrt, symbols_of
-from eomgen.symbolic.numeric import CARRIED, COMPUTED, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- contacts at start -----------------------------------------------------------------------------------
 # Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.
@@ -149,12 +149,14 @@ class _StartNumbers:
             return ContactsAtStart({}, tuple(_closed(name, why) for name in names))
         modes, assumptions = {}, []
         for name, gap in gaps.items():
-            lacking = [p for p, found in others.items() if abs(found[name] - gap) > COMPUTED * (1 + abs(gap))]
+            lacking = [
+                p for p, found in others.items() if abs(found[name] - gap) > tolerances.COMPUTED * (1 + abs(gap))
+            ]
             if lacking:
                 assumptions.append(_closed(name, _lacking(lacking)))
-            elif gap > CARRIED or (gap >= -CARRIED and rates[name] > CARRIED):
+            elif gap > tolerances.CARRIED or (gap >= -tolerances.CARRIED and rates[name] > tolerances.CARRIED):
                 modes[name] = OPEN
-            elif gap < -CARRIED:
+            elif gap < -tolerances.CARRIED:
                 assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} m"))
         return ContactsAtStart(modes, tuple(assumptions))
 
@@ -195,7 +197,9 @@ class _StartNumbers:
         opening = evaluate(scope.with_accelerations(rates), state, digits) if rates else []
         size = max(map(abs, (*pushes, *evaluate(equations.forcing, state, digits))), default=0)
         fastest = max((abs(state[a]) for a in system.symbols.a), default=0)
-        return all(N >= -CARRIED * size for N in pushes) and all(x >= -CARRIED * fastest for x in opening)
+        return all(N >= -tolerances.CARRIED * size for N in pushes) and all(
+            x >= -tolerances.CARRIED * fastest for x in opening
+        )
 
     def pushing(self, contacts: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
         """Contacts that push against their normals: N < 0, with the friction of that same sign."""
@@ -227,7 +231,7 @@ class _StartNumbers:
         state = _state(system, self.drawn)
         state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
         values = evaluate(tuple(normals.values()), state, fifty_digits())
-        return {name: -1 if N < -CARRIED else 1 for name, N in zip(normals, values, strict=True)}
+        return {name: -1 if N < -tolerances.CARRIED else 1 for name, N in zip(normals, values, strict=True)}
 
     def still(self, opened: ContactModes) -> set[str]:
         """The contacts with dry friction that do not slide at the start."""
@@ -235,7 +239,7 @@ class _StartNumbers:
         state, rough = _state(system, self.drawn), {c.name for c in contacts_of(self.model) if c.mu is not None}
         sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in frictions(system) if name in rough]
         values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
-        return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= CARRIED}
+        return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= tolerances.CARRIED}
 
 
 class _Lacking(Exception):

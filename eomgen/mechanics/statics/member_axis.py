@@ -35,7 +35,7 @@ from eomgen.symbolic.expression import (
     times,
     vector_of,
 )
-from eomgen.symbolic.numeric import CERTAIN_AT_50, Work, evaluate, fifty_digits
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.solve import vanishes
 
 
@@ -82,7 +82,7 @@ class Sizes:
             fix = "give them values, or call them positive where that decides it"
             raise DerivationError(f"what comes first along the line depends on {', '.join(names)}", "parameters", fix)
         value = evaluate((x,), self.values, fifty_digits())[0]
-        return 0 if abs(value) < CERTAIN_AT_50 else 1 if value > 0 else -1
+        return 0 if abs(value) < tolerances.CERTAIN_AT_50 else 1 if value > 0 else -1
 
 
 def sizes_of(motion: Motion, at: Mapping[Node, Scalar] | None = None) -> Sizes:

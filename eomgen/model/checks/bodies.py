@@ -16,7 +16,7 @@ from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, cross, vector_of
-from eomgen.symbolic.numeric import SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 
@@ -199,7 +199,7 @@ def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNum
     try:
         measures = [_signed(piece, value) for piece in body.parts if piece.shape.mass is None]
         cut = body.mass is not None and any(measure > 0 for measure in measures)
-        if cut and sum(measures) <= SOLVED * max(map(abs, measures)):
+        if cut and sum(measures) <= tolerances.SOLVED * max(map(abs, measures)):
             yield Diagnostic(path, f"the holes of body '{name}' are as large as its parts, or larger", key=True)
             return
         composite = composite_of(body.parts, body.mass, value)
@@ -221,11 +221,11 @@ def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> I
         what = f"the parts of body '{name}' with a mass of their own weigh {float(given):g} kg, its 'mass' is "
         what += f"{float(composite.whole.m):g} kg: that leaves no mass for the others"
         yield Diagnostic(path, what, "'mass' is that of the net whole", key=True)
-    elif abs(total - composite.whole.m) > SOLVED * (largest or 1):
+    elif abs(total - composite.whole.m) > tolerances.SOLVED * (largest or 1):
         what = f"the parts of body '{name}' weigh {float(total):g} kg, its 'mass' is {float(composite.whole.m):g} kg"
         yield Diagnostic(path, what, "leave out 'mass', or the mass of a part", key=True)
-    elif total < -SOLVED * largest or (abs(total) <= SOLVED * largest and largest > 0):
-        weight = "negative" if total < -SOLVED * largest else "zero"
+    elif total < -tolerances.SOLVED * largest or (abs(total) <= tolerances.SOLVED * largest and largest > 0):
+        weight = "negative" if total < -tolerances.SOLVED * largest else "zero"
         what = f"the mass of body '{name}' is {weight}: its holes take away {_of_holes(composite):g} kg"
         yield Diagnostic(path, what, "a hole cannot weigh more than what it is cut out of", key=True)
     else:
@@ -269,7 +269,7 @@ def possible(moments: list[float], size: float = 0.0) -> bool:
     a, b, c = half - xx, half - yy, half - zz
     determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
     second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
-    return min(a, b, c, *second, determinant) >= -SOLVED
+    return min(a, b, c, *second, determinant) >= -tolerances.SOLVED
 
 
 # -------- numbers ---------------------------------------------------------------------------------------------

@@ -50,7 +50,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import DEGENERATE, Work
+from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
 # -------- round bodies ----------------------------------------------------------------------------------------
@@ -110,7 +110,7 @@ class Wheel:
             ModelError: the wheel lies flat at the start, where the whole rim touches.
         """
         a, rho = self._axle(scene), self.tilt(scene, n)
-        if abs(_value(scene, rho)) < DEGENERATE:
+        if abs(_value(scene, rho)) < tolerances.DEGENERATE:
             raise ModelError(
                 f"'{self.body}' lies flat at the start: its whole rim touches",
                 scene.where,
@@ -128,7 +128,7 @@ class Wheel:
             ModelError: its axis points to the ball's centre at the start, where the whole rim touches.
         """
         h, size = self._across(scene, out), self.distance(scene, out)
-        if abs(_value(scene, size)) < DEGENERATE * abs(_value(scene, self.R)):
+        if abs(_value(scene, size)) < tolerances.DEGENERATE * abs(_value(scene, self.R)):
             raise ModelError(
                 f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
                 scene.where,

@@ -12,7 +12,7 @@ from eomgen.model.constraints.row import ConstraintRow, normals_of
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.model.joints.base import Z
 from eomgen.symbolic.expression import AnyScalar, Vector, cross, dot, minus, over, plus, sqrt, times
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
 
@@ -105,7 +105,7 @@ def strand_along(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> St
     _refuse_out_of_plane(scene, first, second, d)
     length = dot(d, minus(second.center, first.center))
     run = scene.value_at_start(length)
-    if run is not None and run < -COMPUTED:
+    if run is not None and run < -tolerances.COMPUTED:
         raise _against(scene, first, second)
     return Strand(first, second, d, length)
 

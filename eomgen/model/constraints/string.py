@@ -17,7 +17,7 @@ from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirecti
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, Vector, apply
-from eomgen.symbolic.numeric import COMPUTED
+from eomgen.symbolic.numeric import tolerances
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,7 +93,12 @@ class String(Constraint):
         name, found = scene.where.rpartition(".")[2], []
         for k, strand in enumerate(self.strands_at(scene), 1):
             begun = None if strand.length is None else scene.value_at_start(strand.length)
-            if strand.length is not None and begun is not None and begun > COMPUTED and scene.moves((strand.length,)):
+            if (
+                strand.length is not None
+                and begun is not None
+                and begun > tolerances.COMPUTED
+                and scene.moves((strand.length,))
+            ):
                 found.append(Edge(f"nothing is left of strand {k} of '{name}'", strand.length))
         return tuple(found)
 

@@ -10,7 +10,7 @@ from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
 from eomgen.symbolic.expression import ZERO, Matrix, Vector, matrix_of, parse
-from eomgen.symbolic.numeric import SOLVED
+from eomgen.symbolic.numeric import tolerances
 
 Cell = Callable[[Sequence[Any]], Vector]
 PI = parse("pi")
@@ -129,4 +129,4 @@ def not_inside(inner: Any, outer: Any) -> str:
 
 def more_than_a_turn(opening: float) -> str:
     """The error of the angle of a sector or an arc; "" if there is none."""
-    return "" if opening <= 2 * math.pi * (1 + SOLVED) else "'opening' is more than a whole turn"
+    return "" if opening <= 2 * math.pi * (1 + tolerances.SOLVED) else "'opening' is more than a whole turn"

@@ -17,16 +17,15 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, linear_terms, order, united
 from eomgen.symbolic.numeric import (
-    COMPUTED,
     PRIME,
     PRIME_FIELD,
-    ZERO_AT_50,
     Arithmetic,
     NoMeaning,
     NoValue,
     evaluate,
     evaluate_once,
     fifty_digits,
+    tolerances,
 )
 
 TRIES = 12  # states of the prime field to be tried for one with a value
@@ -152,7 +151,9 @@ def rounding_decides(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> bo
     if here is None or there is None:
         return True
     size = max(map(abs, here), default=0)
-    return any(abs(x - y) > ZERO_AT_50 + COMPUTED * size for x, y in zip(here, there, strict=True))
+    return any(
+        abs(x - y) > tolerances.ZERO_AT_50 + tolerances.COMPUTED * size for x, y in zip(here, there, strict=True)
+    )
 
 
 def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic = PRIME_FIELD) -> ExactState:

@@ -33,7 +33,7 @@ from eomgen.symbolic.exact.terms import (
 )
 from eomgen.symbolic.exact.unit_quaternions import reduced_on
 from eomgen.symbolic.expression import Fraction, Node, Number, Owner, Scalar, order, tidy, united
-from eomgen.symbolic.numeric import CERTAIN_AT_50, NoValue, check_patience, evaluate, fifty_digits
+from eomgen.symbolic.numeric import NoValue, check_patience, evaluate, fifty_digits, tolerances
 
 LARGEST_EXPONENT = 64
 MOST_TERMS = 2_000  # of a sum: nobody reads a longer one
@@ -198,7 +198,7 @@ class Expansion:
             (value,) = evaluate((x,), {}, fifty_digits())
         except NoValue:
             return None
-        return (1 if value > 0 else -1) if abs(value) > CERTAIN_AT_50 else None
+        return (1 if value > 0 else -1) if abs(value) > tolerances.CERTAIN_AT_50 else None
 
     def _odd(self, atom: int, e: int) -> int:
         """Exponent of the factor of x^e that has a sign: 0 where x has no sign or e is even; else 1 or -1."""

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.symbolic.expression import Node, Number, sampled_of
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, nearest
-from eomgen.symbolic.numeric.tolerances import OUTWARDS, TINIEST
 
 # -------- balls -----------------------------------------------------------------------------------------------
 # Balls: a number of many digits and how far from it the true one may be, (x, r) with |true - x| <= r.
@@ -211,7 +211,7 @@ class _Balls:
 
 Interval = np.ndarray
 LARGEST = sys.float_info.max
-OUTWARDS_BY = np.array([[-OUTWARDS], [OUTWARDS]])
+OUTWARDS_BY = np.array([[-tolerances.OUTWARDS], [tolerances.OUTWARDS]])
 ANYTHING = np.array([[-np.inf], [np.inf]])
 
 
@@ -295,7 +295,7 @@ def _rising(function: Callable[[Any], Any], low: float = -np.inf, high: float = 
 
 def _any_power(a: Interval, n: Interval) -> Interval:
     """a^n = exp(n log a); of an a that may be negative what is known is that a power is positive."""
-    low, high = _rising(np.exp)(_mul(n, _rising(np.log, TINIEST)(a)))
+    low, high = _rising(np.exp)(_mul(n, _rising(np.log, tolerances.TINIEST)(a)))
     return _pair(np.where(a[0] > 0, low, 0.0), np.where(a[0] > 0, high, np.inf))
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK, ROUNDING, ZERO_AT_50
+from eomgen.symbolic.numeric import tolerances
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
 
@@ -17,7 +17,7 @@ def independent(J: np.ndarray, *, smallest: float) -> bool:
     return rank(J, smallest=smallest) == len(J)
 
 
-def rank(A: np.ndarray, *, smallest: float = RANK) -> int:
+def rank(A: np.ndarray, *, smallest: float = tolerances.RANK) -> int:
     """Number of singular values of the scaled A above `smallest`."""
     return int(np.linalg.matrix_rank(balanced(A)[0], tol=smallest)) if A.size else 0
 
@@ -40,7 +40,7 @@ def of_one_length(A: np.ndarray) -> np.ndarray:
 
 def divisor(lengths: np.ndarray) -> np.ndarray:
     """The lengths of rows, to divide these by; infinite of rows that are rounding."""
-    return np.where(lengths > ROUNDING * np.max(lengths, initial=0.0), lengths, np.inf)
+    return np.where(lengths > tolerances.ROUNDING * np.max(lengths, initial=0.0), lengths, np.inf)
 
 
 def without_noise(A: np.ndarray, share: float, axis: int | None = None) -> np.ndarray:
@@ -55,7 +55,7 @@ def closed_entries(A: np.ndarray) -> np.ndarray:
     Such a place is known to 28 digits: an entry that vanishes there is 1e-28, and a rank by scaled columns would count
     it. Rows whose entries all are left of 0 are 0 too.
     """
-    return without_rounding(without_noise(A, ELIMINATED_AT_50, axis=1))
+    return without_rounding(without_noise(A, tolerances.ELIMINATED_AT_50, axis=1))
 
 
 def without_rounding(A: np.ndarray) -> np.ndarray:
@@ -91,7 +91,7 @@ def sparse_rank(rows: Sequence[Mapping[int, Any]]) -> int:
         row = max(left, key=lambda line: max(map(abs, line.values()), default=0))
         left.remove(row)
         column = max(row, key=lambda k: abs(row[k]), default=None)
-        if column is None or abs(row[column]) < ZERO_AT_50:
+        if column is None or abs(row[column]) < tolerances.ZERO_AT_50:
             break
         rank += 1
         for other in left:
@@ -112,7 +112,7 @@ def follows_in_digits(rows: Sequence[Sequence[Any]], row: Sequence[Any]) -> bool
 def _of_size_one(row: Sequence[Any]) -> dict[int, Any]:
     """The row over its largest entry; {} of one that is rounding."""
     largest = max(map(abs, row), default=0)
-    return {k: x / largest for k, x in enumerate(row)} if largest > ZERO_AT_50 else {}
+    return {k: x / largest for k, x in enumerate(row)} if largest > tolerances.ZERO_AT_50 else {}
 
 
 def scaled_condition(M: np.ndarray) -> float:

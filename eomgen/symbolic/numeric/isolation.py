@@ -24,9 +24,9 @@ from numpy.polynomial import chebyshev
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import Node, Scalar, jacobian, order
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.arithmetic import INTERVALS, interval_of
 from eomgen.symbolic.numeric.evaluation import evaluate
-from eomgen.symbolic.numeric.tolerances import BEST, CARRIED, COMPUTED, ITERATED, NEAR_ROOT, SOLVED, TINIEST
 
 MOST_BOXES = 60_000  # examined in all
 MOST_STATEMENTS = 30_000_000  # operations in all, of long equations
@@ -91,7 +91,9 @@ class _Boxes:
             a, b, alone, empty = self._krawczyk(slopes, a, b)
             roots.append(self._narrowed(slopes, a[alone], b[alone]))
             a, b = _kept(~alone & ~empty, a, b)
-            small = np.all(b - a <= NEAR_ROOT * np.maximum(abs(a + b) / 2, COMPUTED * self.size), axis=1)
+            small = np.all(
+                b - a <= tolerances.NEAR_ROOT * np.maximum(abs(a + b) / 2, tolerances.COMPUTED * self.size), axis=1
+            )
             small |= self._is_vain(slopes, a, b)
             undecided.append((a[small] + b[small]) / 2)
             halves.append((b[small] - a[small]) / 2)
@@ -121,9 +123,9 @@ class _Boxes:
         middle = (a + b) / 2
         ends = self._at(self.equations, np.concatenate([a, a, middle, b]), np.concatenate([b, a, middle, b]))
         low, high = (x.reshape(4, len(a), len(self.equations)) for x in ends)
-        lost = np.any(np.maximum(-low[0], high[0]) <= TINIEST, axis=1)
+        lost = np.any(np.maximum(-low[0], high[0]) <= tolerances.TINIEST, axis=1)
         lost |= ~np.any(np.all(np.isfinite(low) & np.isfinite(high), axis=2), axis=0)
-        found = np.all(b - a <= NEAR_ROOT * self.size, axis=1)
+        found = np.all(b - a <= tolerances.NEAR_ROOT * self.size, axis=1)
         rounding = (high[2] - low[2])[found]
         least, most = self._at(slopes, a[found], b[found])
         steepest = np.maximum(-least, most).reshape(-1, len(self.equations), len(self.unknowns))
@@ -245,7 +247,7 @@ class ChebyshevPieces:
         best = np.nanmax(high)
         # between two looks a polynomial of this degree rises by less than a tenth of its change nearby
         change = np.nanmax(high, axis=1) - np.nanmin(high, axis=1)
-        candidates = np.flatnonzero(np.nanmax(high, axis=1) + change / 10 >= best - SOLVED * size)
+        candidates = np.flatnonzero(np.nanmax(high, axis=1) + change / 10 >= best - tolerances.SOLVED * size)
         found = [self._peak(int(k), sign) for k in candidates]
         k = int(np.nanargmax([sign * value for value, _ in found]))
         return found[k]
@@ -261,7 +263,7 @@ class ChebyshevPieces:
     def zeros(self) -> list[tuple[float, int]]:
         """(where it changes its sign, +1 where it rises), ascending."""
         flat, times = self._looked.ravel(), nodes_between_each(self.a, self.b, FINE).ravel()
-        floor = SOLVED * np.nanmax(np.abs(flat), initial=0.0)
+        floor = tolerances.SOLVED * np.nanmax(np.abs(flat), initial=0.0)
         signs = np.where(np.abs(flat) <= floor, 0, np.sign(flat))
         standing = np.flatnonzero(signs != 0)
         found = []
@@ -276,7 +278,11 @@ class ChebyshevPieces:
         low, high = self.g(np.array([before, after]))
         if not low * high < 0:  # the polynomial's own zero, as near to that of the function as it is resolved
             return float(before + after) / 2
-        return float(brentq(lambda t: float(self.g(np.array([t]))[0]), before, after, xtol=BEST, rtol=4 * BEST))
+        return float(
+            brentq(
+                lambda t: float(self.g(np.array([t]))[0]), before, after, xtol=tolerances.BEST, rtol=4 * tolerances.BEST
+            )
+        )
 
     def integral(self) -> float:
         """Over all pieces: of T_k over -1 < s < 1 it is 2/(1 - k^2) for even k, else 0."""
@@ -304,11 +310,11 @@ def nodes_between_each(a: np.ndarray, b: np.ndarray, degree: int) -> np.ndarray:
 def _roots(c: np.ndarray) -> np.ndarray:
     """The real roots in -1 < s < 1 of a sum of T_k."""
     size = np.max(np.abs(c), initial=0.0)
-    c = chebyshev.chebtrim(c, SOLVED * size)
+    c = chebyshev.chebtrim(c, tolerances.SOLVED * size)
     if len(c) < 2 or not np.isfinite(size):
         return np.zeros(0)
     roots = chebyshev.chebroots(c)
-    return np.asarray(roots.real[(np.abs(roots.imag) < CARRIED) & (np.abs(roots.real) < 1)])
+    return np.asarray(roots.real[(np.abs(roots.imag) < tolerances.CARRIED) & (np.abs(roots.real) < 1)])
 
 
 def resolved_curve(g: Curve, edges: np.ndarray) -> ChebyshevPieces:
@@ -321,19 +327,19 @@ def resolved_curve(g: Curve, edges: np.ndarray) -> ChebyshevPieces:
     a, b = edges[:-1], edges[1:]
     above = np.full(len(a), np.inf)
     done: list[tuple[np.ndarray, np.ndarray, np.ndarray]] = []
-    size, narrow, count = 0.0, SOLVED * float(edges[-1] - edges[0]), 0
+    size, narrow, count = 0.0, tolerances.SOLVED * float(edges[-1] - edges[0]), 0
     for halving in range(MOST_HALVINGS + 1):
         t = nodes_between_each(a, b, DEGREE)
         values = g(t.ravel()).reshape(t.shape)
         size = max(size, float(np.nanmax(np.abs(values), initial=0.0)))
         c = values @ transform(DEGREE).T
         left = np.abs(c[:, -LAST:]).max(axis=1)
-        noisy = (left <= CARRIED * size) & (left > above / 1.5)
-        enough = (left <= ITERATED * size) | noisy | (b - a <= narrow) | ~np.isfinite(left)
+        noisy = (left <= tolerances.CARRIED * size) & (left > above / 1.5)
+        enough = (left <= tolerances.ITERATED * size) | noisy | (b - a <= narrow) | ~np.isfinite(left)
         count += len(a)
         if halving == MOST_HALVINGS or count > MOST_PIECES:
             enough[:] = True
-        rough = ~(left <= CARRIED * size)
+        rough = ~(left <= tolerances.CARRIED * size)
         c[rough] = 0.0  # a jump, or too many to be halved: a straight line from end to end
         c[rough, 0], c[rough, 1] = (
             (values[rough, 0] + values[rough, -1]) / 2,

@@ -27,8 +27,8 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, COMPUTED
 
 STEPS = 40  # of Newton's method to a value of a quantity
 SHARES = (Fraction(1, 2), Fraction(1, 8), Fraction(7, 8))  # of a piece, where it is entered
@@ -62,7 +62,7 @@ class Switch:
         """Index of the piece in which the quantity lies, from 0; None: between two."""
         value = evaluate((self.quantity,), state, fifty_digits())[0]
         places = self.places(state)
-        if any(abs(value - end) <= COMPUTED * (1 + abs(end)) for end in places):
+        if any(abs(value - end) <= tolerances.COMPUTED * (1 + abs(end)) for end in places):
             return None
         return len([end for end in places if value > end])
 
@@ -84,7 +84,7 @@ class Switch:
         slopes = gradient(self.quantity, free)
         for _ in range(STEPS):
             now, *slope = evaluate((self.quantity, *slopes), state, fifty_digits())
-            if abs(value - now) <= CERTAIN_AT_50 * (1 + abs(value)):
+            if abs(value - now) <= tolerances.CERTAIN_AT_50 * (1 + abs(value)):
                 return state
             square = sum(x * x for x in slope)
             if square == 0:
@@ -131,7 +131,7 @@ def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
             found.append(0)
             continue
         ends = [fifty_digits().number(end) for end in sampled_of(x.args[1]).spline.bounds] if x.op == "sampled" else [b]
-        if any(abs(a - end) <= CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
+        if any(abs(a - end) <= tolerances.CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
             return None
         passed = len([end for end in ends if a > end])
         found.append(passed if x.op == "sampled" else 2 * passed - 1)

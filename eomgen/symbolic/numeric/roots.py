@@ -17,20 +17,10 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import Node, Scalar, State, jacobian
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.arithmetic import balls
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import Layers, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import (
-    BEST,
-    CERTAIN_AT_50,
-    COMPUTED,
-    DIFFERENCE_AT_50,
-    FELT,
-    LEAST_CHANGE,
-    MET_AT_50,
-    NEAR_ROOT,
-    SOLVED,
-)
 from eomgen.symbolic.numeric.work import check_patience
 
 # -------- newton ----------------------------------------------------------------------------------------------
@@ -97,7 +87,7 @@ class Newton:
     enough: float = 0.0
     still: float = 0.0
     steps: int = 60
-    smallest: float = LEAST_CHANGE
+    smallest: float = tolerances.LEAST_CHANGE
     damped: bool = False
     stalls: float = 0.0
     share: float = 0.5
@@ -197,9 +187,11 @@ def least_left(
     """
     from scipy.optimize import least_squares
 
-    found = least_squares(left, start, slopes or "2-point", xtol=BEST, ftol=BEST, gtol=BEST)
+    found = least_squares(
+        left, start, slopes or "2-point", xtol=tolerances.BEST, ftol=tolerances.BEST, gtol=tolerances.BEST
+    )
     size = float(np.max(np.abs(found.fun), initial=0.0))
-    return Root(found.x, size, size <= BEST)
+    return Root(found.x, size, size <= tolerances.BEST)
 
 
 # -------- roots nearby ----------------------------------------------------------------------------------------
@@ -217,7 +209,9 @@ UNDAMPED = 8
 SHRINKS = 0.9  # of a step of Newton's method the next, at a root of order 10; along exp(-x^2) it is more
 STEPS_APART = 1e3  # of Newton's steps at two places, within which they are one root
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
-POLISHED = Newton(enough=MET_AT_50, still=CERTAIN_AT_50, steps=200, keeps=1e-3)  # steps: at a multiple root
+POLISHED = Newton(
+    enough=tolerances.MET_AT_50, still=tolerances.CERTAIN_AT_50, steps=200, keeps=1e-3
+)  # steps: at a multiple root
 
 
 @dataclass(frozen=True)
@@ -283,7 +277,9 @@ class Descent:
     def reach(self, x: np.ndarray) -> np.ndarray:
         """Distance, for each unknown, from a place found to its root."""
         step = self._measured_at(x)._step(self._state(x))
-        return np.asarray(COMPUTED * np.abs(x) + (0.0 if step is None else STEPS_APART * np.abs(step.astype(float))))
+        return np.asarray(
+            tolerances.COMPUTED * np.abs(x) + (0.0 if step is None else STEPS_APART * np.abs(step.astype(float)))
+        )
 
     def _state(self, x: np.ndarray) -> dict[Node, Any]:
         """Values of all symbols at x, with 50 digits."""
@@ -311,13 +307,15 @@ class Descent:
             largest = max(map(abs, f), default=0)
             if not largest:
                 return np.zeros(len(self.unknowns))
-            unit = np.linalg.lstsq(A, np.array([-float(y / largest) for y in f]), rcond=LEAST_CHANGE)[0]
+            unit = np.linalg.lstsq(A, np.array([-float(y / largest) for y in f]), rcond=tolerances.LEAST_CHANGE)[0]
         except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
             return None
         return np.array([largest * float(c * d) for c, d in zip(self._columns, unit, strict=True)])
 
     def _is_nothing(self, step: np.ndarray, state: State) -> bool:
-        return all(abs(d) <= CERTAIN_AT_50 * (1 + abs(state[x])) for x, d in zip(self.unknowns, step, strict=True))
+        return all(
+            abs(d) <= tolerances.CERTAIN_AT_50 * (1 + abs(state[x])) for x, d in zip(self.unknowns, step, strict=True)
+        )
 
     def _is_rounding(self, state: State) -> bool:
         """True if each equation is 0 to within the rounding of its terms at 50 digits."""
@@ -411,7 +409,7 @@ class Descent:
             f, A = self._scaled(x[None, :])
             if not np.all(np.isfinite(f)):
                 break
-            x = x - self._columns * np.linalg.lstsq(A[0], f[0], rcond=LEAST_CHANGE)[0]
+            x = x - self._columns * np.linalg.lstsq(A[0], f[0], rcond=tolerances.LEAST_CHANGE)[0]
         return x
 
     def _arrived(self, x: np.ndarray) -> np.ndarray:
@@ -420,7 +418,9 @@ class Descent:
         f, A = self._scaled(x)
         mu, size, failed = np.full(len(x), 1e-3), _size(f), np.zeros(len(x))
         for _ in range(STEPS):
-            left = np.flatnonzero(np.isfinite(size) & (size > BEST) & ((failed < FAILURES) | (size > SOLVED)))
+            left = np.flatnonzero(
+                np.isfinite(size) & (size > tolerances.BEST) & ((failed < FAILURES) | (size > tolerances.SOLVED))
+            )
             if not len(left):
                 break
             At = A[left].transpose(0, 2, 1)
@@ -434,14 +434,14 @@ class Descent:
             x[done], f[done], A[done] = trial[better], new_f[better], new_A[better]
             size[done] = _size(f[done])
             failed[left] = np.where(better, 0, failed[left] + 1)
-            mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), DIFFERENCE_AT_50, 1e12)
-        return np.asarray(np.isfinite(size) & (size < NEAR_ROOT))
+            mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), tolerances.DIFFERENCE_AT_50, 1e12)
+        return np.asarray(np.isfinite(size) & (size < tolerances.NEAR_ROOT))
 
     def _apart(self, x: np.ndarray) -> list[np.ndarray]:
         """One row for each root: rows that agree in the entries that distinguish roots are the same root."""
         f, A = self._scaled(x)
-        steps = self._columns * np.einsum("bij,bj->bi", np.linalg.pinv(A, rcond=LEAST_CHANGE), f)
-        reaches = (STEPS_APART * np.abs(steps) + COMPUTED * np.abs(x))[:, : self.telling]
+        steps = self._columns * np.einsum("bij,bj->bi", np.linalg.pinv(A, rcond=tolerances.LEAST_CHANGE), f)
+        reaches = (STEPS_APART * np.abs(steps) + tolerances.COMPUTED * np.abs(x))[:, : self.telling]
         found: list[int] = []
         for k, row in enumerate(x[:, : self.telling]):
             others = x[found, : self.telling]
@@ -471,7 +471,9 @@ def _in_doubles(A: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndar
         rows = np.array(rows, dtype=float)[:, None]
         found = rows * np.array(A, dtype=float) * columns
     largest = np.abs(found).max(axis=1, initial=0.0)
-    felt = np.max(rows * columns, initial=0.0) <= 1 / FELT and np.all((largest >= FELT) & np.isfinite(largest))
+    felt = np.max(rows * columns, initial=0.0) <= 1 / tolerances.FELT and np.all(
+        (largest >= tolerances.FELT) & np.isfinite(largest)
+    )
     return found if felt else None
 
 

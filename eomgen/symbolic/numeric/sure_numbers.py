@@ -12,9 +12,9 @@ from math import isfinite, nan
 from typing import Any
 
 from eomgen.symbolic.expression import Fraction, Node, Scalar, symbols_of
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.arithmetic import Ball, balls
 from eomgen.symbolic.numeric.evaluation import evaluate
-from eomgen.symbolic.numeric.tolerances import ROUNDING
 
 PRECISIONS = (30, 60, 120, 240, 480)  # digits
 VANISHED = "1e-100"  # what is smaller, as far as 480 digits can tell, is 0: a root of a root of nothing is 1e-120 wide
@@ -47,7 +47,7 @@ def _decided(ball: Ball, *, last: bool) -> float | None:
     x, r = ball
     if x != x:
         return nan
-    if r <= ROUNDING * abs(x):
+    if r <= tolerances.ROUNDING * abs(x):
         return float(x) + 0.0 if isfinite(float(x)) else nan
     return 0.0 if last and abs(x) + r < type(x)(VANISHED) else None
 

@@ -37,7 +37,7 @@ from eomgen.symbolic.expression import (
     over,
     symbols_of,
 )
-from eomgen.symbolic.numeric import ELIMINATED_AT_50, PIECEWISE, RANK, check_patience, lengths_of
+from eomgen.symbolic.numeric import PIECEWISE, check_patience, lengths_of, tolerances
 from eomgen.symbolic.solve import cramer
 
 __all__ = ["LinearSystem", "Pivots", "Solution", "general_solution", "unique_solution"]
@@ -130,7 +130,7 @@ class Pivots:
     """
 
     rank: Callable[[Scalar], int] = _number_first
-    tolerance: float = ELIMINATED_AT_50
+    tolerance: float = tolerances.ELIMINATED_AT_50
     last: Collection[int] = ()
     sure: int | None = None
     tests: Sequence[Mapping[int, Scalar]] = ()
@@ -303,7 +303,7 @@ def _spanning(columns: Sequence[Sequence[Any]]) -> list[int]:
         rest = whole / lengths_of(whole)
         for direction in (*basis, *basis):
             rest = rest - direction * (direction @ rest)
-        if np.linalg.norm(rest) > RANK:
+        if np.linalg.norm(rest) > tolerances.RANK:
             found.append(k)
             basis.append(rest / np.linalg.norm(rest))
     return found
@@ -379,7 +379,7 @@ def _groups(lines: list[_Line]) -> list[tuple[list[_Line], list[int]]]:
 def _independent(A: np.ndarray) -> bool:
     """True if the columns are independent."""
     lengths = lengths_of(A, 0)
-    return bool(lengths.all() and np.linalg.svd(A / lengths, compute_uv=False)[-1] > RANK)
+    return bool(lengths.all() and np.linalg.svd(A / lengths, compute_uv=False)[-1] > tolerances.RANK)
 
 
 def _sum(terms: Iterable[Scalar]) -> Scalar:

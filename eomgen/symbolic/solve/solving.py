@@ -46,7 +46,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
     tidy,
 )
-from eomgen.symbolic.numeric import FLOAT, NEAR_ROOT, Work, evaluate
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate, tolerances
 
 MOST_SQUARINGS = 2  # and signs of magnitudes
 TRIES = 8  # random states at which a root is tried
@@ -291,7 +291,7 @@ def _may_be_root(equation: Scalar, unknown: Node, x: Scalar) -> bool:
     symbols = symbols_of((residual,))
     states = ({symbol: rng.uniform(0.5, 2.0) for symbol in symbols} for _ in range(TRIES))
     values = [value for state in states if math.isfinite(value := evaluate((residual,), state, FLOAT)[0])]
-    return min(map(abs, values)) < NEAR_ROOT if values else bool(symbols)
+    return min(map(abs, values)) < tolerances.NEAR_ROOT if values else bool(symbols)
 
 
 # -------- circular equations ----------------------------------------------------------------------------------
