@@ -45,8 +45,7 @@ from eomgen.mechanics.dynamics import (
     reported_of_nodes,
     system_of,
 )
-from eomgen.mechanics.free_bodies import equations_of_motion
-from eomgen.mechanics.reactions import Reactions, inverse_of
+from eomgen.mechanics.free_bodies import Reactions, equations_of_motion, inverse_of
 from eomgen.mechanics.start import start_state
 from eomgen.model import Model, nearest
 from eomgen.proof import Certificate, Printed

@@ -63,8 +63,8 @@ if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
     from eomgen.codegen import Program, RateSlopes, RequestedOutputs
     from eomgen.mechanics.dynamics import Extent
     from eomgen.mechanics.equilibrium import Equilibria, StaticEquations
+    from eomgen.mechanics.free_bodies import Reactions
     from eomgen.mechanics.linearization import FirstOrder
-    from eomgen.mechanics.reactions import Reactions
 
 LONG = 400  # characters from which a formula is no easier to read than it came
 NO_FORMULA = 10 * LONG  # characters of an unreadable formula: rows are shortened before they are eliminated
@@ -164,7 +164,7 @@ class Study:
         Raises:
             DerivationError: an unsupported body; a force that acts at no place.
         """
-        from eomgen.mechanics.reactions import reactions_of
+        from eomgen.mechanics.free_bodies import reactions_of
 
         return reactions_of(self.system)
 

@@ -12,8 +12,8 @@ import eomgen
 from eomgen.documents.at_rest.pictures import diagram_panels, influence_panel
 from eomgen.documents.letters import NamesArtist
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.rigidity.structure import structure_of
+from eomgen.mechanics.free_bodies.reactions import reactions_of
+from eomgen.mechanics.free_bodies.structure import structure_of
 from eomgen.mechanics.statics.forces_in_sections import section_forces
 from eomgen.mechanics.statics.influence import influence_line
 

@@ -18,7 +18,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
-from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
 from eomgen.symbolic.exact.equality import equal_at_random_states

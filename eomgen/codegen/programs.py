@@ -15,9 +15,8 @@ from eomgen.codegen.rhs import GivenMotion, RightHandSide, compiled, parameter_v
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, by_determinants, by_factors, regular_rows
-from eomgen.mechanics.free_bodies import Indeterminate, named_reactions
+from eomgen.mechanics.free_bodies import FEW, Indeterminate, Inverse, Reactions, by_independent, named_reactions
 from eomgen.mechanics.instant import Quantities, requests_of
-from eomgen.mechanics.reactions import FEW, Inverse, Reactions, by_independent
 from eomgen.model import OF_A_RUN, SMALL_MOTIONS, Output
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, ScalarRows, depends_on, is_zero, jacobian, substituted
 from eomgen.symbolic.solve import cramer, factor_solution

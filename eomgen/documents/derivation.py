@@ -21,8 +21,8 @@ from eomgen.documents.reading import Reader, Written, with_coefficients_througho
 from eomgen.documents.statements import Formula, Law, Prose, Step, notation_step
 from eomgen.documents.text import prose_text, side_text
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by, generalized_forces, inertia_by_energies
+from eomgen.mechanics.free_bodies import reactions_of
 from eomgen.mechanics.kinematics import BodyEnergy, armature_energy, body_energies, given_energy, kinetic_energy
-from eomgen.mechanics.reactions import reactions_of
 from eomgen.proof import Printed
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Node, Scalar

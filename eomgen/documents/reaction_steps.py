@@ -18,9 +18,8 @@ from eomgen.documents.reading import LONGEST, TRIED, Reader, free_names, length_
 from eomgen.documents.statements import Code, Formula, Law, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
-from eomgen.mechanics.free_bodies import BodyEquation
+from eomgen.mechanics.free_bodies import BodyEquation, Reactions, reactions_of
 from eomgen.mechanics.integrals import rates_and_extent
-from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.start import known_start
 from eomgen.model import called
 from eomgen.symbolic.exact import book_form

@@ -35,11 +35,14 @@ from eomgen.mechanics.free_bodies import (
     FrictionContact,
     Indeterminate,
     NamedReaction,
+    Reactions,
+    determinate_sums,
     friction_contacts,
     named_reactions,
+    reactions_by_sides,
+    reactions_of,
     unit_of,
 )
-from eomgen.mechanics.reactions import Reactions, determinate_sums, reactions_by_sides, reactions_of
 from eomgen.model import PointForce, ReactionSymbols, trusses_of
 from eomgen.symbolic.exact import book_form, never_vanishes
 from eomgen.symbolic.expression import (

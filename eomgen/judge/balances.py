@@ -54,8 +54,8 @@ from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
 from eomgen.judge.wrong_terms import WrongTerms
+from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.statics import KINDS
 from eomgen.symbolic.expression import (
     Call,

@@ -18,10 +18,9 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import of_50_digits as precise
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
-from eomgen.mechanics.free_bodies import Balance, Indeterminate
+from eomgen.mechanics.free_bodies import Balance, Indeterminate, reactions_of
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import weights
-from eomgen.mechanics.reactions import reactions_of
 from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.check import differing
 from eomgen.proof.in_numbers import pushes_of, with_inputs

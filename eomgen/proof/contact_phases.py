@@ -26,9 +26,8 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, of_50_digits, on_unit_norms, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies import frictions
+from eomgen.mechanics.free_bodies import frictions, reactions_of
 from eomgen.mechanics.kinematics import CLOSED, ContactMode, armatures, given_momenta, mass_properties, velocity_of
-from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.start import start_of_motion
 from eomgen.model import Contact, Resistance, contacts_of, exact_parameters
 from eomgen.proof.check import Check, Tally

@@ -26,8 +26,8 @@ from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Constraints, Freedom, Row, RowName, constraints_of, generic_state
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
-from eomgen.mechanics.rigidity import Structure
 from eomgen.mechanics.start import start_of_motion, values_of_parameters
 from eomgen.model import Model, exact_parameters
 from eomgen.proof.check import first_wrong

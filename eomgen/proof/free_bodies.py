@@ -30,12 +30,13 @@ from eomgen.mechanics.free_bodies import (
     Effect,
     Indeterminate,
     NamedReaction,
+    Reactions,
     efforts_of,
     frictions,
     named_reactions,
+    with_drive_let_go,
 )
 from eomgen.mechanics.kinematics import BodyLink, armature_bias, armature_mass, body_wrench, mass_properties, weights
-from eomgen.mechanics.reactions import Reactions, with_drive_let_go
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
 from eomgen.symbolic.expression import (
     ZERO,

@@ -12,9 +12,8 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import ALL as FORMULATIONS
 from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates, powered_forces, summed
-from eomgen.mechanics.free_bodies import with_friction
+from eomgen.mechanics.free_bodies import inverse_residual, with_friction
 from eomgen.mechanics.kinematics import kinetic_energy
-from eomgen.mechanics.reactions import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
 from eomgen.symbolic.exact import Equality, equal_at_real_states, equal_in_field

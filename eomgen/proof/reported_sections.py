@@ -17,9 +17,8 @@ import numpy as np
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes
+from eomgen.mechanics.free_bodies import Axes, members_of
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.mechanics.rigidity import members_of
 from eomgen.mechanics.statics import SectionForces, StaticReaction, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing

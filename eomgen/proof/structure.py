@@ -20,9 +20,15 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes, named_reactions
-from eomgen.mechanics.reactions import imbalance
-from eomgen.mechanics.rigidity import RigidBlock, VelocityPlan, blocks_of, members_of
+from eomgen.mechanics.free_bodies import (
+    Axes,
+    RigidBlock,
+    VelocityPlan,
+    blocks_of,
+    imbalance,
+    members_of,
+    named_reactions,
+)
 from eomgen.mechanics.start import values_of_parameters
 from eomgen.mechanics.statics import (
     KINDS,

@@ -7,7 +7,7 @@ from functools import partial
 
 from eomgen.codegen import determinate
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.mechanics.reactions import reactions_of
+from eomgen.mechanics.free_bodies import reactions_of
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Check, Tally
 from eomgen.symbolic.numeric import NoValue, tolerances

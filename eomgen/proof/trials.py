@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
-from eomgen.mechanics.free_bodies import friction_contacts, frictions, push_sizes
+from eomgen.mechanics.free_bodies import friction_contacts, frictions, imbalance, push_sizes, reactions_of
 from eomgen.mechanics.kinematics import CLOSED, mass_properties, spin_between
-from eomgen.mechanics.reactions import imbalance, reactions_of
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (

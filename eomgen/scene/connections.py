@@ -12,9 +12,8 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of
+from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of, members_of
 from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene, ground_place, in_ground_axes
-from eomgen.mechanics.rigidity import members_of
 from eomgen.model import (
     ArcForm,
     BodyLine,

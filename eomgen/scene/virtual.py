@@ -19,9 +19,8 @@ import numpy as np
 from eomgen.codegen import compiled, program_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Effect
+from eomgen.mechanics.free_bodies import Axes, Effect, Structure, blocks_of, numeral
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.mechanics.rigidity import Structure, blocks_of, numeral
 from eomgen.mechanics.statics import StaticReaction, WorkEquation
 from eomgen.model import UniformField
 from eomgen.scene.bodies import parameters_as_drawn

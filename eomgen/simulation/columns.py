@@ -18,9 +18,8 @@ from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, reactions_of
 from eomgen.mechanics.instant import Quantities, requests_of
-from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.model import BALANCE, FUNCTIONS, OF_A_RUN, SMALL_MOTIONS, Model
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel

@@ -14,9 +14,8 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, redundant_rows, rows_of_constraint
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Indeterminate
+from eomgen.mechanics.free_bodies import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode
-from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.model import Contact, Model, Table, altered, contacts_of, pieces_of
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions

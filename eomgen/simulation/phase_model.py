@@ -25,8 +25,7 @@ from eomgen.mechanics.dynamics import (
     valueless,
     why_not_conservative,
 )
-from eomgen.mechanics.free_bodies import equations_of_motion
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.free_bodies import Reactions, equations_of_motion
 from eomgen.mechanics.start import Start, start_of_motion
 from eomgen.model import Contact, Edge
 from eomgen.simulation.constraint_drift import (

@@ -17,8 +17,7 @@ import numpy as np
 from eomgen.codegen import RightHandSide, compiled, determinate, program_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import STILL
-from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, named_reactions
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, Reactions, named_reactions
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import balanced, tolerances
 

@@ -34,7 +34,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import system_of, with_nodes_balanced
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
-from eomgen.mechanics.rigidity import refuse_loose, structure_of
+from eomgen.mechanics.free_bodies import refuse_loose, structure_of
 from eomgen.mechanics.statics import modes_at_rest, released_in
 from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.page import PlayedRun, PlayerOptions, player_page_of, player_read_back

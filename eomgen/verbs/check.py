@@ -9,7 +9,7 @@ from eomgen.documents import Document, Lines, plain_document
 from eomgen.errors import Problem
 from eomgen.mechanics.constraints import Freedom
 from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
-from eomgen.mechanics.rigidity import Structure
+from eomgen.mechanics.free_bodies import Structure
 from eomgen.model import Model, Truss, inferred_units, warnings_of
 from eomgen.proof import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.symbolic.print import to_text

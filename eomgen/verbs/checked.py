@@ -10,9 +10,9 @@ from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Freedom, freedom_of
 from eomgen.mechanics.dynamics import assembled_by_recursion, massless_motions, system_of
+from eomgen.mechanics.free_bodies import Structure, structure_of
 from eomgen.mechanics.instant import mobility_of
 from eomgen.mechanics.kinematics import ContactModes, SystemScene, motion_of, scope_of
-from eomgen.mechanics.rigidity import Structure, structure_of
 from eomgen.mechanics.start import Branches, Start, branches_of_loops, start_of_motion
 from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
 from eomgen.model import Catalog, Model, Table, exact_parameters, unbuilt, value_of

@@ -20,10 +20,10 @@ import numpy as np
 
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import System, joint_forces, placeless_forces
+from eomgen.mechanics.free_bodies.equilibrium import BodyNumbers
 from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, mass_properties
 from eomgen.mechanics.kinematics.loads import body_wrench, weights
 from eomgen.mechanics.kinematics.motion import BodyLink
-from eomgen.mechanics.reactions.equilibrium import BodyNumbers
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times

@@ -18,16 +18,15 @@ from eomgen.mechanics.constraints import rows as constraints
 from eomgen.mechanics.dynamics import formulations
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.free_bodies import balance, friction
+from eomgen.mechanics.free_bodies import balance, friction, reactions
 from eomgen.mechanics.free_bodies import wrenches as components
 from eomgen.mechanics.free_bodies import wrenches as effects
 from eomgen.mechanics.free_bodies.balance import Balance, BodyEquation
+from eomgen.mechanics.free_bodies.equilibrium import imbalance
 from eomgen.mechanics.kinematics import inertia, tree
 from eomgen.mechanics.kinematics import motion as kinematics
 from eomgen.mechanics.kinematics import scene as contacts
 from eomgen.mechanics.kinematics import tree as recursion
-from eomgen.mechanics.reactions import reactions
-from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.elements import Reach
 from eomgen.model.forces.weights import Gravity
 from eomgen.proof.printed import Printed

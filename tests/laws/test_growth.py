@@ -13,9 +13,9 @@ from known_answers import MODELS
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.equations import static_equations
+from eomgen.mechanics.free_bodies import velocity_plan as blocks
+from eomgen.mechanics.free_bodies.structure import structure_of
 from eomgen.mechanics.linearization.first_order import FirstOrder, first_order_of
-from eomgen.mechanics.rigidity import velocity_plan as blocks
-from eomgen.mechanics.rigidity.structure import structure_of
 from eomgen.mechanics.statics.virtual_work import by_virtual_work, requested_reactions
 from eomgen.symbolic.exact.equality import real_values
 from eomgen.symbolic.exact.normal_forms import simple_constants

@@ -10,7 +10,7 @@ from each import each
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.rigidity.structure import structure_of
+from eomgen.mechanics.free_bodies.structure import structure_of
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text

@@ -11,7 +11,7 @@ from slow_run import usual
 import eomgen
 from eomgen.documents.at_rest.result import statics
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.rigidity import velocity_plan as blocks
+from eomgen.mechanics.free_bodies import velocity_plan as blocks
 from eomgen.mechanics.statics.forces_in_sections import Extreme, SectionForces, SectionPiece
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.expression.formula import over

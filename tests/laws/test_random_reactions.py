@@ -14,9 +14,9 @@ from slow_run import usual
 
 import eomgen
 from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.free_bodies.inverse import drive
+from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.free_bodies.solution import Indeterminate
-from eomgen.mechanics.reactions.inverse import drive
-from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 

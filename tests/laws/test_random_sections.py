@@ -10,7 +10,7 @@ from random_frames import stiff_frame
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.rigidity.structure import structure_of
+from eomgen.mechanics.free_bodies.structure import structure_of
 from eomgen.mechanics.statics.forces_in_sections import KINDS, section_forces
 from eomgen.mechanics.statics.influence import influence_line
 from eomgen.mechanics.statics.virtual_work import static_reactions_of

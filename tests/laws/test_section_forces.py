@@ -14,7 +14,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces, section_forces
 from eomgen.symbolic.expression.derivatives import derivative, symbols_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

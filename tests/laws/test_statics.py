@@ -12,8 +12,8 @@ from random_structures import RandomStructure, determinate
 import eomgen
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.rigidity.structure import structure_of
-from eomgen.mechanics.rigidity.velocity_plan import blocks_of
+from eomgen.mechanics.free_bodies.structure import structure_of
+from eomgen.mechanics.free_bodies.velocity_plan import blocks_of
 from eomgen.mechanics.statics.virtual_work import (
     StaticReactions,
     by_virtual_work,
@@ -153,7 +153,7 @@ def test_virtual_work_does_not_use_the_solution_of_the_balance(monkeypatch):
     def refused(*_, **__):
         raise AssertionError("the balance was solved")
 
-    monkeypatch.setattr("eomgen.mechanics.reactions.reactions.solution_of_balance", refused)
+    monkeypatch.setattr("eomgen.mechanics.free_bodies.reactions.solution_of_balance", refused)
     named = requested_reactions(structure)["reaction_couple(E)"]
     assert to_text(by_virtual_work(structure, named).value) == "-20*p*a^2"
 

@@ -6,7 +6,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.free_bodies.reactions import reactions_of
 
 LEVER = """
 eomgen = 1

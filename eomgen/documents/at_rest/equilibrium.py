@@ -44,8 +44,8 @@ from eomgen.mechanics.equilibrium import (
     reactions_or_why,
     standing_system,
 )
+from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.linearization import first_order_of
-from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.start import known_exactly, known_parameters, shown_numbers
 from eomgen.model import Model, in_own_unit
 from eomgen.proof import (

@@ -28,8 +28,7 @@ from eomgen.documents.figures import Picture, Scale, figures, scale_of
 from eomgen.documents.letters import PlacedName
 from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes, Component, Effect
-from eomgen.mechanics.rigidity import members_of
+from eomgen.mechanics.free_bodies import Axes, Component, Effect, members_of
 from eomgen.mechanics.statics import (
     KINDS,
     Extreme,

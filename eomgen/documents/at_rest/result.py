@@ -24,7 +24,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
-from eomgen.mechanics.rigidity import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan, blocks_of
 from eomgen.mechanics.start import known_exactly, shown_numbers
 from eomgen.mechanics.statics import (
     InfluenceLine,

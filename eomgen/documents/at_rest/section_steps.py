@@ -10,7 +10,7 @@ from eomgen.documents.statements import Formula, Grid, Law, Name, Side, Statemen
 from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.reactions import Reactions
+from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.statics import KINDS, InfluenceLine, SectionForces, SectionPiece, section_forces
 from eomgen.model import is_node
 from eomgen.proof import ReportedSections

@@ -14,9 +14,8 @@ from eomgen.documents.motion_steps import count, data_step
 from eomgen.documents.reaction_values import lettered, reaction_name, said
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Piece, Prose, Statement, Step, narrow_grid, prose
 from eomgen.documents.text import cell_text
-from eomgen.mechanics.kinematics import mass_properties
-from eomgen.mechanics.reactions import Reactions
-from eomgen.mechanics.rigidity import (
+from eomgen.mechanics.free_bodies import (
+    Reactions,
     RigidBlock,
     Structure,
     VelocityPlan,
@@ -26,6 +25,7 @@ from eomgen.mechanics.rigidity import (
     numeral,
     resting_blocks,
 )
+from eomgen.mechanics.kinematics import mass_properties
 from eomgen.mechanics.statics import (
     Acting,
     RestCondition,

@@ -1,8 +1,9 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.constraints`."""
 
-# A position in which branches meet
 # of values for parameters that have none: what is no closed form agrees at one of them by chance
 from eomgen.mechanics.constraints.assembly import SEEDS as SEEDS
+
+# A position in which branches meet
 from eomgen.mechanics.constraints.assembly import Fork as Fork
 
 # Start values that the constraints change from the declared ones, in closed form or else in numbers

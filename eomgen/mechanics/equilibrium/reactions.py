@@ -10,8 +10,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium
-from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, named_reactions
-from eomgen.mechanics.reactions import Reactions, reactions_of
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions, reactions_of
 from eomgen.mechanics.start import values_of_parameters, values_where_at_rest
 from eomgen.symbolic.exact import readable_all, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted

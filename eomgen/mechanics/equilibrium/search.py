@@ -19,9 +19,8 @@ from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coor
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
-from eomgen.mechanics.free_bodies import Indeterminate
+from eomgen.mechanics.free_bodies import Indeterminate, reactions_of
 from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion, locks_of, start_values, with_unit_quaternions
-from eomgen.mechanics.reactions import reactions_of
 from eomgen.mechanics.start import known_exactly, shown_numbers, values_of_parameters
 from eomgen.mechanics.state import Doubles
 from eomgen.model import contacts_of, exact_parameters

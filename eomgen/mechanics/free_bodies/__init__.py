@@ -1,4 +1,4 @@
-"""Bodies cut free: their wrenches, their own equations, friction, and reactions by name."""
+"""Bodies cut free: wrenches, equilibrium, friction; what supports hold; reactions, forces that given motions need."""
 
 from eomgen.doors import door
 

@@ -1,8 +1,6 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.free_bodies`."""
 
 # All equations of all bodies
-# All equations of all bodies
-from eomgen.mechanics.free_bodies.balance import DIRECTIONS as DIRECTIONS
 from eomgen.mechanics.free_bodies.balance import Balance as Balance
 
 # One scalar equation of one body: sum of coefficients * reactions + applied = inertia
@@ -11,26 +9,17 @@ from eomgen.mechanics.free_bodies.balance import BodyEquation as BodyEquation
 # The equations of every body; those that say 0 = 0 are left out
 from eomgen.mechanics.free_bodies.balance import balance_of as balance_of
 
-# The labels of rows that say 0 = Q_k of coordinates that move no mass: nothing else acts along these, lam = 0
-from eomgen.mechanics.free_bodies.balance import balances_of_nodes as balances_of_nodes
-
-# True if the residuals that no unknown or reaction can change vanish wherever the constraints are satisfied
-from eomgen.mechanics.free_bodies.balance import is_balanced as is_balanced
-
-# Refuses friction at rest: it may have any value up to its limit, so that the balance determines no force
-from eomgen.mechanics.free_bodies.balance import refuse_friction as refuse_friction
-
 # Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them
 from eomgen.mechanics.free_bodies.balance import refuse_placeless as refuse_placeless
-
-# d(applied)/dP
-from eomgen.mechanics.free_bodies.balance import slope as slope
 
 # Rates and accelerations at rest
 from eomgen.mechanics.free_bodies.balance import still as still
 
-# Error: no equilibrium, as there are more degrees of freedom than the unknowns can hold
-from eomgen.mechanics.free_bodies.balance import unbalanced as unbalanced
+# Description of what is out of balance at a state; "" where nothing is. Reactions left open take random values
+from eomgen.mechanics.free_bodies.equilibrium import imbalance as imbalance
+
+# The components, by their number, that one side of their joint or constraint gives; none where there is friction
+from eomgen.mechanics.free_bodies.equilibrium import reactions_by_sides as reactions_by_sides
 
 # A contact with friction
 from eomgen.mechanics.free_bodies.friction import FrictionContact as FrictionContact
@@ -50,14 +39,35 @@ from eomgen.mechanics.free_bodies.friction import has_friction as has_friction
 # |N| of every bilateral contact with friction, as a function of q, u and t; {} where there is none
 from eomgen.mechanics.free_bodies.friction import push_sizes as push_sizes
 
-# A symbol for |N| of every bilateral contact with friction, by its name
-from eomgen.mechanics.free_bodies.friction import round_symbols as round_symbols
-
 # The equations of motion, friction in Q and forcing, and the accelerations explicit; the same without friction
 from eomgen.mechanics.free_bodies.friction import with_friction as with_friction
 
 # Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line
 from eomgen.mechanics.free_bodies.friction import with_rest as with_rest
+
+# degrees of freedom
+from eomgen.mechanics.free_bodies.inverse import FEW as FEW
+
+# Inverse dynamics: tau as functions of t, q, u, a, parameters, and of inputs that are no actuators
+from eomgen.mechanics.free_bodies.inverse import Inverse as Inverse
+
+# a and lam, where the constraints leave few degrees of freedom; redundant rows are left out, their lam 0
+from eomgen.mechanics.free_bodies.inverse import by_independent as by_independent
+
+# The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam
+from eomgen.mechanics.free_bodies.inverse import drive as drive
+
+# tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them
+from eomgen.mechanics.free_bodies.inverse import inverse_of as inverse_of
+
+# M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground
+from eomgen.mechanics.free_bodies.inverse import inverse_residual as inverse_residual
+
+# lam of a constraint of one row in the equations of motion; a symbol where it closes
+from eomgen.mechanics.free_bodies.inverse import multiplier as multiplier
+
+# The system with a driven coordinate free, which starts where it is driven from
+from eomgen.mechanics.free_bodies.inverse import with_drive_let_go as with_drive_let_go
 
 # sum of combination * components + given
 from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction as NamedReaction
@@ -74,30 +84,61 @@ from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions as n
 # Unit of a component: FORCE, or COUPLE if it has no force on any body
 from eomgen.mechanics.free_bodies.names_of_reactions import unit_of as unit_of
 
+# All reactions of a system
+from eomgen.mechanics.free_bodies.reactions import Reactions as Reactions
+
+# Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0
+from eomgen.mechanics.free_bodies.reactions import determinate_sums as determinate_sums
+
+# Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew
+from eomgen.mechanics.free_bodies.reactions import reactions_of as reactions_of
+
 # The model and the modes of the phase after the constraint has ended; the coordinates keep their names
 from eomgen.mechanics.free_bodies.release import released as released
 
 # True if each displacement that releases the constraint is along its own push, whatever else is released
 from eomgen.mechanics.free_bodies.release import stays_straight as stays_straight
-
-# the largest rank of what vanishes at no state: numbers, products of parameters that are not 0
-from eomgen.mechanics.free_bodies.solution import SURE as SURE
 from eomgen.mechanics.free_bodies.solution import Combination as Combination
 
 # A reaction that the equations of the rigid bodies do not determine
 from eomgen.mechanics.free_bodies.solution import Indeterminate as Indeterminate
 
-# sum of k_j x_j
-from eomgen.mechanics.free_bodies.solution import combined_reaction as combined_reaction
-
-# The reactions, and unknowns of the loads, that balance all bodies
-from eomgen.mechanics.free_bodies.solution import solution_of_balance as solution_of_balance
-
 # Values at the first generic state at which all entries have one
 from eomgen.mechanics.free_bodies.solution import values_at_a_state as values_at_a_state
+
+# Bodies and the reactions on them, at one configuration
+from eomgen.mechanics.free_bodies.structure import Structure as Structure
+
+# body 'AC' can turn about (4*a, 0), with it body 'CD' about (16*a, 0)
+from eomgen.mechanics.free_bodies.structure import motion_in_words as motion_in_words
+
+# Refuse bodies that would move in a way that no coordinate describes
+from eomgen.mechanics.free_bodies.structure import refuse_loose as refuse_loose
+
+# The structure at a configuration, at rest
+from eomgen.mechanics.free_bodies.structure import structure_of as structure_of
+
+# Parts that move as one rigid body
+from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock as RigidBlock
+
+# A field of velocities of rigid bodies, a velocity plan
+from eomgen.mechanics.free_bodies.velocity_plan import VelocityPlan as VelocityPlan
+
+# The blocks that move, in the order of the model; what is in none of them stays at rest
+from eomgen.mechanics.free_bodies.velocity_plan import blocks_of as blocks_of
+
+# (truss, member, its two nodes) of every truss
+from eomgen.mechanics.free_bodies.velocity_plan import members_of as members_of
+
+# Roman numeral by which textbooks name a block: I, II, III, IV,
+from eomgen.mechanics.free_bodies.velocity_plan import numeral as numeral
+
+# Names of the bodies and trusses that are at rest
+from eomgen.mechanics.free_bodies.velocity_plan import resting_blocks as resting_blocks
+
+# 1/w of the first block that turns about one axis; 1 where none does
+from eomgen.mechanics.free_bodies.velocity_plan import turning_by_one as turning_by_one
 from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS as EACH_AXIS
-from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS as PLANE_ROWS
-from eomgen.mechanics.free_bodies.wrenches import SPACE_ROWS as SPACE_ROWS
 
 # The axes of each body's equations: the ground's in the plane, the body's own in space
 from eomgen.mechanics.free_bodies.wrenches import Axes as Axes

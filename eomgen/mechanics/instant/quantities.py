@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System, free_rates, generalized_forces
-from eomgen.mechanics.free_bodies import Indeterminate, refuse_placeless
+from eomgen.mechanics.free_bodies import Indeterminate, Reactions, drive, multiplier, reactions_of, refuse_placeless
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
@@ -31,7 +31,6 @@ from eomgen.mechanics.kinematics import (
     velocity_of,
 )
 from eomgen.mechanics.mass_properties import angular_momentum, flat_bodies, principal_moments, shapeless, tensor_about
-from eomgen.mechanics.reactions import Reactions, drive, multiplier, reactions_of
 from eomgen.mechanics.statics import SectionForces, section_forces
 from eomgen.model import FUNCTIONS, GROUND, Couple, GeneralizedForce, Load, MassProperties, PointForce, UniformField
 from eomgen.symbolic.exact import simplest

@@ -1,8 +1,9 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.kinematics`."""
 
 # The parts of one body's kinetic energy
-# The parts of one body's kinetic energy
 from eomgen.mechanics.kinematics.inertia import HALF as HALF
+
+# The parts of one body's kinetic energy
 from eomgen.mechanics.kinematics.inertia import BodyEnergy as BodyEnergy
 
 # Terms added to c: armature D_k (d/dt s' at a = 0), and those of given energies at a = 0

@@ -12,9 +12,8 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints import of_50_digits, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
-from eomgen.mechanics.free_bodies import equations_of_motion, frictions
+from eomgen.mechanics.free_bodies import Reactions, equations_of_motion, frictions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
-from eomgen.mechanics.reactions import Reactions, reactions_of
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
 from eomgen.model import Contact, Model, contacts_of, exact_parameters, rough_contacts

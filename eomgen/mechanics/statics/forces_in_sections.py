@@ -19,9 +19,8 @@ from itertools import pairwise
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Component, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, effects_of_load, joint_effects
 from eomgen.mechanics.kinematics import field_of, mass_properties
-from eomgen.mechanics.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.expression import (

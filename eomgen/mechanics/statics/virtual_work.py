@@ -15,10 +15,23 @@ from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import counted
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Effect, Indeterminate, NamedReaction, efforts_of, name_of, named_reactions
+from eomgen.mechanics.free_bodies import (
+    Effect,
+    Indeterminate,
+    NamedReaction,
+    Reactions,
+    Structure,
+    VelocityPlan,
+    determinate_sums,
+    efforts_of,
+    name_of,
+    named_reactions,
+    reactions_of,
+    refuse_loose,
+    structure_of,
+    turning_by_one,
+)
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.mechanics.reactions import Reactions, determinate_sums, reactions_of
-from eomgen.mechanics.rigidity import Structure, VelocityPlan, refuse_loose, structure_of, turning_by_one
 from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, nearest
 from eomgen.symbolic.exact import equal_at_random_states, simplest
 from eomgen.symbolic.expression import Node, Scalar, depends_on, over, single_call, substituted, times

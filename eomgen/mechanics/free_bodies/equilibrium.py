@@ -21,18 +21,10 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import (
-    DIRECTIONS,
-    PLANE_ROWS,
-    SPACE_ROWS,
-    Axes,
-    Balance,
-    Component,
-    Effect,
-    joint_effects,
-)
+from eomgen.mechanics.free_bodies.balance import DIRECTIONS, Balance
+from eomgen.mechanics.free_bodies.reactions import Reactions
+from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect, joint_effects
 from eomgen.mechanics.kinematics import GROUND, in_ground_axes, mass_properties, weights
-from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import equal
 from eomgen.symbolic.expression import (

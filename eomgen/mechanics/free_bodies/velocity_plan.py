@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Effect
+from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
 from eomgen.mechanics.kinematics import VelocityField, in_ground_axes, rotation_center
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node, trusses_of
 from eomgen.symbolic.exact import Legibly, readable_all

@@ -17,28 +17,22 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import degrees_of_freedom, generic_state, holds_identically
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import (
+from eomgen.mechanics.free_bodies.balance import (
     DIRECTIONS,
-    SURE,
     Balance,
-    Combination,
-    Component,
-    Effect,
     balance_of,
     balances_of_nodes,
-    combined_reaction,
-    efforts_of,
     is_balanced,
-    named_reactions,
-    push_sizes,
     refuse_friction,
-    round_symbols,
-    solution_of_balance,
     still,
     unbalanced,
 )
+from eomgen.mechanics.free_bodies.friction import push_sizes, round_symbols
+from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
+from eomgen.mechanics.free_bodies.solution import SURE, Combination, combined_reaction, solution_of_balance
+from eomgen.mechanics.free_bodies.structure import refuse_loose, structure_of
+from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion, mass_properties
-from eomgen.mechanics.rigidity import refuse_loose, structure_of
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
 from eomgen.model import called, declared_at, driven_coordinates, driving_constraints

@@ -10,17 +10,9 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import (
-    Axes,
-    Balance,
-    Component,
-    Effect,
-    balance_of,
-    effects_of_load,
-    joint_effects,
-    slope,
-)
-from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
+from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
 from eomgen.mechanics.start import values_for, values_where_at_rest
 from eomgen.model import BodyPoint, Constraint, declared_at
 from eomgen.symbolic.exact import readable_all

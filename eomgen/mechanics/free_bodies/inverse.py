@@ -35,7 +35,8 @@ from eomgen.mechanics.dynamics import (
     placeless_forces,
     system_of,
 )
-from eomgen.mechanics.free_bodies import frictions, has_friction
+from eomgen.mechanics.free_bodies.friction import frictions, has_friction
+from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.kinematics import (
     applied_wrenches,
     armature_bias,
@@ -45,7 +46,6 @@ from eomgen.mechanics.kinematics import (
     joint_row,
     let_go,
 )
-from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import Table, altered, driving_constraints, nearest
