@@ -180,6 +180,10 @@ def test_a_sample_of_combinations_moves_as_the_oracle_says(number):
 
 
 REFUSED = {
+    "modes beside what is driven": (
+        {"base": "by_tie", "joint": "revolute"},
+        lambda m: eomgen.linearize(m),
+    ),
     "regressor with friction": ({"contact": "sliding"}, lambda m: eomgen.regressor(m)),
     "sensitivity of a motion in phases": (
         {"contact": "closed"},

@@ -536,7 +536,8 @@ def steady_coordinates(
     if culprit is t:
         named = acting(first.system.loads, lambda row: depends_on_any(row, (t,)))
         driven = [f"'{name}'" for name, part in coordinates.items() if part.driven]
-        by = " and ".join((*driven, *([named] if named else ())))
+        timed = [row.constraint for row in first.system.constraints.rows if depends_on_any((row.velocity,), (t,))]
+        by = " and ".join((*driven, *(f"'{name}'" for name in dict.fromkeys(timed)), *([named] if named else ())))
         raise DerivationError(
             f"coefficients of the small motions change with time{f', by {by}' if by else ''}: there are no modes",
             "linearize",
