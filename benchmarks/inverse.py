@@ -18,7 +18,7 @@ from pathlib import Path
 import eomgen
 from eomgen.codegen.build import of_this_machine
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import INVERSE, RHS, Role
+from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import c_text
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -95,7 +95,7 @@ def row(name: str, actuated: tuple[str, ...]) -> str:
     act = tuple(q for q in actuated if q in model.inputs or q in model.coordinates) or tuple(model.inputs)
     inverse = equations.inverse_dynamics(act if equations.graph.J or actuated else ()).program
     own, other = inverse.count.total, equations.program.count.total
-    counted = [instructions(inverse, INVERSE), instructions(equations.program, RHS)]
+    counted = [instructions(inverse, Role.INVERSE), instructions(equations.program, Role.RHS)]
     reported = " | ".join("-" if n is None else str(n) for n in counted)
     return f"| {name} | {len(equations.speeds)} | {own} | {other} | {own / other:.2f} | {reported} |"
 

@@ -26,7 +26,7 @@ from chain import chain
 from four_bars import four_bars
 
 import eomgen
-from eomgen.codegen.targets.base import RHS
+from eomgen.codegen.targets.base import Role
 
 RODS, STATES = 10, 20_000
 PEERS = ("numpy", "scipy", "sympy", "casadi", "pin", "diffrax", "jax", "heyoka")
@@ -95,8 +95,8 @@ def counts() -> Iterator[str]:
     systems |= {name: (inverse.MODELS / f"{name}.toml").read_text() for name in ("double_pendulum", "arm7")}
     for name, text in systems.items():
         program = eomgen.derive(eomgen.loads(text)).program
-        own = inverse.instructions(program, RHS, inverse.flags_of_this_machine())
-        yield f"| {name} | {program.count.total} | {inverse.instructions(program, RHS) or '-'} | {own or '-'} |"
+        own = inverse.instructions(program, Role.RHS, inverse.flags_of_this_machine())
+        yield f"| {name} | {program.count.total} | {inverse.instructions(program, Role.RHS) or '-'} | {own or '-'} |"
 
 
 def page(quick: bool) -> Iterator[str]:

@@ -12,8 +12,8 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.codegen import (
     InverseDynamics,
+    Matrices,
     Program,
-    RateSlopes,
     ReactionFunction,
     RequestedOutputs,
     RightHandSide,
@@ -275,7 +275,7 @@ class Equations(Result):
         return self.study.outputs_program
 
     @property
-    def slopes(self) -> RateSlopes:
+    def slopes(self) -> Matrices:
         """A = d x'/d x, B = d x'/d inputs as graph scalars, and the systems behind the unknowns that they hold.
 
         Raises:

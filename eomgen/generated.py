@@ -2,51 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
-from itertools import chain
 from pathlib import Path
 
 import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.certificate import certify
-from eomgen.codegen import (
-    ALL as TARGETS,
-)
-from eomgen.codegen import (
-    INVERSE,
-    JACOBIAN,
-    MATRICES,
-    OUTPUTS,
-    REACTIONS,
-    REGRESSOR,
-    RHS,
-    RUN_USE,
-    Blocks,
-    Description,
-    Emitted,
-    FileContent,
-    Program,
-    RightHandSide,
-    Role,
-    Solve,
-    TestVector,
-    entries_of,
-    integrator_files,
-    matrices_of,
-    program_of,
-    program_of_blocks,
-    single_error,
-    single_vectors,
-    stem_of,
-    target_named,
-    texts_of,
-    vectors,
-)
+from eomgen.codegen import Emitted, Emitter, Files, Matrices, RightHandSide, Role, TestVector, Written, targets_named
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
+from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.identification import Regressor, groups_checked, regressor_of
 from eomgen.mechanics.dynamics import with_nodes_balanced
@@ -58,7 +25,6 @@ from eomgen.proof import (
     Judged,
     PhaseMotion,
     TriedState,
-    Written,
     checked,
     consistent_states,
     fmu_reported,
@@ -68,7 +34,6 @@ from eomgen.proof import (
 )
 from eomgen.questions import pulling
 from eomgen.simulation import paths_of
-from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import doing, tolerances
 from eomgen.version import __version__
 
@@ -107,14 +72,17 @@ class Generated:
     slopes: bool = False
     linear: bool = False
 
-    @cached_property
+    @property
     def motion(self) -> Emitted:
         """The right-hand side, described."""
+        return self._emitter.motion
+
+    @cached_property
+    def _emitter(self) -> Emitter:
         program, rhs = self.equations.program, self._start
-        remarks = _remarks(self.model)
+        x0, p0 = (None if each is None else each.tolist() for each in (rhs.x0, rhs.p0))
         origin = f"Made by eomgen {__version__} from {self.origin}."
-        answers = vectors(program, x0=rhs.x0, p0=rhs.p0, held=self._held)
-        return program, Description(self.model.name, origin, remarks, answers)
+        return Emitter(self.model.name, origin, _remarks(self.model), program, x0, p0, self._held)
 
     @cached_property
     def _held(self) -> list[tuple[float, list[float], list[float]]]:
@@ -155,20 +123,18 @@ class Generated:
     @property
     def reactions(self) -> Emitted | None:
         """The reactions, described; None where none has a single value."""
-        return self.functions.get(REACTIONS)
+        return self.functions.get(Role.REACTIONS)
 
     @property
     def inverse(self) -> Emitted | None:
         """Inverse dynamics, described; None where it is not requested."""
-        return self.functions.get(INVERSE)
+        return self.functions.get(Role.INVERSE)
 
     def _inverse(self) -> Emitted | None:
         if self.actuated is None:
             return None
         found = self.equations.inverse_dynamics(self.actuated)
-        return found.program, replace(
-            self.motion[1], vectors=self._answers(found.program), role=INVERSE, outputs=found.names
-        )
+        return self._emitter.function(Role.INVERSE, found.program, found.names)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -179,8 +145,8 @@ class Generated:
             "what puts the constraints back as they open by the errors of many steps (--baumgarte lets them pull)"
         )
         drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.constraints.rows)
-        unfinished += ["jacobian: nothing moves"] if self.slopes and JACOBIAN not in self.functions else []
-        unfinished += [f"test vectors of the {d.role.name}: {d.untested}" for _, d in self.emitted if d.untested]
+        unfinished += ["jacobian: nothing moves"] if self.slopes and Role.JACOBIAN not in self.functions else []
+        unfinished += [f"test vectors of the {d.role.word}: {d.untested}" for _, d in self.emitted if d.untested]
         return (*(note for note in (self.note, open_constraints * drifts) if note), *left, *unfinished)
 
     def _outputs(self) -> Emitted | None:
@@ -188,20 +154,18 @@ class Generated:
         names = tuple(self.equations.requested_outputs.values)
         if not names:
             return None
-        program = self.equations.outputs_program
-        return program, replace(self.motion[1], vectors=self._answers(program), role=OUTPUTS, outputs=names)
+        return self._emitter.function(Role.OUTPUTS, self.equations.outputs_program, names)
 
     def _matrices(self) -> Emitted | None:
         """M, forcing, J and gamma, described; None where friction is none of them, or nothing moves."""
         graph = self.equations.graph
-        return None if graph.friction or not graph.M else self._blocks(matrices_of(graph), MATRICES)
+        return None if graph.friction or not graph.M else self._written(Role.MATRICES, Matrices.of_motion(graph))
 
     def _jacobian(self) -> Emitted | None:
         """The slopes of the right-hand side, described; None where they are not requested, or nothing moves."""
         if not self.slopes or not self.equations.graph.symbols.q:
             return None
-        found = self.equations.slopes
-        program, described = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
+        program, described = self._written(Role.JACOBIAN, self.equations.slopes)
         single = tuple(v for v in described.vectors if self._are_single(v))
         return program, replace(described, vectors=single, untested="" if single else NOT_SINGLE)
 
@@ -214,12 +178,11 @@ class Generated:
         if not self.linear:
             return None
         found, graph = self._regressor, self.equations.graph
-        blocks = found.blocks
-        program = program_of(entries_of(blocks), graph.symbols, inputs=graph.inputs, accelerations=graph.symbols.a)
-        sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
+        matrices = Matrices(found.blocks)
         columns = {"Y": found.parameters, "Y_base": tuple(group.formula for group in found.base.groups)}
-        described = replace(self.motion[1], vectors=self._answers(program), role=REGRESSOR, blocks=sizes)
-        return program, replace(described, columns=tuple(columns.get(name, ()) for name in blocks))
+        named = tuple(columns.get(name, ()) for name in matrices.blocks)
+        program = matrices.program(graph, accelerations=graph.symbols.a)
+        return self._emitter.matrices(Role.REGRESSOR, program, matrices, named)
 
     @cached_property
     def _regressor(self) -> Regressor:
@@ -232,49 +195,18 @@ class Generated:
         found = self.equations.rhs_jacobian(v.t, v.x, v.p, v.inputs, single=True)
         return all(np.isfinite(block).all() for block in found)
 
-    def _blocks(self, blocks: Blocks, role: Role, solve: Solve | None = None, further: Sequence[Solve] = ()) -> Emitted:
-        program = program_of_blocks(blocks, self.equations.graph, solve, further)
-        sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
-        return program, replace(self.motion[1], vectors=self._answers(program), role=role, blocks=sizes)
-
-    def _answers(self, program: Program) -> tuple[TestVector, ...]:
-        return vectors(program, x0=self._start.x0, p0=self._start.p0, held=self._held)
-
-    @cached_property
-    def texts(self) -> dict[str, FileContent]:
-        """{path: content} of every file."""
-        if not self.float32:
-            return self._in_doubles
-        found = self._texts(
-            [(p, replace(described, vectors=single_vectors(p, described.vectors))) for p, described in self.emitted]
-        )
-        for target in self.targets:
-            single, folder = target_named(target).single, self._folder(target)
-            assert single is not None
-            found |= {f"{folder}{path}": text for path, text in single.files(_inside(found, folder)).items()}
-        return found
-
-    def _folder(self, target: str) -> str:
-        return "" if len(self.targets) == 1 else f"{target}/"
-
-    @cached_property
-    def _in_doubles(self) -> dict[str, FileContent]:
-        return self._texts(self.emitted)
-
-    def _texts(self, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        uses = {"c": [RUN_USE]} if self.integrator else {}
-        texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes, uses=uses)
-        found = texts | {f"{self._folder('c')}{name}": text for name, text in self._integrator.items()}
-        return {path: visible(text) if isinstance(text, str) else text for path, text in found.items()}
+    def _written(self, role: Role, matrices: Matrices) -> Emitted:
+        return self._emitter.matrices(role, matrices.program(self.equations.graph), matrices)
 
     @property
-    def _integrator(self) -> dict[str, str]:
-        if not self.integrator:
-            return {}
-        x0, p0 = (None if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
-        return integrator_files(
-            stem_of(self.stem), self.motion[0], x0, p0, tolerances.SINGLE if self.float32 else tolerances.RUN
-        )
+    def texts(self) -> dict[str, str | bytes]:
+        """{path: content} of every file."""
+        return self._files.texts
+
+    @cached_property
+    def _files(self) -> Files:
+        begin = (self._emitter.x0, self._emitter.p0) if self.integrator else None
+        return Files(self.stem, self.emitted, self.targets, self.notes, begin, self.float32)
 
     def write(self, directory: str | Path) -> list[Path]:
         """Writes the files, all of them or none.
@@ -302,33 +234,31 @@ class Generated:
         values = {}
         if self.reactions is not None:
             values = self.equations.reaction_values
-        judged = {RHS: Judged(PhaseMotion(self.equations.graph), values)}
-        judged[REACTIONS] = judged[RHS]
-        for role, scalars in ((OUTPUTS, self.equations.requested_outputs.values), (MATRICES, self._matrix_entries)):
+        judged = {Role.RHS: Judged(PhaseMotion(self.equations.graph), values)}
+        judged[Role.REACTIONS] = judged[Role.RHS]
+        matrices = Matrices.of_motion(self.equations.graph).entries
+        for role, scalars in ((Role.OUTPUTS, self.equations.requested_outputs.values), (Role.MATRICES, matrices)):
             judged[role] = Judged(PhaseMotion(self.equations.graph), scalars)
-        judged[JACOBIAN] = Judged(
+        judged[Role.JACOBIAN] = Judged(
             PhaseMotion(self.equations.graph), {}, slopes=partial(self.equations.rhs_jacobian, single=True)
         )
         if self.inverse is not None:
-            judged[INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
+            judged[Role.INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
         if self.linear:
-            entries = {str(k): x for k, x in enumerate(entries_of(self._regressor.blocks))}
-            motion = PhaseMotion(self.equations.graph)
-            judged[REGRESSOR] = Judged(motion, entries, parameters=self._regressor.values)
+            entries, motion = Matrices(self._regressor.blocks).entries, PhaseMotion(self.equations.graph)
+            judged[Role.REGRESSOR] = Judged(motion, entries, parameters=self._regressor.values)
         for target in self.targets:
-            for emitted in self.emitted:
-                if target_named(target).writes(emitted[1].role):
-                    yield judged[emitted[1].role].check(self._written(target, emitted), start)
-        for emitted in self.emitted:
-            found = judged[emitted[1].role].shipped(self._written(self.targets[0], emitted))
+            for function in self._files.written(target):
+                yield judged[function.role].check(function, start)
+        for function in self._files.functions(self.targets[0]):
+            found = judged[function.role].shipped(function)
             yield from () if found is None else (found,)
         for target in self.targets:
-            own = [described.vectors for _, described in self.emitted if target_named(target).writes(described.role)]
-            yield from unwritten(_inside(self.texts, self._folder(target)), chain.from_iterable(own))
+            yield from unwritten(self._files.of(target), self._files.written(target))
         yield from self._packed()
         for target in self.targets if self.float32 else ():
-            for emitted in self.emitted:
-                yield self._single(target, emitted)
+            for function in self._files.functions(target):
+                yield self._single(function)
 
     def _packed(self) -> Iterator[Check]:
         """Checks of what FMUs declare of their variables."""
@@ -340,44 +270,16 @@ class Generated:
             if path.endswith(".fmu") and isinstance(content, bytes):
                 yield fmu_reported(content, states if len(given) == len(symbols.parameters) else {}, given)
 
-    def _single(self, target: str, emitted: Emitted) -> Check:
+    def _single(self, function: Written) -> Check:
         """The text in single precision, run, against its test vectors and their tolerances."""
-        program, described = emitted
-        stem, single = stem_of(self.stem), target_named(target).single
-        assert single is not None
-        how, texts = "the code in single precision, run", _inside(self.texts, self._folder(target))
-        what = f"{described.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
+        how = "the code in single precision, run"
+        what = f"{function.name} in single precision ({function.target}) is as near as its tolerances say"
         try:
-            error = single_error(
-                single.run(texts, program, stem, described.role), single_vectors(program, described.vectors)
-            )
+            error = self._files.single_error(function)
         except (RunFailed, ToolMissing) as failure:
-            refused = isinstance(failure, RunFailed) and self._runs(target, emitted)
+            refused = isinstance(failure, RunFailed) and _runs(function)
             return checked(what, failure.what, how) if refused else unchecked(what, failure.what, how)
         return checked(what, f"{error:.2g} tolerances away" if error > 1 else "", how)
-
-    def _runs(self, target: str, emitted: Emitted) -> bool:
-        """True if the same function in double precision compiles: then no tool is missing, and the text is at fault."""
-        try:
-            return self._written(target, emitted).code() is not None
-        except (RunFailed, ToolMissing):
-            return False
-
-    @property
-    def _matrix_entries(self) -> dict[str, Scalar]:
-        """Every entry by its name and place."""
-        blocks = matrices_of(self.equations.graph)
-        return {
-            f"{name}[{i}, {j}]": x
-            for name, rows in blocks.items()
-            for i, row in enumerate(rows)
-            for j, x in enumerate(row)
-        }
-
-    def _written(self, target: str, emitted: Emitted) -> Written:
-        program, described = emitted
-        texts = _inside(self._in_doubles if self.float32 else self.texts, self._folder(target))
-        return Written(target, texts, program, stem_of(self.stem), described.role, described.vectors)
 
     @cached_property
     def _start(self) -> RightHandSide:
@@ -389,16 +291,24 @@ class Generated:
         equations, described = self.equations, self.motion[1]
         try:
             names, program = equations.reactions_program
-            answers = vectors(program, x0=self._start.x0, p0=self._start.p0, held=self._held) if names else ()
+            found = self._emitter.function(Role.REACTIONS, program, names) if names else None
         except DerivationError as error:
             return None, f"no code for the reactions: {error.what}"
-        if not names:
+        if found is None:
             return None, "no code for the reactions: none has a single value" if equations.reactions.components else ""
         requested = named_reactions(equations.reactions.balance)
         left = ", ".join(named.name for named in requested if named.name not in names)
         note = f"not in the code, statically indeterminate: {left}" if left else ""
         remarks = {**described.remarks, **{named.name: f"[{named.unit}]" for named in requested}}
-        return (program, replace(described, vectors=answers, role=REACTIONS, outputs=names, remarks=remarks)), note
+        return (program, replace(found[1], remarks=remarks)), note
+
+
+def _runs(function: Written) -> bool:
+    """True if the same function in double precision compiles: then no tool is missing, and the text is at fault."""
+    try:
+        return function.called() is not None
+    except (RunFailed, ToolMissing):
+        return False
 
 
 @doing("the code")
@@ -435,9 +345,9 @@ def generate(
     model = with_nodes_balanced(model_at(model, parameters, start))
     if integrator:
         _refuse_integrator(model, targets)
-    doubles = [target for target in targets if target_named(target).single is None]  # refuses what is none
+    doubles = [target.name for target in targets_named(targets) if target.single is None]  # refuses what is none
     if float32 and doubles:
-        some = ", ".join(target.name for target in TARGETS if target.single is not None)
+        some = ", ".join(target.name for target in targets_named() if target.single is not None)
         raise UsageError(f"no single precision in {', '.join(doubles)}: its numbers are doubles", fix=f"take {some}")
     equations = pipeline.derive(model)
     equations = equations if baumgarte is None else pulling(equations, baumgarte)
@@ -467,11 +377,6 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
     if changing:
         names = ", ".join(f"'{name}'" for name in changing)
         raise UsageError(f"no integrator for what changes its equations: {names}", fix="take eomgen simulate")
-
-
-def _inside(texts: Mapping[str, FileContent], folder: str) -> dict[str, FileContent]:
-    """The files of one language."""
-    return {path.removeprefix(folder): text for path, text in texts.items() if path.startswith(folder)}
 
 
 def _remarks(model: Model) -> dict[str, str]:

@@ -60,7 +60,7 @@ from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import LinearSystem, general_solution
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
-    from eomgen.codegen import Program, RateSlopes, RequestedOutputs
+    from eomgen.codegen import Matrices, Program, RequestedOutputs
     from eomgen.mechanics.dynamics import Extent
     from eomgen.mechanics.equilibrium import Equilibria, StaticEquations
     from eomgen.mechanics.free_bodies import Reactions
@@ -136,7 +136,7 @@ class Study:
             return right_hand_side(self.explicit)
 
     @cached_property
-    def slopes(self) -> RateSlopes:
+    def slopes(self) -> Matrices:
         """A = d x'/d x, B = d x'/d inputs as graph scalars, and the systems behind the unknowns that they hold.
 
         Raises:

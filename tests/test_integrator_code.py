@@ -18,7 +18,7 @@ from slow_run import usual
 import eomgen
 from eomgen.cli import main
 from eomgen.codegen.program import program_of
-from eomgen.codegen.targets.base import RHS, Description, SingleWords
+from eomgen.codegen.targets.base import Description, Role, SingleWords
 from eomgen.codegen.targets.c import SINGLE, TARGET
 from eomgen.errors import UsageError
 
@@ -184,7 +184,7 @@ def test_names_of_single_precision_are_harmless():
     s = symbols("float", "sinf double")
     program = program_of([s.graph.call("sin", s.q[0]) * s.parameters["sinf"] + s.parameters["double"]], s)
     texts = TARGET.single.files(TARGET.files("odd", [(program, Description("Odd", "", {}))]))
-    assert TARGET.single.run(texts, program, "odd", RHS)(0, [0.5, 0], (), [2, 1], None) == pytest.approx(
+    assert TARGET.single.run(texts, program, "odd", Role.RHS)(0, [0.5, 0], (), [2, 1], None) == pytest.approx(
         [2 * np.sin(0.5) + 1], rel=1e-6
     )
 

@@ -29,7 +29,7 @@ from eomgen.codegen.program import (
 )
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.right_answers import vectors
-from eomgen.codegen.targets.base import RHS
+from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.errors import DerivationError
@@ -208,7 +208,7 @@ def test_a_schedule_changes_no_bit(monkeypatch):
     texts, values = [], []
     for way in (scheduled, lambda needs, later: list(needs)):
         monkeypatch.setattr(layout, "scheduled", way)
-        texts.append(c_text(program, "eomgen", RHS))
+        texts.append(c_text(program, "eomgen", Role.RHS))
         rhs = compiled(program, "c")
         states = np.random.default_rng(1).normal(size=(20, len(program.states)))
         values.append([rhs(0.3, x, np.arange(1.0, 1 + len(program.symbols.parameters))).tolist() for x in states])

@@ -6,18 +6,18 @@ from pathlib import Path
 import pytest
 from each import each
 
-from eomgen.model.schema import json_schema
+from eomgen.model import Model
 
 jsonschema = pytest.importorskip("jsonschema")
 
 MODELS = sorted((Path(__file__).parents[1] / "models").rglob("*.toml"))
-VALIDATOR = jsonschema.Draft202012Validator(json_schema())
+VALIDATOR = jsonschema.Draft202012Validator(Model.schema())
 BODY = {"eomgen": 1, "space": "plane", "bodies": {"b": {"shape": {"kind": "rod", "mass": 1, "length": "l"}}}}
 
 
 def test_the_schema_is_one():
     """It obeys the metaschema of draft 2020-12."""
-    jsonschema.Draft202012Validator.check_schema(json_schema())
+    jsonschema.Draft202012Validator.check_schema(Model.schema())
 
 
 @pytest.mark.slow

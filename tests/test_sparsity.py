@@ -17,7 +17,7 @@ from eomgen.codegen import kernels
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
-from eomgen.codegen.programs import program_of_blocks, slopes_of
+from eomgen.codegen.programs import slopes_of
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.c import C, c_text
@@ -132,7 +132,7 @@ def slopes_by_differences(name: str):
     made = MANY[name]()
     found = slopes_of(made)
     assert len(found.solves) > 1
-    program = program_of_blocks(found.blocks, made, found.motion, found.solves)
+    program = found.program(made)
     rhs, n = compiled(right_hand_side(made), "numpy"), 2 * len(made.M)
     x, h, p = np.random.default_rng(1).uniform(-0.3, 0.3, n), 1e-5, [1.7] * len(made.symbols.parameters)
     moved = [(rhs(0.0, x + h * e, p) - rhs(0.0, x - h * e, p)) / (2 * h) for e in np.eye(n)]

@@ -23,9 +23,10 @@ from eomgen import files
 from eomgen.codegen import build
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.codegen.right_answers import outputs_at, single_vectors, texts_of, vectors
+from eomgen.codegen.right_answers import outputs_at, single_vectors, vectors
 from eomgen.codegen.targets import ALL, wasm
-from eomgen.codegen.targets.base import REACTIONS, Description
+from eomgen.codegen.targets.base import Description, Role
+from eomgen.codegen.written_files import Written, texts_of
 from eomgen.errors import DerivationError, UsageError
 from eomgen.proof.emitted_code import unwritten
 from eomgen.symbolic.expression.graph import Graph
@@ -209,9 +210,12 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
     for v in found:
         assert compiled(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
     texts = texts_of("roots", [(program, Description("Roots", "", {}, found))], targets=[target])
-    assert not [*unwritten(texts, found)]
+    written = Written(target, texts, program, "roots", Role.RHS, found)
+    assert not [*unwritten(texts, [written])]
     others = [replace(v, result=tuple(2 * x for x in v.result)) for v in found]
-    assert [*unwritten(texts, others)] or target == "fmu", "what is not written in a self-test is contradicted"
+    assert [*unwritten(texts, [replace(written, vectors=others)])] or target == "fmu", (
+        "what is not written in a self-test is contradicted"
+    )
     paths = files.write_all(tmp_path, texts)
     assert sum(row["dx"][0] is None for row in json.loads(paths[-1].read_text())["vectors"]) == len(partial)
     if target == "c":
@@ -341,7 +345,7 @@ def reactions_written(tmp_path, target):
     names, reactions = equations.reactions_program
     description = Description("Double pendulum", "made by eomgen", {}, vectors(equations.program, seed=2))
     reported = replace(
-        description, vectors=vectors(reactions), role=REACTIONS, outputs=names, remarks=dict.fromkeys(names, "[N]")
+        description, vectors=vectors(reactions), role=Role.REACTIONS, outputs=names, remarks=dict.fromkeys(names, "[N]")
     )
     emitted = reactions, reported
     texts = texts_of("double_pendulum", [(equations.program, description), emitted], targets=[target])

@@ -57,18 +57,14 @@ from eomgen.codegen.program import program_of as program_of
 # The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations
 from eomgen.codegen.program import right_hand_side as right_hand_side
 
-# Stem of the names of a model's files and functions; `_rhs` and the like follow it
-from eomgen.codegen.program import stem_of as stem_of
-
 # Places of the four numbers of every quaternion among the states
 from eomgen.codegen.program import unit_quaternions_of as unit_quaternions_of
-from eomgen.codegen.programs import Blocks as Blocks
 
 # Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q
 from eomgen.codegen.programs import InverseDynamics as InverseDynamics
 
-# Slopes of the right-hand side
-from eomgen.codegen.programs import RateSlopes as RateSlopes
+# Matrices as functions of the state, by name, one after the other, each row after row
+from eomgen.codegen.programs import Matrices as Matrices
 
 # `reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`
 from eomgen.codegen.programs import ReactionFunction as ReactionFunction
@@ -81,16 +77,9 @@ from eomgen.codegen.programs import accelerations_and_multipliers as acceleratio
 
 # {name as in an output: value in q, u and the accelerations}; a reaction without a single value is left out
 from eomgen.codegen.programs import determinate as determinate
-from eomgen.codegen.programs import entries_of as entries_of
-
-# M and forcing of M a = forcing + J^T lam, and where constraints close J and gamma of J a + gamma = 0; by name
-from eomgen.codegen.programs import matrices_of as matrices_of
 
 # The outputs of the model
 from eomgen.codegen.programs import outputs_of_state as outputs_of_state
-
-# The entries as one program; the systems behind them as of `program_of`
-from eomgen.codegen.programs import program_of_blocks as program_of_blocks
 
 # (names, the program of their values), the accelerations from the same equations as in the right-hand side
 from eomgen.codegen.programs import reactions_program as reactions_program
@@ -119,41 +108,18 @@ from eomgen.codegen.rhs import in_c as in_c
 # p: the value of every parameter, in the model's order
 from eomgen.codegen.rhs import parameter_vector as parameter_vector
 
-# The target of this name; UsageError where there is none
-from eomgen.codegen.rhs import target_named as target_named
+# The targets of these names, all where none are given; UsageError where there is none of a name
+from eomgen.codegen.rhs import targets_named as targets_named
 
 # The program's outputs in any arithmetic
 from eomgen.codegen.right_answers import outputs_at as outputs_at
 
-# The largest error of a text in single precision against its tolerance, at all vectors
-from eomgen.codegen.right_answers import single_error as single_error
-
-# The vectors with the tolerances of single precision, measured at states that differ by rounding only
-from eomgen.codegen.right_answers import single_vectors as single_vectors
-
-# {path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json
-from eomgen.codegen.right_answers import texts_of as texts_of
-
 # Right answers near the start (else near 0), half of them with inputs given where there are any; and there
 from eomgen.codegen.right_answers import vectors as vectors
 
-# The languages
-from eomgen.codegen.targets import ALL as ALL
-from eomgen.codegen.targets.base import INVERSE as INVERSE
-from eomgen.codegen.targets.base import JACOBIAN as JACOBIAN
-from eomgen.codegen.targets.base import MATRICES as MATRICES
-from eomgen.codegen.targets.base import OUTPUTS as OUTPUTS
-from eomgen.codegen.targets.base import REACTIONS as REACTIONS
-from eomgen.codegen.targets.base import REGRESSOR as REGRESSOR
-from eomgen.codegen.targets.base import RHS as RHS
-
 # Addresses of a compiled right-hand side and its constants; `kept` keeps them alive
 from eomgen.codegen.targets.base import Address as Address
-
-# Description of a program in its emitted files
-from eomgen.codegen.targets.base import Description as Description
 from eomgen.codegen.targets.base import Emitted as Emitted
-from eomgen.codegen.targets.base import FileContent as FileContent
 
 # Role of a program, and the names in its text
 from eomgen.codegen.targets.base import Role as Role
@@ -163,10 +129,6 @@ from eomgen.codegen.targets.base import TestVector as TestVector
 
 # Several programs, compiled as one text
 from eomgen.codegen.targets.c import c_together as c_together
-from eomgen.codegen.targets.c_lanes import RUN_USE as RUN_USE
-
-# The files in addition to NAME_rhs.c and NAME_rhs.h
-from eomgen.codegen.targets.c_lanes import integrator_files as integrator_files
 
 # An object of the functions `constants` and `evaluate`, for scripts that are no modules
 from eomgen.codegen.targets.javascript import javascript_expression as javascript_expression
@@ -179,3 +141,12 @@ from eomgen.codegen.taylor import order_for as order_for
 
 # First part of a program without a power series here, by its name in models; "" where all have one
 from eomgen.codegen.taylor import without_series as without_series
+
+# The right-hand side of a model, and what is written of further functions beside it
+from eomgen.codegen.written_files import Emitter as Emitter
+
+# Files of functions in languages
+from eomgen.codegen.written_files import Files as Files
+
+# One function of generated code
+from eomgen.codegen.written_files import Written as Written

@@ -179,35 +179,52 @@ def _least(found: Inverse) -> Solve | None:
 # Equations of motion -> Programs of their matrices, and of the slopes of the right-hand side.
 
 
-Blocks = Mapping[str, ScalarRows]
-"""Matrices by name, one after the other, each row after row."""
-
-
-def matrices_of(equations: EquationsOfMotion) -> dict[str, ScalarRows]:
-    """M and forcing of M a = forcing + J^T lam, and where constraints close J and gamma of J a + gamma = 0; by name."""
-    blocks: dict[str, ScalarRows] = {"M": equations.M, "forcing": tuple((x,) for x in equations.forcing)}
-    if equations.J:
-        blocks |= {"J": equations.J, "gamma": tuple((x,) for x in equations.gamma)}
-    return blocks
-
-
 @dataclass(frozen=True)
-class RateSlopes:
-    """Slopes of the right-hand side.
+class Matrices:
+    """Matrices as functions of the state, by name, one after the other, each row after row.
 
     Args:
-        blocks: A = d x'/d x and, where there are inputs, B = d x'/d inputs.
-        motion: the system behind a and lam; None where a is written out.
-        solves: the systems behind their slopes, one for each column that is not zero.
+        blocks: their entries.
+        motion: the system behind a and lam; None where none of them stands in the entries.
+        solves: the systems behind further unknowns in the entries.
     """
 
-    blocks: Blocks
+    blocks: Mapping[str, ScalarRows]
     motion: Solve | None = None
     solves: tuple[Solve, ...] = ()
 
+    @staticmethod
+    def of_motion(equations: EquationsOfMotion) -> Matrices:
+        """M and forcing of M a = forcing + J^T lam, and where constraints close J and gamma of J a + gamma = 0."""
+        blocks: dict[str, ScalarRows] = {"M": equations.M, "forcing": tuple((x,) for x in equations.forcing)}
+        if equations.J:
+            blocks |= {"J": equations.J, "gamma": tuple((x,) for x in equations.gamma)}
+        return Matrices(blocks)
 
-def slopes_of(equations: EquationsOfMotion) -> RateSlopes:
-    """The slopes of x' = (N u + nu, a) in x and inputs.
+    @property
+    def entries(self) -> dict[str, Scalar]:
+        """Every entry by its name and place, "M[0, 1]"."""
+        return {
+            f"{name}[{i}, {j}]": x
+            for name, rows in self.blocks.items()
+            for i, row in enumerate(rows)
+            for j, x in enumerate(row)
+        }
+
+    def program(self, equations: EquationsOfMotion, accelerations: tuple[Node, ...] = ()) -> Program:
+        """The entries as one program; the systems behind them as of `program_of`."""
+        return program_of(
+            tuple(self.entries.values()),
+            equations.symbols,
+            inputs=equations.inputs,
+            solve=self.motion,
+            further=self.solves,
+            accelerations=accelerations,
+        )
+
+
+def slopes_of(equations: EquationsOfMotion) -> Matrices:
+    """The slopes of x' = (N u + nu, a): A = d x'/d x and, where there are inputs, B = d x'/d inputs.
 
     From the matrix of the motion itself, factored once, with its pivots where constraints close:
 
@@ -222,13 +239,13 @@ def slopes_of(equations: EquationsOfMotion) -> RateSlopes:
         return _solved(equations)
     a = equations.accelerations or factor_solution(equations.M, equations.forcing)
     rates = (*kinematic_rates(equations), *a)
-    found = [RateSlopes({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
+    found = [Matrices({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
     if not equations.friction:
         found.append(_written_out(equations, a) if is_short(equations) else _solved(equations))
-    return min(found, key=lambda s: program_of_blocks(s.blocks, equations, s.motion, s.solves).count.total)
+    return min(found, key=lambda found: found.program(equations).count.total)
 
 
-def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> RateSlopes:
+def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> Matrices:
     """M da = -d(M a - forcing) by one factorization, that of all columns."""
     rates, (left, _) = kinematic_rates(equations), equations.residual
     known, blocks = dict(zip(equations.symbols.a, a, strict=True)), {}
@@ -236,7 +253,7 @@ def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> RateSlopes:
         changes = zip(*jacobian(left, states), strict=True)
         slopes = [factor_solution(equations.M, [-y for y in substituted(column, known)]) for column in changes]
         blocks[name] = (*jacobian(rates, states), *zip(*slopes, strict=True))
-    return RateSlopes(blocks)
+    return Matrices(blocks)
 
 
 def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
@@ -246,7 +263,7 @@ def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
     return columns | ({"B": tuple(symbols.inputs.values())} if symbols.inputs else {})
 
 
-def _solved(equations: EquationsOfMotion) -> RateSlopes:
+def _solved(equations: EquationsOfMotion) -> Matrices:
     """Slopes by the `Solve` of the motion, with one more right-hand side for each column that is not zero."""
     symbols, rates, motion = equations.symbols, kinematic_rates(equations), bordered(equations)
     left = dict(zip((*symbols.a, *symbols.lam), (x for rows in equations.residual for x in rows), strict=True))
@@ -262,24 +279,13 @@ def _solved(equations: EquationsOfMotion) -> RateSlopes:
         moved = {x: dict(zip(motion.unknowns, solves[x].unknowns, strict=True)) for x in states if x in solves}
         below = (tuple(moved[x][a] if x in moved else 0 for x in states) for a in symbols.a)
         blocks[name] = (*jacobian(rates, states), *below)
-    return RateSlopes(blocks, motion, tuple(solves.values()))
+    return Matrices(blocks, motion, tuple(solves.values()))
 
 
 def _change(motion: Solve, x: Node, change: ScalarRow) -> Solve:
     """The system behind d(a, lam)/dx, by the derivative of that behind (a, lam) with respect to x."""
     unknowns = tuple(x.graph.symbol(f"{y.name} by {x.name}") for y in motion.unknowns)
     return replace(motion, right=tuple(-y for y in change), unknowns=unknowns)
-
-
-def program_of_blocks(
-    blocks: Blocks, equations: EquationsOfMotion, solve: Solve | None = None, further: Sequence[Solve] = ()
-) -> Program:
-    """The entries as one program; the systems behind them as of `program_of`."""
-    return program_of(entries_of(blocks), equations.symbols, inputs=equations.inputs, solve=solve, further=further)
-
-
-def entries_of(blocks: Blocks) -> tuple[Scalar, ...]:
-    return tuple(x for rows in blocks.values() for row in rows for x in row)
 
 
 # -------- reactions -------------------------------------------------------------------------------------------

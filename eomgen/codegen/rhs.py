@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
 from typing import Any, TypeVar
@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.codegen.batching import ProgramInLanes
 from eomgen.codegen.program import Program, bordered, program_of, unit_quaternions_of
 from eomgen.codegen.targets import ALL
-from eomgen.codegen.targets.base import RHS, Address, Functions, Target
+from eomgen.codegen.targets.base import Address, Functions, Role, Target
 from eomgen.codegen.targets.c import c_together
 from eomgen.codegen.taylor import Series, series_of, without_series
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
@@ -130,7 +130,7 @@ class RightHandSide:
     @property
     def source(self) -> str:
         """The program's text in the target's language."""
-        return target_named(self.target).text(self.program, "eomgen", RHS)
+        return target_named(self.target).text(self.program, "eomgen", Role.RHS)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Pickles its program, which is compiled again where the pickle is read: in C where there is a compiler."""
@@ -211,6 +211,11 @@ def target_named(name: str) -> Target:
         if target.name == name:
             return target
     raise UsageError(f"unknown target '{name}'", fix=f"targets are {', '.join(target.name for target in ALL)}")
+
+
+def targets_named(names: Iterable[str] | None = None) -> tuple[Target, ...]:
+    """The targets of these names, all where none are given; UsageError where there is none of a name."""
+    return ALL if names is None else tuple(map(target_named, names))
 
 
 def _say(line: str) -> None:

@@ -1,27 +1,21 @@
-"""Program -> the texts of files that others can use, and right answers at random states.
-
-Program -> right answers at random states, in 50 digits, with which emitted code is compared.
-"""
+"""Program -> right answers at random states, in 50 digits, with which emitted code is compared."""
 
 from __future__ import annotations
 
 import random
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.program import Program, Solve, at_unit_norms, stem_of, unit_quaternions_of
-from eomgen.codegen.rhs import RightHandSide, compiled, target_named
-from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Target, TestVector, header
+from eomgen.codegen.program import Program, Solve, at_unit_norms, unit_quaternions_of
+from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.targets.base import Called, TestVector
 from eomgen.errors import DerivationError
-from eomgen.files import json_text
 from eomgen.symbolic.expression import Fraction, Node
 from eomgen.symbolic.numeric import Arithmetic, evaluate, fifty_digits, tolerances
-from eomgen.version import SCHEMA_VERSION
 
 TRIES = 60
 PARTIAL = 2  # states, at most, at which some result has no value
@@ -244,118 +238,3 @@ def single_error(called: Called, vectors: Sequence[TestVector]) -> float:
             if b == b:
                 worst = max(worst, abs(a - b) / size / v.tolerance if a == a else float("inf"))
     return worst
-
-
-# -------- files -----------------------------------------------------------------------------------------------
-# Programs -> the texts of files that others can use as they are.
-
-
-def texts_of(
-    name: str,
-    emitted: Sequence[Emitted],
-    *,
-    targets: Sequence[str],
-    notes: Sequence[str] = (),
-    uses: Mapping[str, Sequence[str]] = MappingProxyType({}),
-) -> dict[str, FileContent]:
-    """{path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json.
-
-    Args:
-        name: of the functions: the model file's stem; other characters are replaced.
-        emitted: the right-hand side first, then reactions and whatever else is requested.
-        targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
-        notes: omissions of the code, with their reasons, a line each.
-        uses: by language, how further files are used.
-    """
-    answers, stem = vectors_text(emitted), stem_of(name)
-    texts: dict[str, FileContent] = {}
-    for target in map(target_named, dict.fromkeys(targets)):
-        folder = "" if len(set(targets)) == 1 else f"{target.name}/"
-        files = target.files(stem, emitted)
-        files |= {
-            "README.md": readme(target, stem, emitted, notes, uses.get(target.name, ())),
-            "test_vectors.json": answers,
-        }
-        texts |= {f"{folder}{file}": text for file, text in files.items()}
-    return texts
-
-
-def readme(
-    target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequence[str], uses: Sequence[str] = ()
-) -> str:
-    """README of the emitted files: the functions, the order of their arguments, their use and test."""
-    lines = [f"# {stem}: {target.about}", ""]
-    for line in (*target.use, *uses):
-        lines.append(f"    {line.format(stem=stem)}")
-    for program, reported in emitted:
-        if not target.writes(reported.role):
-            continue
-        lines += ["", *(f"    {line}".rstrip() for line in header(program, reported))]
-    lines += ["", "All in SI and radians; without inputs the model's own act. Right answers are in test_vectors.json."]
-    lines += [line for note in notes for line in ("", f"Not here: {note}")]
-    return "\n".join([*lines, ""])
-
-
-def vectors_text(emitted: Sequence[Emitted]) -> str:
-    """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), result."""
-    program, description = emitted[0]
-    symbols = program.symbols
-    head = {
-        "schema_version": SCHEMA_VERSION,
-        "model": description.title,
-        "origin": description.origin,
-        "coordinates": [x.name for x in symbols.q],
-        "speeds": [x.name for x in symbols.u],
-        "parameters": list(symbols.parameters),
-        "inputs": list(symbols.inputs),
-        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the others out or tau; "
-        "null: no value there, not a number",
-    }
-    lines = [f" {json_text(name)}: {json_text(value, ensure_ascii=False)}," for name, value in head.items()]
-    if not any(reported.role.name == "reactions" for _, reported in emitted):
-        lines.append(' "reactions": null,')
-    for other, reported in emitted:
-        if reported.role is not RHS:
-            lines += _other(other, reported)
-    return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
-
-
-def _other(program: Program, reported: Description) -> list[str]:
-    """The vectors of a function other than the right-hand side."""
-    own: dict[str, object] = {"names": reported.outputs}
-    if reported.blocks:
-        meant = reported.columns or ((),) * len(reported.blocks)
-        own = {
-            "blocks": [
-                {"name": name, "rows": n, "columns": k, **({"of": of} if of else {})}
-                for (name, n, k), of in zip(reported.blocks, meant, strict=True)
-            ]
-        }
-    if program.accelerations:
-        own |= {
-            "accelerations": [x.name for x in program.accelerations],
-            "inputs": list(program.symbols.inputs),
-        }
-    if reported.untested:
-        own |= {"untested": reported.untested}
-    lines = [f"  {json_text(key)}: {json_text(value, ensure_ascii=False)}," for key, value in own.items()]
-    return [f' "{reported.role.name}": {{', *lines, *_listed(reported, "  "), " },"]
-
-
-def _listed(description: Description, indent: str) -> list[str]:
-    """The vectors, a line each."""
-    result = description.role.result
-    rows = [
-        {
-            "t": v.t,
-            "x": v.x,
-            **({"a": v.a} if v.a else {}),
-            "p": v.p,
-            "inputs": v.inputs,
-            result: [value if value == value else None for value in v.result],
-            "tolerance": v.tolerance,
-        }
-        for v in description.vectors
-    ]
-    listed = ",\n".join(f"{indent} {json_text(row)}" for row in rows)
-    return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]

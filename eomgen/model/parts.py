@@ -44,9 +44,12 @@ from eomgen.model.kinds import (
     TwoOwnPoints,
 )
 from eomgen.model.making import finish
-from eomgen.model.part import Part, PartRule, SeamRule
+from eomgen.model.part import Part, PartRule, SeamRule, part_schema
 from eomgen.model.shapes import Shape
 from eomgen.symbolic.expression import Expression, Unit
+
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
+"""of the JSON Schema of a model file"""
 
 UnitText = Annotated[Unit, UNIT]
 ShapeField = Annotated[Shape, SeamRule("shape", shapes.ALL)]
@@ -363,6 +366,39 @@ class Model(Part):
 
     def __post_init__(self) -> None:
         finish(self)
+
+    @staticmethod
+    def schema() -> dict[str, Any]:
+        """The JSON Schema of a model file, for editors: what `check` finds beyond it needs the whole model."""
+        definitions: dict[str, Any] = {
+            "expression": {
+                "description": "a number, or the text of an expression",
+                "anyOf": [{"type": "number"}, {"type": "string", "minLength": 1}],
+            },
+            "quantity": {
+                "description": "a number, an expression, or a value with its unit",
+                "anyOf": [
+                    {"$ref": "#/$defs/expression"},
+                    {
+                        "type": "object",
+                        "properties": {"value": {"$ref": "#/$defs/expression"}, "unit": {"type": "string"}},
+                        "required": ["value"],
+                        "additionalProperties": False,
+                    },
+                ],
+            },
+        }
+        part_schema(Model, definitions)
+        table = definitions.pop("Model")
+        version = {"eomgen": {"const": 1, "description": "version of the model file"}}
+        return {
+            "$schema": DIALECT,
+            **table,
+            "title": "eomgen model file",
+            "properties": {**version, **table["properties"]},
+            "required": ["eomgen", *table["required"]],
+            "$defs": definitions,
+        }
 
     def __getstate__(self) -> dict[str, Any]:
         """The declared model; what was derived from it (`frozen.recalled`) is derived anew where it is needed."""

@@ -80,9 +80,6 @@ from eomgen.proof.emitted_code import PhaseMotion as PhaseMotion
 # A state at which code is tried
 from eomgen.proof.emitted_code import TriedState as TriedState
 
-# One function of generated code
-from eomgen.proof.emitted_code import Written as Written
-
 # The description of variables
 from eomgen.proof.emitted_code import fmu_reported as fmu_reported
 

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import RHS, FileContent, Program, Role, TestVector, target_named
+from eomgen.codegen import Role, Written
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import closed, movable, speeds_closed
@@ -300,58 +300,33 @@ LITERAL = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")  # a n
 MOST_TOLERANCE = 10 * tolerances.COMPUTED  # that a test vector may allow
 
 
-@dataclass(frozen=True)
-class Written:
-    """One function of generated code.
+def _instants(written: Written) -> tuple[TriedState, ...]:
+    """The states of the test vectors of a function."""
+    inputs = tuple(written.program.symbols.inputs)
+    return tuple(
+        TriedState(v.t, np.array(v.x), v.p, dict(zip(inputs, v.inputs, strict=True)) if v.inputs else {}, np.array(v.a))
+        for v in written.vectors
+    )
 
-    Args:
-        target: name of the language.
-        texts: its files, {path: content}.
-        program, stem, role: the program, and the names under which it was written.
-        vectors: the states of its test vectors.
+
+def _code(written: Written) -> Code | None:
+    """The written function, compiled; None where the language cannot be run here.
+
+    Raises:
+        ToolMissing, RunFailed: its compiler is not there, or refuses it.
     """
+    called, inputs = written.called(), tuple(written.program.symbols.inputs)
+    if called is None:
+        return None
 
-    target: str
-    texts: Mapping[str, FileContent]
-    program: Program
-    stem: str
-    role: Role
-    vectors: tuple[TestVector, ...]
+    def at(instant: TriedState) -> np.ndarray:
+        given = [instant.inputs[name] for name in inputs] if inputs and instant.inputs else None
+        return np.array(called(instant.t, instant.x.tolist(), instant.a.tolist(), list(instant.p), given))
 
-    @property
-    def name(self) -> str:
-        return f"{self.role.main(self.stem)} in {self.target}"
-
-    @property
-    def instants(self) -> tuple[TriedState, ...]:
-        """The states of the vectors."""
-        inputs = tuple(self.program.symbols.inputs)
-        return tuple(
-            TriedState(
-                v.t, np.array(v.x), v.p, dict(zip(inputs, v.inputs, strict=True)) if v.inputs else {}, np.array(v.a)
-            )
-            for v in self.vectors
-        )
-
-    def code(self) -> Code | None:
-        """The written function, compiled; None where the language cannot be run here.
-
-        Raises:
-            ToolMissing, RunFailed: its compiler is not there, or refuses it.
-        """
-        run = target_named(self.target).run
-        if run is None:
-            return None
-        called, inputs = run(self.texts, self.program, self.stem, self.role), tuple(self.program.symbols.inputs)
-
-        def at(instant: TriedState) -> np.ndarray:
-            given = [instant.inputs[name] for name in inputs] if inputs and instant.inputs else None
-            return np.array(called(instant.t, instant.x.tolist(), instant.a.tolist(), list(instant.p), given))
-
-        return at
+    return at
 
 
-def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -> Iterator[Check]:
+def unwritten(texts: Mapping[str, str | bytes], functions: Iterable[Written]) -> Iterator[Check]:
     """A failing check where a number of the test vectors is missing in the self-test of a language; else none.
 
     A number is found wherever one like it to the digits of floats stands, in any language's form.
@@ -361,7 +336,7 @@ def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -
         x for name, x in texts.items() if isinstance(x, str) and any(name in text for text in tests)
     ]  # read there
     reported = np.array(sorted({0.0, *(float(x.lower().replace("d", "e")) for x in LITERAL.findall("\n".join(tests)))}))
-    for v in vectors if tests else ():
+    for v in (v for each in functions for v in each.vectors) if tests else ():
         numbers = np.array([v.t, *v.x, *v.a, *v.p, *(v.inputs or ()), *v.result])
         numbers = np.abs(numbers[np.isfinite(numbers)])
         k = np.clip(np.searchsorted(reported, numbers), 1, max(len(reported) - 1, 1))
@@ -399,9 +374,9 @@ class Judged:
 
     def check(self, written: Written, start: Sequence[TriedState]) -> Check:
         """Check of the written function at the start and at the states of its test vectors."""
-        name = f"{written.name} gives the symbols' numbers"
+        name = f"{written.name} in {written.target} gives the symbols' numbers"
         try:
-            code = written.code()
+            code = _code(written)
         except TextRefused as error:
             return checked(name, error.what, "run")
         except (ToolMissing, RunFailed) as error:
@@ -409,16 +384,16 @@ class Judged:
         if code is None:
             return unchecked(name, f"nothing here runs {written.target}", "run")
         if self.parameters is not None:
-            return self._regressor(code, written.instants, name, self.parameters)
+            return self._regressor(code, _instants(written), name, self.parameters)
         if self.actuators:
-            return self._inverse(code, written.instants, name)
+            return self._inverse(code, _instants(written), name)
         return self._by_symbols(written, code, start, name)
 
     def shipped(self, written: Written) -> Check | None:
         """Check of the test vectors that are written with it; None for a function of given accelerations."""
         if not written.vectors or self.actuators or self.parameters is not None:
             return None
-        name = f"the test vectors of {written.role.main(written.stem)} are the symbols' numbers"
+        name = f"the test vectors of {written.name} are the symbols' numbers"
         wide = [v for v in written.vectors if not 0 < v.tolerance <= MOST_TOLERANCE]
         if wide:
             return checked(name, f"a tolerance of {wide[0].tolerance:.2g} at t = {wide[0].t:.6g} s", "as written")
@@ -431,11 +406,11 @@ class Judged:
 
     def _by_symbols(self, written: Written, code: Code, start: Sequence[TriedState], name: str) -> Check:
         """Check of the code at given states against the symbols there."""
-        if written.role is RHS:
-            return equations_hold(self.motion, code, (*start, *written.instants), name)
+        if written.role is Role.RHS:
+            return equations_hold(self.motion, code, (*start, *_instants(written)), name)
         if self.slopes is not None:
-            return self._slopes(code, written.instants, name, self.slopes)
-        return values_agree(name, self.motion, self.values, code, (*start, *written.instants), self._accelerations)
+            return self._slopes(code, _instants(written), name, self.slopes)
+        return values_agree(name, self.motion, self.values, code, (*start, *_instants(written)), self._accelerations)
 
     def _slopes(self, code: Code, at: Iterable[TriedState], name: str, slopes: Callable[..., Any]) -> Check:
         """A and B against the linearized equations, solved in doubles at the same states."""

@@ -5,8 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.codegen import ALL as TARGETS
-from eomgen.codegen import JACOBIAN, MATRICES, OUTPUTS, REGRESSOR
+from eomgen.codegen import Role, targets_named
 from eomgen.documents import Document, Lines, lines_document, plain_document, proven
 from eomgen.generated import Generated, generate
 from eomgen.model import Model
@@ -78,12 +77,11 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
         "reactions": list(reactions[1].outputs) if reactions else None,
         "reaction_operations": reactions[0].count.total if reactions else None,
     }
-    further = {"outputs": OUTPUTS, "matrices": MATRICES, "jacobian": JACOBIAN, "regressor": REGRESSOR}
-    for key, role in further.items():
+    for role in (Role.OUTPUTS, Role.MATRICES, Role.JACOBIAN, Role.REGRESSOR):
         if role in found.functions:
             program, reported = found.functions[role]
-            payload[key] = list(reported.outputs or [name for name, *_ in reported.blocks])
-            payload[f"{key}_operations"] = program.count.total
+            payload[role.word] = list(reported.outputs or [name for name, *_ in reported.blocks])
+            payload[f"{role.word}_operations"] = program.count.total
     if moved:
         payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}
     return payload
@@ -91,5 +89,5 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
 
 def languages() -> Document:
     """The targets that there are, a line each."""
-    found = [{"name": target.name, "about": target.about} for target in TARGETS]
-    return lines_document(lambda: {"targets": found}, *(f"{target.name:10} {target.about}" for target in TARGETS))
+    found = [{"name": target.name, "about": target.about} for target in targets_named()]
+    return lines_document(lambda: {"targets": found}, *(f"{each['name']:10} {each['about']}" for each in found))

@@ -19,7 +19,7 @@ from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, target_named
 from eomgen.codegen.right_answers import vectors
-from eomgen.codegen.targets.base import RHS
+from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.javascript import JAVASCRIPT
 from eomgen.codegen.targets.numpy import PYTHON
@@ -106,7 +106,7 @@ def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monk
 
     monkeypatch.setattr("eomgen.codegen.targets.base.statements", cut)
     program = PROGRAMS[name]()
-    assert name != "closed loops" or "part1(" in target_named(target).text(program, "eomgen", RHS)
+    assert name != "closed loops" or "part1(" in target_named(target).text(program, "eomgen", Role.RHS)
     function = compiled(program, target)
     for v in vectors(program):
         largest, found = max([1.0, *(abs(y) for y in v.result if y == y)]), function(v.t, v.x, v.p, v.inputs or ())

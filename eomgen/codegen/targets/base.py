@@ -6,6 +6,7 @@ import json
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
+from enum import Enum
 from typing import Any
 
 import numpy as np
@@ -69,50 +70,41 @@ class TestVector:
     a: tuple[float, ...] = ()
 
 
-@dataclass(frozen=True)
-class Role:
+class Role(Enum):
     """Role of a program, and the names in its text.
 
     Args:
-        name: of the files and the main function: NAME_rhs.
+        word: of the files and the main function: NAME_rhs.
         prefix: of the other functions: NAME + prefix + _many.
         result: the array of the outputs.
         about: its results, one line.
     """
 
-    name: str
-    prefix: str
-    result: str
-    about: str
+    RHS = "rhs", "", "dx", "dx = f(t, x, p), the equations of motion solved for the accelerations"
+    INVERSE = "inverse", "_inverse", "tau", "tau = f(t, x, a, p), the forces and torques that accelerations a take"
+    REACTIONS = (
+        *("reactions", "_reactions", "out"),
+        "out = f(t, x, p), the reactions of joints and constraints in the motion",
+    )
+    OUTPUTS = "outputs", "_outputs", "out", "out = f(t, x, p), the model's [outputs], in SI"
+    MATRICES = (
+        *("matrices", "_matrices", "out"),
+        "out = f(t, x, p), of M a = forcing + J^T lam and, where constraints close, J a + gamma = 0",
+    )
+    REGRESSOR = (
+        *("regressor", "_regressor", "out"),
+        "out = f(t, x, a, p), of tau + J^T lam = Y pi + y0 = Y_base base + y0, tau what the inputs push",
+    )
+    JACOBIAN = "jacobian", "_jacobian", "out", "out = f(t, x, p), A = d x'/d x and B = d x'/d inputs"
+
+    def __init__(self, word: str, prefix: str, result: str, about: str) -> None:
+        self.word, self.prefix, self.result, self.about = word, prefix, result, about
 
     def main(self, stem: str) -> str:
-        return f"{stem}_{self.name}"
+        return f"{stem}_{self.word}"
 
     def others(self, stem: str) -> str:
         return f"{stem}{self.prefix}"
-
-
-RHS = Role("rhs", "", "dx", "dx = f(t, x, p), the equations of motion solved for the accelerations")
-INVERSE = Role("inverse", "_inverse", "tau", "tau = f(t, x, a, p), the forces and torques that accelerations a take")
-REACTIONS = Role(
-    "reactions", "_reactions", "out", "out = f(t, x, p), the reactions of joints and constraints in the motion"
-)
-
-
-OUTPUTS = Role("outputs", "_outputs", "out", "out = f(t, x, p), the model's [outputs], in SI")
-MATRICES = Role(
-    "matrices",
-    "_matrices",
-    "out",
-    "out = f(t, x, p), of M a = forcing + J^T lam and, where constraints close, J a + gamma = 0",
-)
-REGRESSOR = Role(
-    "regressor",
-    "_regressor",
-    "out",
-    "out = f(t, x, a, p), of tau + J^T lam = Y pi + y0 = Y_base base + y0, tau what the inputs push",
-)
-JACOBIAN = Role("jacobian", "_jacobian", "out", "out = f(t, x, p), A = d x'/d x and B = d x'/d inputs")
 
 
 @dataclass(frozen=True)
@@ -135,7 +127,7 @@ class Description:
     origin: str
     remarks: Mapping[str, str]
     vectors: tuple[TestVector, ...] = ()
-    role: Role = RHS
+    role: Role = Role.RHS
     outputs: tuple[str, ...] = ()
     blocks: tuple[tuple[str, int, int], ...] = ()
     columns: tuple[tuple[str, ...], ...] = ()
@@ -192,7 +184,7 @@ class Target:
 
     def writes(self, role: Role) -> bool:
         """True if a function is among its files."""
-        return self.roles is None or role.name in self.roles
+        return self.roles is None or role.word in self.roles
 
 
 Many = Callable[[np.ndarray, np.ndarray, np.ndarray, "np.ndarray | None"], np.ndarray]
@@ -309,12 +301,12 @@ class FileForm:
         words: dict[str, Any] = {
             "main": role.main(stem),
             "stem": stem,
-            "role": role.name,
+            "role": role.word,
             "result": role.result,
             "others": others,
         }
         words |= counts | {f"{what}_room": max(n, 1) for what, n in counts.items()}
-        words |= {"of_role": "" if role is RHS else f'["{role.name}"]'}
+        words |= {"of_role": "" if role is Role.RHS else f'["{role.word}"]'}
         words |= {"upper": others.upper(), "MAIN": words["main"].upper(), "a": "" if without else "a, ", **self.fixed}
         return words | {word: pair[without].format(**words) for word, pair in self.given.items()}
 
@@ -327,7 +319,9 @@ class FileForm:
         words |= {"constants": made.constants, "size": max(made.constants, 1)}
         return made, words | {"names": "\n".join(self._names(program))}
 
-    def text(self, program: Program, stem: str = "", role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+    def text(
+        self, program: Program, stem: str = "", role: Role = Role.RHS, remarks: Mapping[str, str] | None = None
+    ) -> str:
         """The functions of a program.
 
         Args:

@@ -17,7 +17,6 @@ from eomgen.codegen.statements import CHANGED, INDICES, INT, PLACES, READ, REAL,
 from eomgen.codegen.targets.base import (
     FUNCTIONS,
     QUOTED,
-    RHS,
     SUFFIXED,
     Emitted,
     FileContent,
@@ -213,20 +212,20 @@ FORM = FileForm(
 )
 
 
-def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+def c_text(program: Program, stem: str, role: Role = Role.RHS, remarks: Mapping[str, str] | None = None) -> str:
     """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or the names of its role."""
     return FORM.text(program, stem, role, remarks)
 
 
 def c_functions(program: Program) -> Functions:
     """The program compiled (or found in the cache) and callable."""
-    made, words = FORM.statements(program, "eomgen", RHS)
+    made, words = FORM.statements(program, "eomgen", Role.RHS)
     return functions_of(library(FORM.written(made, words), by=of_this_machine()), program, "eomgen", made.constants)
 
 
 def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
     """Several programs, compiled as one text."""
-    made = [FORM.statements(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
+    made = [FORM.statements(program, f"eomgen{i}", Role.RHS) for i, program in enumerate(programs)]
     compiled = library("\n".join(_apart(*each) for each in made), by=of_this_machine())
     return tuple(
         functions_of(compiled, program, words["stem"], each.constants)

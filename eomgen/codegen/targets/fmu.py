@@ -23,7 +23,7 @@ from typing import Any
 from eomgen.codegen.build import C as COMPILER
 from eomgen.codegen.build import Compiler, library
 from eomgen.codegen.program import Assign, Program
-from eomgen.codegen.targets.base import OUTPUTS, RHS, Called, Description, Emitted, FileContent, Role, Target, header
+from eomgen.codegen.targets.base import Called, Description, Emitted, FileContent, Role, Target, header
 from eomgen.codegen.targets.c import CONSTANTS, apart, c_functions, c_text
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.symbolic.numeric import JUMPS, tolerances
@@ -98,7 +98,7 @@ def test_both_kinds_of_simulation_agree():
 
 def _kept(emitted: Sequence[Emitted]) -> list[Emitted]:
     """The functions that an FMU has, the right-hand side first."""
-    return [each for each in emitted if each[1].role.name in ROLES]
+    return [each for each in emitted if each[1].role.word in ROLES]
 
 
 def _firsts(programs: Sequence[Program]) -> list[int]:
@@ -243,7 +243,7 @@ def fmu_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
             archive.writestr(zipfile.ZipInfo(path, EPOCH), content, zipfile.ZIP_DEFLATED)
     program, firsts = kept[0][0], _firsts([program for program, _ in kept])
     sizes = {"parameters": len(program.symbols.parameters), "inputs": len(program.symbols.inputs)}
-    kinds = [(reported.role.name, first) for (_, reported), first in zip(kept, firsts, strict=True)]
+    kinds = [(reported.role.word, first) for (_, reported), first in zip(kept, firsts, strict=True)]
     times = UNTIL_STUCK if _jumps(program) else UNTIL_STUCK[:1]
     test = _TEST.format(times=times, run=tolerances.RUN, stem=stem, states=len(program.states), kinds=kinds, **sizes)
     return {f"{stem}.fmu": packed.getvalue(), f"test_{stem}_fmu.py": test}
@@ -296,8 +296,8 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
         model.fmi3InstantiateModelExchange(stem.encode(), found[1].encode(), None, False, False, None, None)
     )
     n, size = len(program.states), len(program.outputs)
-    begin = _firsts([program, program])[0 if role is RHS else 1]
-    begin += reported.count('causality="output"') - size if role is OUTPUTS else 0  # they come last
+    begin = _firsts([program, program])[0 if role is Role.RHS else 1]
+    begin += reported.count('causality="output"') - size if role is Role.OUTPUTS else 0  # they come last
 
     def values(function: str, at: int, numbers: Sequence[float]) -> Any:
         count = len(numbers)

@@ -16,7 +16,6 @@ import numpy as np
 from eomgen.codegen.build import Compiler, function_of, library
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
-    RHS,
     Called,
     Emitted,
     FileContent,
@@ -90,7 +89,7 @@ def compiled_target(
         return many_of(whole if real is np.float64 else single.text(whole), program, by, **how)
 
     def loaded(program: Program) -> Functions:
-        return functions_by(many(form.text(program, "eomgen"), program, "eomgen", RHS))
+        return functions_by(many(form.text(program, "eomgen"), program, "eomgen", Role.RHS))
 
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role, **how: Any) -> Called:
         text = INCLUDED.sub(lambda found: str(texts[found[1]]), str(texts[form.path_of(program, stem, role)]))

@@ -14,7 +14,6 @@ from typing import Any
 from eomgen.codegen.program import Program
 from eomgen.codegen.statements import Language, one_line
 from eomgen.codegen.targets.base import (
-    RHS,
     Called,
     Emitted,
     FileContent,
@@ -146,8 +145,8 @@ def node_target(
         return form.files(stem, emitted) | {path: content for each in further for path, content in each.items()}
 
     def functions(program: Program) -> Functions:
-        main = RHS.main("eomgen")
-        made = {f"{main}.mjs": form.text(program, "eomgen"), **beside("eomgen", program, RHS, None)}
+        main = Role.RHS.main("eomgen")
+        made = {f"{main}.mjs": form.text(program, "eomgen"), **beside("eomgen", program, Role.RHS, None)}
         return functions_by(many_of_module(alone(made, main), program))
 
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
