@@ -186,7 +186,6 @@ from eomgen.model.joints.ball import rotation_of as rotation_of
 
 # w = 2 Im(e* o e'), child's axes
 from eomgen.model.joints.ball import spin_of_quaternion as spin_of_quaternion
-from eomgen.model.joints.base import Z as Z
 
 # Connection of a body to its parent
 from eomgen.model.joints.base import Joint as Joint
@@ -208,6 +207,7 @@ from eomgen.model.joints.base import TurnAbout as TurnAbout
 
 # A displacement along lines and arcs, end to end, the first and the last of which go on; the axes do not turn
 from eomgen.model.joints.base import WayAlongPieces as WayAlongPieces
+from eomgen.model.joints.base import Z as Z
 
 # The rotation that turns one after the other make, each about the axes that the one before left
 from eomgen.model.joints.base import oriented as oriented
