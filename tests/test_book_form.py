@@ -8,13 +8,13 @@ import pytest
 from each import each
 from slow_run import usual
 
-from eomgen.documents.latex_math import Notation, Setter
 from eomgen.symbolic.exact.book_forms import book_form
 from eomgen.symbolic.exact.normal_forms import equal, readable
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.latex import Notation, Setter
 from eomgen.symbolic.print.length import length_of, length_of_latex, length_of_name
 from eomgen.symbolic.print.text import to_text
 

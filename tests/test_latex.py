@@ -16,12 +16,12 @@ from typesetting import lost_in_mathml, lost_in_typst
 from eomgen.documents import rendered
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.latex import equations_latex, unit_latex, value_latex
-from eomgen.documents.latex_math import LINE, Notation, Setter, latex_escaped, pieces, rows_of, runs_of
 from eomgen.documents.markdown import markdown_escaped as escaped_markdown
 from eomgen.documents.statements import Omitted
 from eomgen.symbolic.expression.formula import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.print.latex import Notation, Setter, latex_escaped, pieces, rows_of, runs_of
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
@@ -248,7 +248,7 @@ def test_equality_signs_of_neighbours_stand_below_one_another():
 
 
 def test_long_sums_are_broken_before_their_signs():
-    """each row is about LINE wide, and the rows together are the whole"""
+    """each row is about Setter.LINE wide, and the rows together are the whole"""
     symbols = names(" ".join(f"x{i}" for i in range(60)))
     total = sum(symbols[1:], start=symbols[0])
     setter = Setter()
@@ -256,7 +256,8 @@ def test_long_sums_are_broken_before_their_signs():
     assert len(rows) > 2
     assert all(row.startswith(r"&\quad + ") for row in rows[1:])
     assert all(
-        sum(part.width for part in pieces(setter, total, LINE) if part.tex in row.split(" + ")) < LINE for row in rows
+        sum(part.width for part in pieces(setter, total, Setter.LINE) if part.tex in row.split(" + ")) < Setter.LINE
+        for row in rows
     )
     joined = " ".join(row.replace(r"&\quad", "").replace("&=", "=").strip() for row in rows)
     assert joined == f"x_{{0}} = {setter.set(total).tex}"

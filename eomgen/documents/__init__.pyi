@@ -30,6 +30,9 @@ from eomgen.documents.document import document_of as document_of
 # Lines of text that are of no model
 from eomgen.documents.document import lines_document as lines_document
 
+# Notation that a model declares
+from eomgen.documents.document import notation_of as notation_of
+
 # A document of one section without a head, for results that are no derivation
 from eomgen.documents.document import plain_document as plain_document
 
@@ -109,18 +112,6 @@ from eomgen.documents.latex import side_latex as side_latex
 
 # The document with sentences and formulas in place of listings
 from eomgen.documents.latex import with_listings_typeset as with_listings_typeset
-
-# Typesetting of the names of a model
-from eomgen.documents.latex_math import Notation as Notation
-
-# Sets graph scalars, with one notation for all of them
-from eomgen.documents.latex_math import Setter as Setter
-
-# Plain text for LaTeX outside formulas
-from eomgen.documents.latex_math import latex_escaped as latex_escaped
-
-# Notation that a model declares
-from eomgen.documents.latex_math import notation_of as notation_of
 
 # Quantities in a table, a row each: name, formula and number typeset; one longer than a line is shortened
 from eomgen.documents.markdown import listing_markdown as listing_markdown

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from eomgen.documents.latex_math import latex_escaped
 from eomgen.documents.reading import Reader, omitted
 from eomgen.documents.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement, prose
 from eomgen.documents.text import side_text
 from eomgen.symbolic.expression import Scalar
-from eomgen.symbolic.print import text_size
+from eomgen.symbolic.print import latex_escaped, text_size
 
 WIDE = 96  # characters of a table, all columns side by side
 PAGE = 5000  # characters of formulas in one step

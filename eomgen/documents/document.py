@@ -6,14 +6,13 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
-from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
 from eomgen.errors import Problem
 from eomgen.frozen import Pickled, dataclass
 from eomgen.model import Model, Taken, constant_parameters
 from eomgen.proof import Certificate
 from eomgen.symbolic.expression import Graph, Node, Scalar
-from eomgen.symbolic.print import Symbol
+from eomgen.symbolic.print import Notation, Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
 NOTHING_CHECKED = Problem("", "nothing of this result could be checked")
@@ -154,3 +153,16 @@ def _leaves(name: str, entry: Any) -> Iterator[tuple[str, Quantity]]:
     elif isinstance(entry, (list, tuple)):
         for k, inner in enumerate(entry):
             yield from _leaves(f"{name}[{k}]", inner)
+
+
+def notation_of(model: Model) -> Notation:
+    """Notation that a model declares."""
+    tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns)
+    symbols = {name: part.symbol for table in tables for name, part in table.items() if part.symbol is not None}
+    indices = {name: body.symbol.tex for name, body in model.bodies.items() if body.symbol is not None}
+    constraints = {
+        name: constraint.symbol.letter
+        for name, constraint in model.constraints.items()
+        if constraint.symbol is not None
+    }
+    return Notation(symbols, indices | {name: letter.tex for name, letter in constraints.items() if letter is not None})

@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.documents.document import notation_of
 from eomgen.documents.figures import mathtext
-from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.letters import PlacedName
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
@@ -23,6 +23,7 @@ from eomgen.mechanics.kinematics import BodyLink
 from eomgen.scene import Drawing, Letter, SceneNumbers, Stroke, plane_drawing, scene_of_system
 from eomgen.symbolic.expression import Node, Scalar, Vector
 from eomgen.symbolic.numeric import numbers_of
+from eomgen.symbolic.print import Notation
 
 __all__ = [
     "ARROW",

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
+from eomgen.documents.document import notation_of
 from eomgen.documents.drawing import draw, limits
 from eomgen.documents.figures import Picture
-from eomgen.documents.latex_math import notation_of
 from eomgen.documents.space_drawing import draw_space, page_limits
 from eomgen.model import Model
 from eomgen.scene import Drawing, Scene, SceneNumbers, drawn_start, frame_at, plane_drawing, scene_of, space_drawing

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen import files
-from eomgen.documents.latex_math import Notation, notation_of
+from eomgen.documents.document import notation_of
 from eomgen.errors import RunFailed, UsageError, visible
 from eomgen.frozen import dataclass
 from eomgen.model import OUTPUT
@@ -23,6 +23,7 @@ from eomgen.proof import DrawnPanel, panels_of
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import Unit
 from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.print import Notation
 
 FORMATS = (".png", ".svg", ".pdf")
 STYLE: dict[Any, Any] = {

@@ -8,7 +8,6 @@ from dataclasses import replace
 from itertools import zip_longest
 
 from eomgen.documents.document import Document
-from eomgen.documents.latex_math import Set, Setter, aligned, latex_escaped, lead_of, rows_of, runs_of, width_of
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -33,6 +32,7 @@ from eomgen.documents.statements import (
     prose,
 )
 from eomgen.symbolic.expression import Graph, Node, Scalar, order, parse
+from eomgen.symbolic.print import Set, Setter, latex_escaped
 
 name = "latex"
 
@@ -172,7 +172,7 @@ def grouped(statements: Sequence[Statement]) -> list[Group]:
 
 def display_blocks(setter: Setter, formulas: Sequence[Formula]) -> list[str]:
     """The formulas in aligned blocks of a few rows each."""
-    return [aligned(rows) for rows in runs_of(setter, _sides(setter, formulas), BLOCK)]
+    return setter.displays(_sides(setter, formulas), BLOCK)
 
 
 def _sides(setter: Setter, formulas: Sequence[Formula]) -> list[list[Set | Scalar]]:
@@ -228,10 +228,7 @@ def equations_latex(derivation: Document) -> str:
     formulas += [Formula((equation.left, equation.right)) for equation in derivation.equations]
     if not formulas:
         return r"$$\text{The equations are too long to print.}$$"
-    sides = _sides(setter, formulas)
-    leads = [lead_of(setter, each) for each in sides]
-    lead = max(leads) if all(leads) else 0.0
-    return f"$${aligned([row for each in sides for row in rows_of(setter, each, lead)])}$$"
+    return f"$${setter.display(_sides(setter, formulas))}$$"
 
 
 def piece_latex(setter: Setter, piece: Piece, escape: Callable[[str], str]) -> str:
@@ -252,13 +249,12 @@ def side_latex(setter: Setter, side: Side) -> str:
 def _side(setter: Setter, side: Side) -> Set | Scalar:
     """A scalar as it is; a quantity as set."""
     if isinstance(side, (Name, Entry, Partial, Rate)):
-        tex = _quantity(setter, side)
-        return Set(tex, width_of(tex))
+        return Set.of(_quantity(setter, side))
     if isinstance(side, Matrix):
         return _matrix(setter, side)
     if isinstance(side, Omitted):
         return Set(rf"\text{{({side.operations} operations, not printed)}}", 32)
-    return Set(side.latex, width_of(side.latex)) if isinstance(side, Law) else side
+    return Set.of(side.latex) if isinstance(side, Law) else side
 
 
 def _matrix(setter: Setter, matrix: Matrix) -> Set:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from eomgen.documents.document import Document
+from eomgen.documents.document import Document, notation_of
 from eomgen.documents.latex import (
     display_blocks,
     grouped,
@@ -16,10 +16,10 @@ from eomgen.documents.latex import (
     side_latex,
     with_listings_typeset,
 )
-from eomgen.documents.latex_math import LINE, Notation, Setter, notation_of
 from eomgen.documents.statements import Cell, Code, Found, Grid, Lines, Piece, Prose, Quantity, Statement, unit_text
 from eomgen.model import Model
 from eomgen.symbolic.expression import Graph
+from eomgen.symbolic.print import Notation, Setter
 
 name = "markdown"
 
@@ -71,7 +71,7 @@ def listing_markdown(rows: Sequence[Found], model: Model | None = None) -> str:
 
 def _reported(setter: Setter, found: Quantity) -> str:
     sides = quantity_sides(Graph(), found)
-    shown = [side_latex(setter, side) for side in sides if setter_width(setter, side) <= LINE]
+    shown = [side_latex(setter, side) for side in sides if setter_width(setter, side) <= Setter.LINE]
     parts = [f"${' = '.join(shown)}$".replace("|", r"\vert ")] if shown else []
     if len(shown) < len(sides):
         parts.append(f"({len(found.exact or '')} characters: `.exact`)")

@@ -15,7 +15,6 @@ from random import Random
 from typing import Any
 
 from eomgen.documents.document import Document
-from eomgen.documents.latex_math import Notation
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -65,6 +64,7 @@ from eomgen.proof import (
 )
 from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, order, parse, sampled_of
 from eomgen.symbolic.numeric import READ_BACK, NoValue, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.print import Notation
 
 NAME = "the page, read back, says what was found"
 HOW = "a reader of its own, 50 digits"

@@ -11,10 +11,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
-from eomgen.documents.latex_math import Notation
 from eomgen.documents.letters import PlacedName
 from eomgen.frozen import dataclass
 from eomgen.scene import Drawing, Stroke, corners_of
+from eomgen.symbolic.print import Notation
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
 ALONG_X = 0.9  # cosine of what is upright to x: more, and y goes to the right

@@ -13,6 +13,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import Node, Scalar, operations
+from eomgen.symbolic.print import symbol_of
 
 
 @dataclass(frozen=True)
@@ -63,6 +64,11 @@ class Law:
 
     text: str
     latex: str
+
+    @classmethod
+    def of_letter(cls, text: str) -> Law:
+        """A letter, with an index or without: v_x, J_xy, omega."""
+        return cls(text, symbol_of(text).tex)
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,6 @@ import numpy as np
 from eomgen.documents import (
     KINDS,
     Code,
-    Notation,
     Picture,
     Piece,
     by_unit,
@@ -40,6 +39,7 @@ from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, curve_path, element, in_a_row, stepped
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import Graph, Node, Unit
+from eomgen.symbolic.print import Notation
 
 OFTEN = 4  # times that a look is said before it has a name
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
-from eomgen.documents import Setter, markdown_blocks, markdown_escaped, setter_of
+from eomgen.documents import markdown_blocks, markdown_escaped, setter_of
 from eomgen.errors import RunFailed, ToolMissing, UsageError, visible
 from eomgen.files import json_text
 from eomgen.page.contents import Report, ReportSection
@@ -16,6 +16,7 @@ from eomgen.page.figure import Pictures
 from eomgen.page.html import html_page
 from eomgen.page.paper import pdf_of
 from eomgen.page.tex import tex_files
+from eomgen.symbolic.print import Setter
 
 # -------- marked ----------------------------------------------------------------------------------------------
 # Report -> Markdown with formulas between dollars, its pictures next to it.

@@ -17,7 +17,6 @@ from eomgen.documents import (
     Lines,
     Piece,
     Prose,
-    Setter,
     Step,
     display_blocks,
     formula_text,
@@ -32,6 +31,7 @@ from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
 from eomgen.page.markup import Html, element, font_face, html, in_a_row, in_a_script, mathml, packed, script, style
 from eomgen.page.packing import table_bytes, with_far_copies
 from eomgen.proof import SIGNS, Certificate
+from eomgen.symbolic.print import Setter
 from eomgen.version import __version__
 
 LARGEST = 1.5  # pixels of a point of a picture

@@ -14,7 +14,6 @@ from eomgen.documents import (
     Lines,
     Piece,
     Prose,
-    Setter,
     display_blocks,
     grouped,
     piece_latex,
@@ -25,6 +24,7 @@ from eomgen.page.contents import INKS, Report, ReportFigure, ReportSection
 from eomgen.page.html import svg
 from eomgen.page.markup import element, in_a_row, style
 from eomgen.proof import SIGNS, Certificate
+from eomgen.symbolic.print import Setter
 from eomgen.version import __version__
 
 WHOLE = 576.0  # points of a picture that is as wide as the text

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from eomgen.documents import PREAMBLE, Setter, latex_blocks, latex_escaped, setter_of
+from eomgen.documents import PREAMBLE, latex_blocks, setter_of
 from eomgen.page.contents import Report, ReportFigure, ReportSection
 from eomgen.page.figure import Pictures
 from eomgen.proof import Status
+from eomgen.symbolic.print import Setter, latex_escaped
 from eomgen.version import __version__
 
 GRAPHICS = "\\usepackage{graphicx}\n"

@@ -20,7 +20,6 @@ from derivations import PATHS, answers, equations
 import eomgen
 from eomgen import Equations, Output
 from eomgen.documents.latex import setter_of, side_latex, with_listings_typeset
-from eomgen.documents.latex_math import Notation, Setter
 from eomgen.documents.statements import Formula, Side
 from eomgen.documents.text import side_text
 from eomgen.questions.outputs_answered import Answers
@@ -29,6 +28,7 @@ from eomgen.symbolic.expression.derivatives import derivative, substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.print.latex import Notation, Setter
 from eomgen.symbolic.print.length import length_of_latex
 
 ROOT = Path(__file__).parents[2]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from eomgen.documents.latex_math import letter_law
 from eomgen.documents.statements import Formula, Grid, Law, Name, Side, Statement, Step, prose
 from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
@@ -113,7 +112,7 @@ def _of_body(forces: SectionForces, number: int) -> Iterable[Statement]:
     )
     rows = [(piece.start, piece.end, *(piece.value(kind, x) for kind in KINDS)) for piece in forces.pieces]
     written = tuple(tuple(forces.sizes.shortest(cell) for cell in row) for row in rows)
-    yield Grid(("from x", "to x", *map(letter_law, "NVM")), written)
+    yield Grid(("from x", "to x", *map(Law.of_letter, "NVM")), written)
     if forces.extremes:
         yield prose("Where V = 0 within a part, M has an extreme:")
         for extreme in forces.extremes:

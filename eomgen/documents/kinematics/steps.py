@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 from eomgen.documents.bounded import tabled
-from eomgen.documents.latex_math import letter_law
 from eomgen.documents.motion_steps import axes, count
 from eomgen.documents.statements import (
     Cell,
@@ -517,7 +516,7 @@ def _centers(state: KinematicState, mechanism: Mechanism) -> Step:
         if state.found
         else ""
     )
-    words = (prose(theory), Grid(("centre", letter_law("x"), letter_law("y"), "where"), rows))
+    words = (prose(theory), Grid(("centre", Law.of_letter("x"), Law.of_letter("y"), "where"), rows))
     return Step("centers", "Centres of rotation", (*words, *((prose(agree),) if agree else ())))
 
 
@@ -631,7 +630,9 @@ def _spins(state: KinematicState, words: str, letter: str, spins: Mapping[str, V
         return ()
     turns = [(name, state.put(w)) for name, w in spins.items()]
     if state.plane:
-        return prose(words), Grid(("body", letter_law(letter)), tuple((name, cell(state, w[2])) for name, w in turns))
+        return prose(words), Grid(
+            ("body", Law.of_letter(letter)), tuple((name, cell(state, w[2])) for name, w in turns)
+        )
     head: tuple[Cell, ...] = ("body", *_components(letter, "xyz"))
     return prose(words), Grid(head, tuple((name, *_cells(state, w, "xyz")) for name, w in turns))
 
@@ -643,8 +644,8 @@ def _vectors(state: KinematicState, letter: str, rows: Sequence[tuple[str, Vecto
 
 def _components(letter: str, axes: str) -> tuple[Law, ...]:
     """v_x, v_y, |v|: the columns of a vector."""
-    size = letter_law(letter)
-    return (*(letter_law(f"{letter}_{axis}") for axis in axes), Law(f"|{size.text}|", f"|{size.latex}|"))
+    size = Law.of_letter(letter)
+    return (*(Law.of_letter(f"{letter}_{axis}") for axis in axes), Law(f"|{size.text}|", f"|{size.latex}|"))
 
 
 def _cells(state: KinematicState, v: Vector, axes: str) -> tuple[Cell, ...]:

@@ -10,7 +10,6 @@ from functools import cache, cached_property, partial
 
 import numpy as np
 
-from eomgen.documents.latex_math import letter_law
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion, made_of, mass_properties
@@ -149,7 +148,7 @@ def masses_grid(section: Section) -> Iterator[Statement]:
     if len(section.sum.rows) == 1:
         return
     count = 2 if section.plane else 3
-    head: tuple[Cell, ...] = ("", letter_law("m"), *(letter_law(f"{axis}_C") for axis in AXES[:count]))
+    head: tuple[Cell, ...] = ("", Law.of_letter("m"), *(Law.of_letter(f"{axis}_C") for axis in AXES[:count]))
     rows = [(row.label, row.sign * row.mass.m, *row.mass.com[:count]) for row in section.sum.rows]
     yield grid(section, head, rows)
 
@@ -168,7 +167,7 @@ def moments_grid(section: Section) -> Iterator[Statement]:
             rows.append((f"{row.label}, {what}", *(_plus(part, i, j) for i, j in columns)))
     rows.append(("sum", *(_plus(section.tensor, i, j) for i, j in columns)))
     yield prose("Own moments, and with d from the point to the mass centre, ", STEINER, ":")
-    yield grid(section, ("", *(letter_law(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
+    yield grid(section, ("", *(Law.of_letter(f"J_{AXES[i]}{'' if i == j else AXES[j]}") for i, j in columns)), rows)
 
 
 def _plus(I: Matrix, i: int, j: int) -> Scalar:
@@ -265,7 +264,7 @@ def _words(found: Principal) -> str:
 
 
 def _axes_grid(section: Section, found: Principal, rows: list[list[float]] | None) -> Iterator[Statement]:
-    head: tuple[Cell, ...] = ("axis", *map(letter_law, AXES))
+    head: tuple[Cell, ...] = ("axis", *map(Law.of_letter, AXES))
     words = "The rows of R are the principal axes, right-handed: R I R^T is diagonal."
     longest = LONGEST if rows is not None else LONGEST_LINE
     if found.axes is not None and all(text_size(x) <= longest for row in found.axes for x in row):

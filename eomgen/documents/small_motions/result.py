@@ -13,9 +13,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.certificate import certify
-from eomgen.documents.document import Document, document_of
+from eomgen.documents.document import Document, document_of, notation_of
 from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.latex_math import notation_of
 from eomgen.documents.motion_steps import assumption_steps, data_step
 from eomgen.documents.result import Result
 from eomgen.documents.small_motions.steps import linearization_steps, printed_modes

@@ -1,6 +1,16 @@
 """Door of the folder: what other folders may import from `eomgen.symbolic.print`."""
 
-from eomgen.symbolic.print.layout import TRIGONOMETRIC as TRIGONOMETRIC
+# Typesetting of the names of a model
+from eomgen.symbolic.print.latex import Notation as Notation
+
+# A typeset formula: its LaTeX, its approximate width in characters, the precedence of its outermost operation
+from eomgen.symbolic.print.latex import Set as Set
+
+# Sets graph scalars, with one notation for all of them
+from eomgen.symbolic.print.latex import Setter as Setter
+
+# Plain text for LaTeX outside formulas
+from eomgen.symbolic.print.latex import latex_escaped as latex_escaped
 from eomgen.symbolic.print.layout import Factor as Factor
 
 # coefficient * (product of base ^ exponent) / (product of base ^ exponent), exponents whole and positive
@@ -15,20 +25,8 @@ from eomgen.symbolic.print.layout import factors as factors
 # True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into
 from eomgen.symbolic.print.layout import has_nested_quotient as has_nested_quotient
 
-# True if x stands behind the function without parentheses: sin x, and of an angle cos 2 x and sin omega t
-from eomgen.symbolic.print.layout import is_bare_argument as is_bare_argument
-
 # True for what is no sum, product or whole power: a symbol, pi, a function, a broken power
 from eomgen.symbolic.print.layout import is_base as is_base
-
-# True for F/3 and 2*M/3, which are set as one fraction; of rates and accelerations a number stands before them
-from eomgen.symbolic.print.layout import is_part_of_letter as is_part_of_letter
-
-# True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4
-from eomgen.symbolic.print.layout import is_part_of_turn as is_part_of_turn
-
-# True for t, which stands after what it is multiplied by: m*g*sin(alpha)/(2*M)*t^2
-from eomgen.symbolic.print.layout import is_time as is_time
 
 # c as text that is read back as c: 4, -27/2, 0.0825, 8.464e-7
 from eomgen.symbolic.print.layout import number_text as number_text
@@ -39,15 +37,11 @@ from eomgen.symbolic.print.layout import products_of as products_of
 # x made anew as it is printed: sin(theta)^2/sin(theta), which is printed as sin(theta), is sin(theta)
 from eomgen.symbolic.print.layout import rebuilt_as_written as rebuilt_as_written
 
-# x as a sum of products for print, in the order of `terms`
-from eomgen.symbolic.print.layout import summands as summands
-
 # x as a sum of number * term, the term None for a plain number
 from eomgen.symbolic.print.layout import terms as terms
 
 # The number of visible marks that the scalars have when they are typeset, names by their letters
 from eomgen.symbolic.print.length import length_of as length_of
-from eomgen.symbolic.print.names import LETTERS as LETTERS
 
 # characters
 from eomgen.symbolic.print.names import LONGEST as LONGEST
@@ -63,9 +57,6 @@ from eomgen.symbolic.print.names import parse_symbol as parse_symbol
 
 # The symbol of a name without primes, by its own letters
 from eomgen.symbolic.print.names import symbol_of as symbol_of
-
-# A word in roman type inside a formula
-from eomgen.symbolic.print.names import upright as upright
 
 # A sympy expression as a scalar of the symbols' graph
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy as scalar_from_sympy

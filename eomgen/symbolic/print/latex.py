@@ -13,27 +13,21 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from itertools import groupby, pairwise
 
-from eomgen.documents.statements import Law
 from eomgen.frozen import dataclass
-from eomgen.model import Model
 from eomgen.symbolic.expression import SUMS, Fraction, Node, Number, Scalar, sampled_of
-from eomgen.symbolic.print import (
-    LETTERS,
+from eomgen.symbolic.print.layout import (
     TRIGONOMETRIC,
     Factor,
     Product,
-    Symbol,
     decimal_of,
-    index_latex,
     is_bare_argument,
     is_base,
     is_part_of_letter,
     is_part_of_turn,
     is_time,
     summands,
-    symbol_of,
-    upright,
 )
+from eomgen.symbolic.print.names import LETTERS, Symbol, index_latex, symbol_of, upright
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 FUNCTIONS = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")} | {
@@ -65,6 +59,11 @@ class Set:
     width: float
     hold: int = ATOM
 
+    @classmethod
+    def of(cls, tex: str) -> Set:
+        """A formula that is typeset already."""
+        return cls(tex, width_of(tex))
+
 
 class Setter:
     """Sets graph scalars, with one notation for all of them.
@@ -72,6 +71,8 @@ class Setter:
     Args:
         notation: typesetting of names; None: by their own letters.
     """
+
+    LINE = 87.0  # characters
 
     def __init__(self, notation: Notation | None = None) -> None:
         self.notation = notation or Notation()
@@ -94,6 +95,16 @@ class Setter:
             else:
                 self._set[stack.pop()] = self._made(node)
         return self._set[x]
+
+    def displays(self, formulas: Sequence[Sequence[Set | Scalar]], longest: int) -> list[str]:
+        """The formulas in aligned blocks of about `longest` rows each."""
+        return [aligned(rows) for rows in runs_of(self, formulas, longest)]
+
+    def display(self, formulas: Sequence[Sequence[Set | Scalar]]) -> str:
+        """The formulas in one aligned block."""
+        leads = [lead_of(self, sides) for sides in formulas]
+        lead = max(leads) if all(leads) else 0.0
+        return aligned([row for sides in formulas for row in rows_of(self, sides, lead)])
 
     def summands(self, x: Scalar) -> list[Product]:
         """The terms of x, each with its factors, coefficients included."""
@@ -169,7 +180,7 @@ class Setter:
             return Set(tex, width_of(tex), TALL if "^" in tex else ATOM)
         if op == "sampled":
             tex = self.notation.latex(sampled_of(node.args[1]).name)
-            return Set(tex, width_of(tex))
+            return Set.of(tex)
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
         if op == "sqrt":
             arguments = [self._in_one_fraction(node.args[0])]
@@ -252,11 +263,10 @@ def is_sum(node: Node) -> bool:
     return node.op in SUMS
 
 
-# -------- latex lines -----------------------------------------------------------------------------------------
-# Formulas -> lines of an aligned block, each about LINE characters wide, broken before + and -.
+# -------- lines -----------------------------------------------------------------------------------------
+# Formulas -> lines of an aligned block, each about `Setter.LINE` characters wide, broken before + and -.
 
 
-LINE = 87.0  # characters
 NARROW = 24.0  # a left side that stands before the alignment
 
 
@@ -312,12 +322,12 @@ def rows_of(setter: Setter, sides: Sequence[Set | Scalar], lead: float | None = 
     """
     lead = lead_of(setter, sides) if lead is None else lead
     if lead:
-        return _rows_after(setter, sides, LINE - lead)
-    parts = pieces(setter, sides[0], LINE)
+        return _rows_after(setter, sides, Setter.LINE - lead)
+    parts = pieces(setter, sides[0], Setter.LINE)
     for side in sides[1:]:
-        head, *rest = pieces(setter, side, LINE)
+        head, *rest = pieces(setter, side, Setter.LINE)
         parts += [Set(f"= {head.tex}", head.width + 3), *rest]
-    filled = _filled(parts, LINE)
+    filled = _filled(parts, Setter.LINE)
     return [f"& {filled[0]}", *(rf"&\quad {part}" for part in filled[1:])]
 
 
@@ -416,7 +426,7 @@ def _filled(parts: list[Set], room: float) -> list[str]:
     return lines
 
 
-# -------- latex names -----------------------------------------------------------------------------------------
+# -------- names -----------------------------------------------------------------------------------------
 # Names of a document -> LaTeX: those that a model declares, else by their own letters, each distinct from the others.
 
 
@@ -482,24 +492,6 @@ class Notation:
             if taken.setdefault(self.latex(name), name) != name and name not in self.symbols:
                 spelt[name] = Symbol(name, upright(name))
         return replace(self, symbols={**self.symbols, **spelt})
-
-
-def notation_of(model: Model) -> Notation:
-    """Notation that a model declares."""
-    tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns)
-    symbols = {name: part.symbol for table in tables for name, part in table.items() if part.symbol is not None}
-    indices = {name: body.symbol.tex for name, body in model.bodies.items() if body.symbol is not None}
-    constraints = {
-        name: constraint.symbol.letter
-        for name, constraint in model.constraints.items()
-        if constraint.symbol is not None
-    }
-    return Notation(symbols, indices | {name: letter.tex for name, letter in constraints.items() if letter is not None})
-
-
-def letter_law(text: str) -> Law:
-    """A letter, with an index or without: v_x, J_xy, omega."""
-    return Law(text, symbol_of(text).tex)
 
 
 def latex_escaped(text: str) -> str:
