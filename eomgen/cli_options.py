@@ -69,7 +69,7 @@ def time_typed(typed: object) -> float:
         BadParameter: it is none.
     """
     from eomgen.errors import UsageError
-    from eomgen.symbolic.expression import seconds
+    from eomgen.model import seconds
 
     try:
         return seconds(typed)

@@ -14,9 +14,8 @@ from eomgen.frozen import recalled
 from eomgen.mechanics.constraints import limits_passed
 from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.model import ModelOrPath, Values, WrittenEquation, left_tables, model_at, refuse_motion, with_inputs
+from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, left_tables, model_at, refuse_motion, with_inputs
 from eomgen.study import Study, study_of, study_of_modes
-from eomgen.symbolic.expression import Typed
 from eomgen.symbolic.numeric import doing, growing, tolerances
 
 if TYPE_CHECKING:  # what moves is loaded where something moves

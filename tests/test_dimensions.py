@@ -14,8 +14,8 @@ import eomgen
 from eomgen.errors import ModelError
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Names, inferred
-from eomgen.symbolic.expression.dimensions import BASE, Dimension, Inference, dimension_of_unit
-from eomgen.symbolic.expression.units import parse_unit
+from eomgen.model.inference import BASE, Dimension, Inference, dimension_of_unit
+from eomgen.model.quantities import Unit
 from eomgen.verbs.derive import derive_document
 
 MODEL = """
@@ -167,7 +167,7 @@ def test_equations_reactions_and_outputs_have_their_unit():
 def test_a_dimension_reads_back_as_the_unit_that_it_is_told_as(powers):
     """dimension(unit(str(d))) = d: kg*m/s is told as itself, not as N*s/m, which is kg/s."""
     dimension = Dimension({base: Fraction(n) for base, n in zip(BASE, powers, strict=True) if n})
-    unit = parse_unit(str(dimension))
+    unit = Unit.parse(str(dimension))
     assert dimension_of_unit(unit) == dimension and unit.factor == 1
 
 

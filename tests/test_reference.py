@@ -19,9 +19,9 @@ import eomgen
 from eomgen.cli import main
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model
+from eomgen.model.quantities import UNITS
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.symbolic.expression.formula import NAMES
-from eomgen.symbolic.expression.units import UNITS
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "docs" / "_ext"))

@@ -19,6 +19,7 @@ from eomgen.documents.figures import mathtext, over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import stabilized
+from eomgen.model.quantities import Unit
 from eomgen.questions.single_run import page_time, run_of_a_page
 from eomgen.questions.single_run import run as run_equations
 from eomgen.simulation.integration import drift_of, integrate
@@ -26,7 +27,6 @@ from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_model import slope_of
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.solvers import METHODS
-from eomgen.symbolic.expression.units import parse_unit
 from eomgen.verbs.animate import Showing, animate_document
 
 pytestmark = pytest.mark.slow
@@ -484,10 +484,10 @@ def test_a_trajectory_shows_itself_in_a_notebook():
 def test_a_plot_has_a_panel_for_each_unit_and_one_for_the_energy(ending, tmp_path):
     """The file is a picture of its kind and is the same when drawn again."""
     path, result = tmp_path / f"run.{ending}", run(samples=50)
-    over_time(result, "Pendulum", {"theta": parse_unit("rad")}).save(path)
+    over_time(result, "Pendulum", {"theta": Unit.parse("rad")}).save(path)
     first = path.read_bytes()
     assert first.startswith(b"\x89PNG") if ending == "png" else first.count(b'id="axes_') == 2
-    over_time(result, "Pendulum", {"theta": parse_unit("rad")}).save(path)
+    over_time(result, "Pendulum", {"theta": Unit.parse("rad")}).save(path)
     assert path.read_bytes() == first
     with pytest.raises(UsageError, match=r"run\.txt"):
         over_time(result, "", {}).save(tmp_path / "run.txt")

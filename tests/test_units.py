@@ -8,10 +8,10 @@ import pytest
 from each import each
 
 from eomgen.errors import ExpressionError
+from eomgen.model.quantities import UNITS, Unit
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.units import UNITS, parse_unit
 
 
 @each(
@@ -34,9 +34,9 @@ from eomgen.symbolic.expression.units import UNITS, parse_unit
 )
 def test_a_value_with_a_unit_is_its_value_in_si_exactly(text, value, si):
     """value * factor, no float in between."""
-    assert parse_unit(text).expression_in_si(parse(str(value))).literal == si
-    assert parse_unit(text).to_si(value, None) == si
-    assert parse_unit(text).from_si(si, None) == value
+    assert Unit.parse(text).expression_in_si(parse(str(value))).literal == si
+    assert Unit.parse(text).to_si(value, None) == si
+    assert Unit.parse(text).from_si(si, None) == value
 
 
 @each(
@@ -53,10 +53,10 @@ def test_a_value_with_a_unit_is_its_value_in_si_exactly(text, value, si):
 def test_an_angle_is_a_multiple_of_pi_exactly(text, per_pi):
     """deg = pi/180, rev = 2 pi, rpm = pi/30 rad/s; on the graph pi stays pi."""
     graph = Graph()
-    assert parse_unit(text).to_si(1, graph.pi) is per_pi * graph.pi
-    assert parse_unit(text).to_si(1, math.pi) == pytest.approx(float(per_pi) * math.pi)
-    assert parse_unit(text).from_si(per_pi * graph.pi, graph.pi) == 1
-    assert parse_unit(text).expression_in_si(parse("3")).evaluate({"pi": graph.pi}) is 3 * per_pi * graph.pi
+    assert Unit.parse(text).to_si(1, graph.pi) is per_pi * graph.pi
+    assert Unit.parse(text).to_si(1, math.pi) == pytest.approx(float(per_pi) * math.pi)
+    assert Unit.parse(text).from_si(per_pi * graph.pi, graph.pi) == 1
+    assert Unit.parse(text).expression_in_si(parse("3")).evaluate({"pi": graph.pi}) is 3 * per_pi * graph.pi
 
 
 @each(
@@ -76,13 +76,13 @@ def test_an_angle_is_a_multiple_of_pi_exactly(text, per_pi):
 )
 def test_units_of_one_dimension_fit(one, other):
     """m, kg, s to the same powers; the radian is a number."""
-    assert parse_unit(one).fits(parse_unit(other)) and parse_unit(other).fits(parse_unit(one))
+    assert Unit.parse(one).fits(Unit.parse(other)) and Unit.parse(other).fits(Unit.parse(one))
 
 
 @each("one, other", [("m", "kg"), ("deg", "kg"), ("N", "N*m"), ("m/s", "m/s^2"), ("Hz", "rad/s"), ("1", "m")])
 def test_units_of_different_dimensions_do_not_fit(one, other):
     """Nor do Hz and rad/s: between them lies 2 pi, silently."""
-    assert not parse_unit(one).fits(parse_unit(other)) and not parse_unit(other).fits(parse_unit(one))
+    assert not Unit.parse(one).fits(Unit.parse(other)) and not Unit.parse(other).fits(Unit.parse(one))
 
 
 @each(
@@ -106,17 +106,17 @@ def test_units_of_different_dimensions_do_not_fit(one, other):
 def test_an_unknown_unit_is_an_error_with_its_mend(text, what, column, fix):
     """STYLE 6: culprit, column, the nearest right thing."""
     with pytest.raises(ExpressionError) as caught:
-        parse_unit(text)
+        Unit.parse(text)
     assert (caught.value.what, caught.value.column, caught.value.fix) == (what, column, fix)
 
 
 def test_every_named_unit_is_read_and_positive():
     """The table reads itself; no factor is a float or zero."""
     for name, unit in UNITS.items():
-        assert parse_unit(name).fits(unit) and parse_unit(name).factor == unit.factor > 0
+        assert Unit.parse(name).fits(unit) and Unit.parse(name).factor == unit.factor > 0
         assert isinstance(unit.factor, Fraction)
 
 
 def test_an_expression_with_a_unit_becomes_one_in_si():
     """(a + b) cm = 1/100*(a + b) m."""
-    assert parse_unit("cm").expression_in_si(parse("a + b")).evaluate({"a": 30, "b": 10}) == Fraction(2, 5)
+    assert Unit.parse("cm").expression_in_si(parse("a + b")).evaluate({"a": 30, "b": 10}) == Fraction(2, 5)

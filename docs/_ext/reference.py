@@ -55,9 +55,9 @@ from eomgen.model.parts import (  # noqa: E402
     Truss,
     Unknown,
 )
+from eomgen.model.quantities import UNITS  # noqa: E402
 from eomgen.model.sampled_laws import TimeLawRule  # noqa: E402
 from eomgen.symbolic.expression.formula import NAMES  # noqa: E402
-from eomgen.symbolic.expression.units import UNITS  # noqa: E402
 
 PLACE = ROOT / "docs" / "reference"
 SEAMS: Mapping[str, tuple[type[Any], ...]] = {

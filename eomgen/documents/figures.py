@@ -18,10 +18,9 @@ from eomgen import files
 from eomgen.documents.document import notation_of
 from eomgen.errors import RunFailed, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.model import OUTPUT
+from eomgen.model import OUTPUT, Unit
 from eomgen.proof import DrawnPanel, panels_of
 from eomgen.simulation import Trajectory
-from eomgen.symbolic.expression import Unit
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Notation
 

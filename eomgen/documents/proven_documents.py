@@ -18,8 +18,9 @@ from eomgen.documents.statements import Equation, Formula, Grid, Law, Listing, M
 from eomgen.documents.text import cases_text, cell_text, is_piecewise, side_text
 from eomgen.documents.texts_read import json_read_back, text_read_back
 from eomgen.errors import ExpressionError, NumberBeyond
+from eomgen.model import Unit
 from eomgen.proof import Certificate, Check, Tally, differing
-from eomgen.symbolic.expression import LONGEST, Expression, Graph, Node, Scalar, order, parse, parse_unit, symbols_of
+from eomgen.symbolic.expression import LONGEST, Expression, Graph, Node, Scalar, order, parse, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
 
@@ -186,7 +187,7 @@ def _off(expression: Expression, unit: str, right: float, values: Mapping[str, A
     scalar = expression.evaluate({**symbols, "pi": graph.pi})
     state = dict(zip(symbols.values(), evaluate([values[name] for name in symbols], {}, digits), strict=True))
     found = float(evaluate((scalar,), state, digits)[0])
-    return differing(found / parse_unit(unit).size, right)
+    return differing(found / Unit.parse(unit).size, right)
 
 
 # -------- finite numbers --------------------------------------------------------------------------------------

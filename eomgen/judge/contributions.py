@@ -24,9 +24,8 @@ from eomgen.mechanics.dynamics import (
     per_speed,
 )
 from eomgen.mechanics.kinematics import Applied, armature_energy, body_energies, given_energy, mass_properties
-from eomgen.model import Catalog, Couple, Load, PointForce, UniformField, inferred
+from eomgen.model import Catalog, Couple, Dimension, Load, PointForce, UniformField, inferred
 from eomgen.symbolic.expression import (
-    Dimension,
     Node,
     Scalar,
     ScalarRow,

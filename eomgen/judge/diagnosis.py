@@ -20,7 +20,8 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.dynamics import System
-from eomgen.symbolic.expression import SECOND, Dimension, Fraction, Node, Scalar, ScalarRow, over
+from eomgen.model import Dimension
+from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRow, over
 from eomgen.symbolic.numeric import ARRAYS, evaluate, tolerances
 
 BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
@@ -153,10 +154,10 @@ def in_other_units(samples: Samples, dimensions: Mapping[str, Dimension]) -> Sam
     found = dict[Node, np.ndarray]()
     for x, values in samples.values.items():
         name = x.name.rstrip("'")
-        dimension = SECOND if name == "t" else dimensions.get(name)
+        dimension = Dimension.of_time() if name == "t" else dimensions.get(name)
         if dimension is None or dimension.unknowns:
             return None
-        powers = dimension.times(SECOND, len(name) - len(x.name))
+        powers = dimension.times(Dimension.of_time(), len(name) - len(x.name))
         found[x] = values * float(np.prod([UNITS_OF_OTHERS[base] ** float(n) for base, n in powers.items()]))
     return Samples(found, samples.places)
 

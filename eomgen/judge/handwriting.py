@@ -14,7 +14,8 @@ from contextlib import suppress
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
-from eomgen.symbolic.expression import NAMES, RATES, SLOPE, called_rate, meant_name, parse_unit, spelled
+from eomgen.model import Unit
+from eomgen.symbolic.expression import NAMES, RATES, SLOPE, called_rate, meant_name, spelled
 
 RATE = "rate_of"  # d/dt of what stands in parentheses
 DEEPEST = 64  # groups inside one another, as of the grammar
@@ -211,7 +212,7 @@ class _Reader:
         if unit is None or self.known.known(unit[1]) is not None or unit[1] in _FUNCTIONS or self.known.cut(unit[1]):
             return
         with suppress(ExpressionError):
-            meant = parse_unit({"degrees": "deg"}.get(unit[1], unit[1]))
+            meant = Unit.parse({"degrees": "deg"}.get(unit[1], unit[1]))
             self.put("*", "sign")
             self.put(f"({meant.factor}{'*pi' if meant.pi_power else ''})", "name")
             self.at = unit.end()

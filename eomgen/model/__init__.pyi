@@ -178,6 +178,9 @@ from eomgen.model.forces.load import SpreadLoad as SpreadLoad
 # An acceleration field that acts on every mass of the model: a weight m g at every mass centre [m/s^2]
 from eomgen.model.forces.load import UniformField as UniformField
 
+# The exponents of m, kg, s and of unknowns; none is 0
+from eomgen.model.inference import Dimension as Dimension
+
 # The rows of e' = G w: half the quaternion's products with the units i, j, k
 from eomgen.model.joints.ball import rate_matrix_of as rate_matrix_of
 
@@ -296,6 +299,16 @@ from eomgen.model.parts import Parameter as Parameter
 
 # Massless two-force members between hinges: nodes and members `n1-n2`
 from eomgen.model.parts import Truss as Truss
+from eomgen.model.quantities import Typed as Typed
+
+# factor * pi^pi_power, in units of SI
+from eomgen.model.quantities import Unit as Unit
+
+# Both sides of `left = right`, each with its unit
+from eomgen.model.quantities import parse_typed_equation as parse_typed_equation
+
+# A time [s]: a number, "500 ms", (500, "ms"), a quantity of pint; a plain number is in seconds
+from eomgen.model.quantities import seconds as seconds
 
 # A model, or the path of its file
 from eomgen.model.reader import ModelOrPath as ModelOrPath

@@ -10,23 +10,11 @@ from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.fields import Leaf, WrittenEquation, named
+from eomgen.model.inference import NUMBER, SECOND, TIME, Clash, Dimension, Inference, Walk, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import formula_at
-from eomgen.symbolic.expression import (
-    NUMBER,
-    SECOND,
-    TIME,
-    Call,
-    Clash,
-    Dimension,
-    Expression,
-    Inference,
-    Reference,
-    Unit,
-    Walk,
-    dimension_of_unit,
-    parse_unit,
-)
+from eomgen.model.quantities import Unit
+from eomgen.symbolic.expression import Call, Expression, Reference
 
 PER_NAME = ("coordinate", "coordinate or speed")
 RATES = {"start": 0, "near": 0, "motion": 0, "speed": 1, "rate": 1, "acceleration": 2}
@@ -168,7 +156,7 @@ def _also(unit: str) -> dict[str, Dimension]:
 
 @cache
 def _dimension(unit: str) -> Dimension:
-    return dimension_of_unit(parse_unit(unit))
+    return dimension_of_unit(Unit.parse(unit))
 
 
 def _needed(leaf: Leaf, names: Names) -> Dimension | None:

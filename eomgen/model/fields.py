@@ -14,7 +14,8 @@ from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Decimal, Diagnostic, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import EXACT, Expression, Unit, as_expression, parse_typed_equation, parse_unit
+from eomgen.model.quantities import Unit, parse_typed_equation
+from eomgen.symbolic.expression import EXACT, Expression, as_expression
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"
@@ -99,7 +100,7 @@ class FormulaRule(WholeRule):
             found.append(Diagnostic(path, "a quantity without 'value'", 'write { value = 40, unit = "cm" }'))
             return None
         unit = UNIT.read(raw["unit"], (*path, "unit"), found) if "unit" in raw else None
-        if unit is not None and self.unit is not None and not unit.fits(parse_unit(self.unit)):
+        if unit is not None and self.unit is not None and not unit.fits(Unit.parse(self.unit)):
             what = f"the unit '{unit.text}' does not fit: this is in {named(self.unit)}"
             found.append(Diagnostic((*path, "unit"), what))
         value = _expression(raw["value"], (*path, "value"), found)
@@ -389,7 +390,7 @@ class ParsedTextRule(WholeRule, Generic[Parsed]):
         return {"type": "string", "description": f"{self.needed}, {self.like}", **dict(self.limits)}
 
 
-UNIT = ParsedTextRule(Unit, parse_unit, "a unit", 'like "kg*m^2"')
+UNIT = ParsedTextRule(Unit, Unit.parse, "a unit", 'like "kg*m^2"')
 
 
 # -------- table -----------------------------------------------------------------------------------------------

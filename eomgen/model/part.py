@@ -12,7 +12,8 @@ from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.fields import Leaf, WrittenEquation, in_si
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Unit, other_words
+from eomgen.model.quantities import Unit
+from eomgen.symbolic.expression import Expression, other_words
 from eomgen.symbolic.print import Symbol
 
 Made = TypeVar("Made")

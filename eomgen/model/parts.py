@@ -45,8 +45,9 @@ from eomgen.model.kinds import (
 )
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule, part_schema
+from eomgen.model.quantities import Unit
 from eomgen.model.shapes import Shape
-from eomgen.symbolic.expression import Expression, Unit
+from eomgen.symbolic.expression import Expression
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 """of the JSON Schema of a model file"""

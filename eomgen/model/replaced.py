@@ -23,10 +23,11 @@ from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.fields import Table, WrittenEquation, is_mixed
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
+from eomgen.model.quantities import Typed, Unit, parse_typed_equation
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.model.typed import Settled, Typing, shown
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression import Expression, Typed, Unit, parse_typed_equation, parse_unit
+from eomgen.symbolic.expression import Expression
 
 Values = Mapping[str, Typed]
 
@@ -148,7 +149,7 @@ def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
 def _with_value(part: Any, key: str, value: Expression) -> Any:
     """A part with another value; one with names in it is in SI, and so the part is."""
     in_si = part.unit is not None and is_mixed(value, part.unit)
-    return altered(part, **{key: value}, **({"unit": parse_unit(part.unit.si)} if in_si else {}))
+    return altered(part, **{key: value}, **({"unit": Unit.parse(part.unit.si)} if in_si else {}))
 
 
 def _settled(typing: Typing, name: str, typed: Typed, option: str) -> Settled:

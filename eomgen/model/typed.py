@@ -18,20 +18,9 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import nearest
 from eomgen.model.dimensions import Inferred, inferred
 from eomgen.model.fields import WrittenEquation
-from eomgen.symbolic.expression import (
-    Dimension,
-    Expression,
-    Typed,
-    Unit,
-    Walk,
-    dimension_of_unit,
-    in_words,
-    is_plain,
-    parse,
-    quoted,
-    read_typed,
-    unit_for_name,
-)
+from eomgen.model.inference import Dimension, Walk, dimension_of_unit, in_words, quoted
+from eomgen.model.quantities import Typed, Unit, read_typed, unit_for_name
+from eomgen.symbolic.expression import Expression, parse
 
 
 @dataclass(frozen=True)
@@ -87,7 +76,7 @@ class Typing:
             return replace(typed, units=None), ()
         for k, (side, unit) in enumerate(zip((typed.left, typed.right), typed.units, strict=True)):
             other = (typed.right, typed.left)[k]
-            if unit is None and (not is_plain(side) or side.literal == 0 or is_plain(other)):
+            if unit is None and (not side.is_plain or side.literal == 0 or other.is_plain):
                 continue
             settled = self._settled(other, side, unit, side.text if unit is None else f"{side.text} {unit}")
             sides[k] = settled.value
@@ -98,7 +87,7 @@ class Typing:
 
     def _settled(self, of: Expression, value: Expression, unit: Unit | None, typed: str) -> Settled:
         """A value of something, in SI."""
-        own, needed, plain = self._declared(of), self._needed(of), is_plain(value)
+        own, needed, plain = self._declared(of), self._needed(of), value.is_plain
         if unit is None and self.declared and plain:
             unit = self._unit_of_plain(of, value, own)
         if unit is not None:

@@ -7,9 +7,11 @@ from collections.abc import Iterable
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Names, inferred
+from eomgen.model.inference import Dimension, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model, Output
-from eomgen.symbolic.expression import Dimension, Fraction, Unit, dimension_of_unit, parse_unit, single_call
+from eomgen.model.quantities import Unit
+from eomgen.symbolic.expression import Fraction, parse
 
 ALWAYS = {"t": "s", "energy": "J"}
 OUTPUT = " (output)"  # after the name of an output's column, where another column has that name
@@ -58,7 +60,7 @@ def _of_answer(known: Names, part: Output) -> Unit | None:
     calls = part.value.calls
     function = FUNCTIONS.get(calls[0].name) if len(part.value.code) == len(calls) == 1 else None
     if function is not None and not function.per and function.like is None:
-        return parse_unit(function.unit)
+        return Unit.parse(function.unit)
     return _in_si(known.inference.reduced(known.walk().of(part.value)))
 
 
@@ -82,7 +84,7 @@ def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, s
     names = {
         name: known.declared[name].text if name in known.declared else unit_text(x) for name, x in found.found.items()
     }
-    power = dimension_of_unit(parse_unit("W"))
+    power = dimension_of_unit(Unit.parse("W"))
     return {
         "names": names,
         "equations": {u: unit_text(power.times(known.of(u), -1)) for u in speeds},
@@ -94,10 +96,10 @@ def _unit(known: Names, name: str) -> Unit | None:
     if name.endswith(OUTPUT):
         return None
     if name in ALWAYS:
-        return parse_unit(ALWAYS[name])
-    call = single_call(name)
+        return Unit.parse(ALWAYS[name])
+    call = parse(name, references=True).call
     if call is not None and call.name in FUNCTIONS and not FUNCTIONS[call.name].per:
-        return parse_unit(FUNCTIONS[call.name].unit)
+        return Unit.parse(FUNCTIONS[call.name].unit)
     declared = known.declared.get(name.rstrip("'"))
     if declared is not None:
         if declared.text == "1":
@@ -112,4 +114,4 @@ def _unit(known: Names, name: str) -> Unit | None:
 def _in_si(dimension: Dimension) -> Unit | None:
     """The unit of SI; None of a number, of what is not known, and of a root that is no unit."""
     whole = dimension and not dimension.unknowns and all(n.denominator == 1 for n in map(Fraction, dimension.values()))
-    return parse_unit(str(dimension)) if whole else None
+    return Unit.parse(str(dimension)) if whole else None

@@ -34,11 +34,11 @@ from eomgen.documents import (
     rest_picture,
 )
 from eomgen.frozen import dataclass
-from eomgen.model import Model
+from eomgen.model import Model, Unit
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, curve_path, element, in_a_row, stepped
 from eomgen.simulation import Trajectory
-from eomgen.symbolic.expression import Graph, Node, Unit
+from eomgen.symbolic.expression import Graph, Node
 from eomgen.symbolic.print import Notation
 
 OFTEN = 4  # times that a look is said before it has a name

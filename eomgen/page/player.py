@@ -19,7 +19,7 @@ from eomgen.codegen import TestVector, compiled, javascript_expression, vectors
 from eomgen.documents import notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.model import Model, contacts_of, pieces_of, units_of
+from eomgen.model import Model, Unit, contacts_of, pieces_of, units_of
 from eomgen.page.live import Live, live_of, single_reactions
 from eomgen.page.markup import in_a_script, mathml, packed
 from eomgen.page.packing import packed_columns
@@ -37,7 +37,6 @@ from eomgen.proof import (
 from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
 from eomgen.simulation import Configuration, PhaseModel, Trajectory
 from eomgen.study import Study
-from eomgen.symbolic.expression import parse_unit
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 from eomgen.version import __version__
 
@@ -580,7 +579,7 @@ def _other_slider(each: Mapping[str, Any], known: Mapping[str, float]) -> str:
 def _other_unit(each: Mapping[str, Any], declared: str) -> str:
     if each["unit"] != ("" if declared == "1" else declared) and declared:
         return f"[{each['unit']}] for [{declared}]"
-    size = parse_unit(each["unit"]).size if each["unit"] else 1.0
+    size = Unit.parse(each["unit"]).size if each["unit"] else 1.0
     return differing(float(each["size"]), float(size))
 
 

@@ -15,12 +15,11 @@ from eomgen.codegen import TestVector, compiled
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import Model, ModelOrPath, Taken, TypedNumbers, Values, model_at
+from eomgen.model import Model, ModelOrPath, Taken, Typed, TypedNumbers, Values, model_at, seconds
 from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import run_of_a_page
-from eomgen.symbolic.expression import Typed, seconds
 from eomgen.symbolic.numeric import doing
 
 SAMPLES = 401  # of a run in a page

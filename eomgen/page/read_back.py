@@ -14,6 +14,7 @@ import numpy as np
 
 from eomgen.documents import HOW, Formula, PageComparison, Wanted, flat, formula_said, wanted_of
 from eomgen.errors import ExpressionError
+from eomgen.model import Unit
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.formats import FilesByName
 from eomgen.proof import (
@@ -34,7 +35,6 @@ from eomgen.proof import (
     typeset,
 )
 from eomgen.simulation import Trajectory
-from eomgen.symbolic.expression import parse_unit
 from eomgen.symbolic.numeric import NoValue, tolerances
 
 CURVES = "curves and tables of the report, read back, are those of the run"
@@ -194,7 +194,7 @@ def _unlike_curves(run: Trajectory, caption: str, read: ReadCurves, named: Mappi
     if not np.isfinite(read.near).all():
         raise NoValue("numbers at an axis are alike")
     unit = _UNIT.search(caption)
-    size = parse_unit(unit[1].replace("·", "*")).size if unit is not None and unit[1] != "s" else 1.0
+    size = Unit.parse(unit[1].replace("·", "*")).size if unit is not None and unit[1] != "s" else 1.0
     columns = {spoken(name): column / size for name, column in run.columns().items()}
     energy = columns.pop("energy", None)
     if energy is not None:

@@ -16,13 +16,13 @@ import numpy as np
 
 from eomgen.codegen import determinate
 from eomgen.frozen import dataclass
-from eomgen.model import FUNCTIONS, OUTPUT, Model
+from eomgen.model import FUNCTIONS, OUTPUT, Model, Unit
 from eomgen.proof.at_a_state import NumericState, off_by
 from eomgen.proof.check import Check, Tally, checked, differing
 from eomgen.proof.emitted_code import WORK
 from eomgen.proof.instant import second_definition
 from eomgen.simulation import Phase, Trajectory
-from eomgen.symbolic.expression import Expression, Fraction, Scalar, order, parse_unit
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, order
 from eomgen.symbolic.numeric import NoValue, tolerances
 
 NAME, HOW = "reported values of the run are those of its states", "states by their names, texts read back"
@@ -99,9 +99,9 @@ class _RunReported:
         if unit is None:
             return match["name"], 1.0
         wanted = self._unit(match["name"])
-        if wanted is not None and parse_unit(wanted).dimension != parse_unit(unit).dimension:
+        if wanted is not None and Unit.parse(wanted).dimension != Unit.parse(unit).dimension:
             raise _Unlike(f"[{unit}] for [{wanted}]")
-        return match["name"], parse_unit(unit).size
+        return match["name"], Unit.parse(unit).size
 
     def _unit(self, name: str) -> str | None:
         """Unit of a column by the kind of its quantity."""
@@ -198,7 +198,7 @@ class _RunReported:
 
     def _quantity(self, name: str, reported: Mapping[str, Any]) -> str:
         found = self.run.quantities[name]
-        size = parse_unit(reported["unit"]).size if reported["unit"] else 1.0
+        size = Unit.parse(reported["unit"]).size if reported["unit"] else 1.0
         values = reported["value"] if isinstance(reported["value"], list) else [reported["value"]]
         rights = found.value if isinstance(found.value, tuple) else (found.value,)
         if len(values) != len(rights) or len(reported["t"]) != len(found.t):
@@ -216,7 +216,7 @@ class _RunReported:
             return f"{len(rows)} rows for {len(rights)}"
         for k, ((head, text, when), right) in enumerate(zip(rows, rights, strict=True)):
             unit = _HEAD.fullmatch(head)
-            size = parse_unit(unit["unit"]).size if unit is not None and unit["unit"] else 1.0
+            size = Unit.parse(unit["unit"]).size if unit is not None and unit["unit"] else 1.0
             wrong = "" if right is None else _apart(float(text) * size, right, tolerances.NINE_DIGITS)
             if right is not None and k < len(found.t):
                 instant = re.fullmatch(r"t = (.*) s", when)

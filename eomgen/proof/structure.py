@@ -47,7 +47,7 @@ from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import acting_otherwise
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
-from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, single_call, symbols_of
+from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
 
 IN_NUMBERS = "floating point"
@@ -383,7 +383,7 @@ class _Proof:
 
     def _named(self, name: str, x: np.ndarray) -> float:
         table = {n.name: n for n in named_reactions(self.found.structure.balance)}
-        known = {str(single_call(n)): n for n in table} | {n: n for n in table}
+        known = {str(parse(n, references=True).call): n for n in table} | {n: n for n in table}
         combination = table[known[name]].combination
         return float(sum(self.one(k) * x[j] for j, k in combination.items()))
 

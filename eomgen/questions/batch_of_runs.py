@@ -24,10 +24,12 @@ from eomgen.model import (
     Model,
     Parameter,
     Table,
+    Typed,
     TypedNumbers,
     altered,
     are_several,
     nearest,
+    seconds,
     typed_values,
     with_inputs,
     with_values,
@@ -51,7 +53,7 @@ from eomgen.simulation import (
     reached_words,
     refuse_bad_run,
 )
-from eomgen.symbolic.expression import Expression, Typed, seconds
+from eomgen.symbolic.expression import Expression
 from eomgen.symbolic.numeric import check_patience, doing, tolerances
 
 OfRuns = Mapping[str, Any]

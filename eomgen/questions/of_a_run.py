@@ -31,10 +31,11 @@ from eomgen.model import (
     equation_typed,
     formula_at,
     numeric_parameters,
+    parse_typed_equation,
 )
 from eomgen.proof import Check, Tally, differing
 from eomgen.simulation import DenseMotion, OutputColumns, PhaseRun, Plan, dense_motion
-from eomgen.symbolic.expression import Call, Expression, parse, parse_typed_equation
+from eomgen.symbolic.expression import Call, Expression, parse
 from eomgen.symbolic.numeric import ChebyshevPieces, resolved_curve, tolerances
 
 

@@ -46,6 +46,7 @@ from eomgen.model import (
     Model,
     ModelOrPath,
     Output,
+    Unit,
     Values,
     model_at,
     units_of_outputs,
@@ -57,7 +58,7 @@ from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.study import Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact import book_form
-from eomgen.symbolic.expression import Call, Graph, Node, Scalar, Unit, depends_on, order, substituted, symbols_of
+from eomgen.symbolic.expression import Call, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import (
     FLOAT,
     PatienceEnded,

@@ -25,6 +25,7 @@ from eomgen.model import (
     Model,
     Parameter,
     Table,
+    Typed,
     Valued,
     Values,
     WrittenEquation,
@@ -32,6 +33,7 @@ from eomgen.model import (
     law_of,
     nearest,
     part_of_values,
+    seconds,
     with_values,
 )
 from eomgen.proof import Certificate, checked, rows_that_stay
@@ -55,7 +57,7 @@ from eomgen.simulation import (
     refuse_bad_run,
     through,
 )
-from eomgen.symbolic.expression import Expression, Typed, as_expression, seconds, single_call
+from eomgen.symbolic.expression import Expression, as_expression, parse
 from eomgen.symbolic.numeric import tolerances
 
 SAMPLES = 101
@@ -266,7 +268,7 @@ def _formulas(model: Model, requested: tuple[str, ...]) -> dict[str, Expression]
 def _is_reaction(text: str) -> bool:
     """True if the text is one function of reactions; its column stands among the reactions by this name."""
     try:
-        call = single_call(text)
+        call = parse(text, references=True).call
     except ExpressionError:
         return False
     return call is not None and call.name in FUNCTIONS and FUNCTIONS[call.name].source == BALANCE

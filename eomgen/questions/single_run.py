@@ -19,7 +19,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
 from eomgen.mechanics.free_bodies import with_friction
-from eomgen.model import Output, WrittenEquation
+from eomgen.model import Output, Typed, WrittenEquation
 from eomgen.proof import (
     Certificate,
     Check,
@@ -60,7 +60,7 @@ from eomgen.simulation import (
     with_outputs,
     with_reactions,
 )
-from eomgen.symbolic.expression import Expression, Typed
+from eomgen.symbolic.expression import Expression
 from eomgen.symbolic.numeric import NoValue, PatienceEnded, doing, keep_what_there_is, tolerances
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant

@@ -32,10 +32,13 @@ from eomgen.model import (
     ModelOrPath,
     Output,
     Table,
+    Typed,
+    Unit,
     Values,
     model_at,
     names_of,
     numeric_parameters,
+    seconds,
     units_of,
 )
 from eomgen.proof import Certificate, Check, Tally, checked, differing
@@ -44,22 +47,7 @@ from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, c
 from eomgen.simulation import instants_of
 from eomgen.study import Study, study_of
 from eomgen.symbolic.exact import book_form, legible
-from eomgen.symbolic.expression import (
-    Call,
-    Expression,
-    Fraction,
-    Node,
-    Scalar,
-    Typed,
-    Unit,
-    jacobian,
-    parse,
-    parse_unit,
-    seconds,
-    single_call,
-    substituted,
-    tangent,
-)
+from eomgen.symbolic.expression import Call, Expression, Fraction, Node, Scalar, jacobian, parse, substituted, tangent
 from eomgen.symbolic.numeric import NoValue, Work, doing, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
 
@@ -143,7 +131,7 @@ class Sensitivity(Result):
         Reported values in units and texts are compared with the numbers in SI, and formulas with the requests.
         """
         off = (
-            f"{named(*pair)} is {found.value * parse_unit(found.unit or '1').size:.9g} in SI for {self.in_si[pair]:.9g}"
+            f"{named(*pair)} is {found.value * Unit.parse(found.unit or '1').size:.9g} in SI for {self.in_si[pair]:.9g}"
             for pair, found in self.slopes.items()
             if found.value is not None and pair in self.in_si and not self._as_reported(pair, found)
         )
@@ -155,7 +143,7 @@ class Sensitivity(Result):
         for pair, slope in self.slopes.items():
             if slope.exact is not None and pair in self.in_si:
                 texts.add(named(*pair), partial(self._misread, slope.exact, self.in_si[pair]))
-        values = {of: x.value * parse_unit(x.unit or "1").size for of, x in self.values.items() if x.value is not None}
+        values = {of: x.value * Unit.parse(x.unit or "1").size for of, x in self.values.items() if x.value is not None}
         slopes = checks_of(self.model, Derivatives(values, self.in_si, self.run))
         return Certificate((*slopes.checks, *reported, *texts.checks()))
 
@@ -196,7 +184,7 @@ class Sensitivity(Result):
     def _as_reported(self, pair: tuple[str, str], found: Quantity) -> bool:
         due = self.in_si[pair]
         return found.value is not None and math.isclose(
-            found.value * parse_unit(found.unit or "1").size,
+            found.value * Unit.parse(found.unit or "1").size,
             due,
             rel_tol=tolerances.COMPUTED,
             abs_tol=tolerances.COMPUTED**2,
@@ -218,9 +206,9 @@ def unit_of_slope(model: Model, of: str, to: str) -> Unit:
     """The unit of a derivative: of the formula over that of the name, as the model has them; 1 of a number."""
     above, below = _unit_of(model, of), _unit_of(model, to)
     if below is None:
-        return above or parse_unit("1")
+        return above or Unit.parse("1")
     under = f"({below.text})" if set(below.text) & set("*/") else below.text
-    return parse_unit(f"{'1' if above is None else above.text}/{under}")
+    return Unit.parse(f"{'1' if above is None else above.text}/{under}")
 
 
 def _unit_of(model: Model, text: str) -> Unit | None:
@@ -277,7 +265,7 @@ def sensitivity(
 
 def _alone(model: Model, of: str, to: str, time: float) -> Sensitivity:
     """One derivative; of "last(F)" that of F at the end of a run."""
-    call = single_call(of)
+    call = parse(of, references=True).call
     if call is not None and call.name == "last":
         return sensitivity(model, of[of.index("(") + 1 : -1], to, time=time, samples=LAST)
     return sensitivity(model, of, to)

@@ -12,14 +12,13 @@ import numpy as np
 
 from eomgen.codegen import RightHandSide
 from eomgen.errors import UsageError
-from eomgen.model import are_several, typed_values
+from eomgen.model import Typed, are_several, seconds, typed_values
 from eomgen.simulation.constraint_drift import Nearness, Projection
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping, measured
 from eomgen.simulation.result import Kept, Phase, Trajectory
 from eomgen.simulation.singular import Flow, march_across
 from eomgen.simulation.solvers import HEYOKA, METHODS, Slope
-from eomgen.symbolic.expression import Typed, seconds
 from eomgen.symbolic.numeric import tolerances
 
 SAMPLES = 1001

@@ -15,8 +15,7 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.frozen import Pickled, dataclass
-from eomgen.model import OUTPUT
-from eomgen.symbolic.expression import Unit
+from eomgen.model import OUTPUT, Unit
 from eomgen.symbolic.numeric import tolerances
 
 NO_EQUATIONS = "nothing is known of the equations behind these numbers"  # given by hand, or read from a pickle

@@ -21,11 +21,13 @@ from eomgen.model import (
     Model,
     ModelOrPath,
     Table,
+    Typed,
     TypedNumbers,
     bytes_at,
     loads,
     range_of,
     refuse_what_is_not_set,
+    seconds,
     typed_values,
     units_of,
 )
@@ -48,7 +50,6 @@ from eomgen.sweeps.workers import (
     rows_here,
     value_of_run,
 )
-from eomgen.symbolic.expression import Typed, seconds
 from eomgen.symbolic.numeric import another_stretch, tolerances
 
 PLAN, LEDGER, TABLE, PARQUET, CRITICAL = "plan.json", "ledger.sqlite", "table.csv", "table.parquet", "critical.csv"

@@ -36,14 +36,13 @@ from eomgen.mechanics.dynamics import system_of, with_nodes_balanced
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import refuse_loose, structure_of
 from eomgen.mechanics.statics import modes_at_rest, released_in
-from eomgen.model import Model, ModelOrPath, Values, model_at
+from eomgen.model import Model, ModelOrPath, Typed, Values, model_at
 from eomgen.page import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof import Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, page_stepping, page_time
 from eomgen.questions import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation import Stepping, Trajectory
-from eomgen.symbolic.expression import Typed
 from eomgen.symbolic.numeric import tolerances
 from eomgen.verbs.outcome import with_start_reported
 

@@ -31,7 +31,7 @@ from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.generated import Generated
 from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import Model, ModelOrPath, Values, bytes_at, loads, model_at, units_of
+from eomgen.model import Model, ModelOrPath, Typed, Values, bytes_at, loads, model_at, seconds, units_of
 from eomgen.page import (
     FORMATS,
     PLAYER,
@@ -61,7 +61,6 @@ from eomgen.proof import Certificate, Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, kinematics, run_of_a_page, solve
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
-from eomgen.symbolic.expression import Typed, seconds
 from eomgen.symbolic.numeric import doing
 from eomgen.verbs.assignments import nearest_name
 from eomgen.verbs.outcome import with_start_reported

@@ -18,11 +18,10 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
 from eomgen.mechanics.constraints import limits_passed
-from eomgen.model import Model, WrittenEquation, left_tables, units_of
+from eomgen.model import Model, Unit, WrittenEquation, left_tables, units_of
 from eomgen.proof import ReportedRun, run_reported
 from eomgen.questions import run as simulated
 from eomgen.simulation import Accuracy, Stepping, Trajectory
-from eomgen.symbolic.expression import Unit
 
 MOST_REPORTED = 20  # phases in the text
 MOST_AGAIN = 500_000  # evaluations of a run that is made again, finer, to know its error

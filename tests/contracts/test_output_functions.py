@@ -22,10 +22,10 @@ from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.outputs import ALL, FUNCTIONS
 from eomgen.model.outputs import points as velocity
 from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
+from eomgen.model.quantities import Unit
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.instant import second_definition
 from eomgen.symbolic.expression.text import parse
-from eomgen.symbolic.expression.units import Unit, parse_unit
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import NoValue
 
@@ -327,7 +327,7 @@ def test_its_unit_is_the_one_in_which_its_number_grows(name, call):
     factor = scaled(function.dimension)
     for k in function.per:
         argument = requested.args[k].name
-        unit = parse_unit(GAPS[argument]) if argument in GAPS else model.coordinates.get(argument).unit
+        unit = Unit.parse(GAPS[argument]) if argument in GAPS else model.coordinates.get(argument).unit
         factor /= 1 if unit is None else scaled(unit)
         factor *= SIZES["time"] if "speed" in function.kinds[k] else 1
     found = value_of(name, call)

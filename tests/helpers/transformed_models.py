@@ -14,7 +14,7 @@ from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
-from eomgen.symbolic.expression.units import parse_unit
+from eomgen.model.quantities import Unit
 
 Tables = dict[str, Any]
 ANGLE = "7/10"
@@ -203,7 +203,7 @@ SCALES = {"length": Fraction(3, 2), "mass": Fraction(5, 7), "time": Fraction(4, 
 
 def factor_of(unit: str | None) -> Fraction:
     """How many of the new units of this dimension one of SI is."""
-    dims = dict(zip(SCALES, (0, 0, 0) if unit is None else parse_unit(unit).dimension, strict=True))
+    dims = dict(zip(SCALES, (0, 0, 0) if unit is None else Unit.parse(unit).dimension, strict=True))
     return Fraction(math.prod(SCALES[d] ** n for d, n in dims.items()))
 
 

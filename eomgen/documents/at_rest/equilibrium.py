@@ -47,7 +47,7 @@ from eomgen.mechanics.equilibrium import (
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.linearization import first_order_of
 from eomgen.mechanics.start import known_exactly, known_parameters, shown_numbers
-from eomgen.model import Model, in_own_unit
+from eomgen.model import Model, Unit, in_own_unit
 from eomgen.proof import (
     BY_MOTION,
     NOTHING_ACCELERATED,
@@ -57,7 +57,7 @@ from eomgen.proof import (
     resting_checks,
     unchecked,
 )
-from eomgen.symbolic.expression import Node, Scalar, Unit
+from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 

@@ -33,7 +33,6 @@ from eomgen.symbolic.expression import (
     minus,
     parse,
     plus,
-    single_call,
     substituted,
     times,
     vector_of,
@@ -117,7 +116,7 @@ def _way(text: str) -> tuple[str, tuple[str, ...]]:
 
 def _call(requested: str) -> Call:
     try:
-        call = single_call(requested)
+        call = parse(requested, references=True).call
     except ExpressionError as error:
         raise UsageError(f"influence line: '{requested}': {error.what}", fix=error.fix) from error
     if call is None:

@@ -34,7 +34,7 @@ from eomgen.mechanics.free_bodies import (
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, nearest
 from eomgen.symbolic.exact import equal_at_random_states, simplest
-from eomgen.symbolic.expression import Node, Scalar, depends_on, over, single_call, substituted, times
+from eomgen.symbolic.expression import Node, Scalar, depends_on, over, parse, substituted, times
 from eomgen.symbolic.numeric import Work
 from eomgen.symbolic.print import text_size
 
@@ -361,7 +361,7 @@ def _one_of(names: Sequence[str], requested: str) -> str:
         UsageError: there is none.
     """
     try:
-        call = single_call(requested)
+        call = parse(requested, references=True).call
     except ExpressionError:
         call = None
     name = requested if call is None else name_of(call, names)

@@ -13,19 +13,9 @@ from eomgen.frozen import dataclass
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import Leaf
+from eomgen.model.quantities import Unit
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression import (
-    AnyScalar,
-    Call,
-    Expression,
-    Matrix,
-    Numbers,
-    Reference,
-    Unit,
-    Vector,
-    parse,
-    parse_unit,
-)
+from eomgen.symbolic.expression import AnyScalar, Call, Expression, Matrix, Numbers, Reference, Vector, parse
 
 # -------- context ---------------------------------------------------------------------------------------------
 # Interfaces for output functions: a system over the graph, and the same system in numbers for the second way.
@@ -276,7 +266,7 @@ class OutputFunction:
     @property
     def dimension(self) -> Unit:
         """Dimension of its unit; of what is `per` an argument without that argument's share."""
-        return parse_unit(self.unit)
+        return Unit.parse(self.unit)
 
 
 def along(*names: str) -> tuple[str, ...]:

@@ -29,28 +29,6 @@ from eomgen.symbolic.expression.derivatives import tangent as tangent
 
 # The derivatives of the outputs by each symbol, in a sweep for each, through what depends on it alone
 from eomgen.symbolic.expression.derivatives import tangents as tangents
-from eomgen.symbolic.expression.dimensions import NUMBER as NUMBER
-from eomgen.symbolic.expression.dimensions import SECOND as SECOND
-from eomgen.symbolic.expression.dimensions import TIME as TIME
-
-# Two terms that ought to have one dimension and have not
-from eomgen.symbolic.expression.dimensions import Clash as Clash
-
-# The exponents of m, kg, s and of unknowns; none is 0
-from eomgen.symbolic.expression.dimensions import Dimension as Dimension
-
-# Equations between dimensions, solved for the unknown ones; grows by every equation
-from eomgen.symbolic.expression.dimensions import Inference as Inference
-
-# One pass over an expression
-from eomgen.symbolic.expression.dimensions import Walk as Walk
-
-# Dimension of a declared unit
-from eomgen.symbolic.expression.dimensions import dimension_of_unit as dimension_of_unit
-
-# "in N*m", "a number"
-from eomgen.symbolic.expression.dimensions import in_words as in_words
-from eomgen.symbolic.expression.dimensions import quoted as quoted
 from eomgen.symbolic.expression.formula import NAMES as NAMES
 
 # A function of the outputs at its arguments: `speed(bar.end)`, `frequency(1)`
@@ -258,11 +236,14 @@ from eomgen.symbolic.expression.text import parse_equation as parse_equation
 # The fix of diff(phi, t), ddot(phi), phi(t) or pow(phi, 2), or ""
 from eomgen.symbolic.expression.text import rate_of_call as rate_of_call
 
-# The function of the outputs that a text calls; None where it is another expression
-from eomgen.symbolic.expression.text import single_call as single_call
+# The first position from here on that holds no space
+from eomgen.symbolic.expression.text import skip_space as skip_space
 
 # A Greek letter by its name ("theta"), "" of others
 from eomgen.symbolic.expression.text import spelled as spelled
+
+# The token that begins at or after this position
+from eomgen.symbolic.expression.text import token_at as token_at
 from eomgen.symbolic.expression.traversal import FREE as FREE
 
 # Number of operations that an evaluation takes
@@ -282,25 +263,3 @@ from eomgen.symbolic.expression.traversal import order as order
 
 # (graph, outputs) with the constants that have no graph of their own taken into that of the others
 from eomgen.symbolic.expression.traversal import united as united
-from eomgen.symbolic.expression.units import Typed as Typed
-
-# factor * pi^pi_power, in units of SI
-from eomgen.symbolic.expression.units import Unit as Unit
-
-# True if it is a number: no names but pi, and no function of an output
-from eomgen.symbolic.expression.units import is_plain as is_plain
-
-# Both sides of `left = right`, each with its unit
-from eomgen.symbolic.expression.units import parse_typed_equation as parse_typed_equation
-
-# The unit that a text writes: `kg*m^2`, `m/s^2`, `kg m^2`, `N/(m*s)`; `1` is the plain number
-from eomgen.symbolic.expression.units import parse_unit as parse_unit
-
-# (the expression, its own unit or None) of a number, a text, (number, unit), a quantity of pint
-from eomgen.symbolic.expression.units import read_typed as read_typed
-
-# A time [s]: a number, "500 ms", (500, "ms"), a quantity of pint; a plain number is in seconds
-from eomgen.symbolic.expression.units import seconds as seconds
-
-# The fix of `5*m` or `45*deg` where the name was meant as a unit, "write 5 m"; "" where the name is no unit
-from eomgen.symbolic.expression.units import unit_for_name as unit_for_name

@@ -262,6 +262,17 @@ class Expression:
         return self.code[0][1] if len(self.code) == 1 and self.code[0][0] == "number" else None
 
     @property
+    def is_plain(self) -> bool:
+        """True if it is a number: no names but pi, and no function of an output."""
+        return self.names <= {"pi"} and not self.calls
+
+    @property
+    def call(self) -> Call | None:
+        """The function of the outputs that this is, or None where it is another expression."""
+        calls = tuple(self.calls)
+        return calls[0] if len(calls) == 1 and len(self.code) == 1 else None
+
+    @property
     def occurrences(self) -> tuple[tuple[str, int], ...]:
         """Every (name, column) as written, those inside the arguments of calls too."""
         found: list[tuple[str, int]] = []

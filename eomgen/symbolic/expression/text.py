@@ -214,17 +214,6 @@ def parse_equation(text: str, *, references: bool = True) -> tuple[Expression, E
     return left, right
 
 
-def single_call(text: str) -> Call | None:
-    """The function of the outputs that a text calls; None where it is another expression.
-
-    Raises:
-        ExpressionError: it is no expression.
-    """
-    expression = parse(text, references=True)
-    calls = tuple(expression.calls)
-    return calls[0] if len(calls) == 1 and len(expression.code) == 1 else None
-
-
 def as_expression(value: Any, *, references: bool = False) -> Expression:
     """The expression of a number or a text; a float means the decimal that it is written as (0.1 is 1/10).
 

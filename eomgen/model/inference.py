@@ -15,10 +15,8 @@ from typing import Any
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.formula import Call, Expression
-from eomgen.symbolic.expression.rational import EXACT, Fraction
-from eomgen.symbolic.expression.text import token_at
-from eomgen.symbolic.expression.units import Unit
+from eomgen.model.quantities import Unit
+from eomgen.symbolic.expression import EXACT, Call, Expression, Fraction, token_at
 
 BASE = ("kg", "m", "s")
 LARGEST_COEFFICIENT = 12  # of a number that textbooks write before parameters: 1/2 k x^2, 4/3 r, m l^2/12
@@ -49,6 +47,11 @@ class Dimension(dict[Any, Fraction]):
     def raised(self, power: Any) -> Dimension:
         return Dimension().times(self, power)
 
+    @classmethod
+    def of_time(cls) -> Dimension:
+        """The second."""
+        return cls({"s": Fraction(1)})
+
     @property
     def unknowns(self) -> list[Any]:
         return [base for base in self if base not in BASE]
@@ -69,7 +72,7 @@ def _power(base: str, n: Any) -> str:
 
 
 NUMBER = Dimension()
-SECOND = Dimension({"s": Fraction(1)})
+SECOND = Dimension.of_time()
 
 
 _KINDS = {
@@ -361,7 +364,7 @@ class Walk:
 
     def _fix(self, needed: Dimension, place: Place) -> str:
         """The same term with one power, or one rate, changed, where that fits and no other such change does."""
-        from eomgen.symbolic.expression.text import parse
+        from eomgen.symbolic.expression import parse
 
         try:
             variants = list(_variants(place.text, self.moves))

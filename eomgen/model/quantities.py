@@ -14,9 +14,16 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression.formula import Expression, over
-from eomgen.symbolic.expression.rational import Fraction, fraction_of
-from eomgen.symbolic.expression.text import as_expression, parse, parse_equation, skip_space
+from eomgen.symbolic.expression import (
+    Expression,
+    Fraction,
+    as_expression,
+    fraction_of,
+    over,
+    parse,
+    parse_equation,
+    skip_space,
+)
 
 LONGEST = 80  # characters
 LARGEST_EXPONENT = 9
@@ -43,6 +50,40 @@ class Unit:
     time: int = 0
     angle: int = 0
     cycles: int = 0
+
+    @classmethod
+    def parse(cls, text: str) -> Unit:
+        """The unit that a text writes: `kg*m^2`, `m/s^2`, `kg m^2`, `N/(m*s)`; `1` is the plain number.
+
+        Raises:
+            ExpressionError: there is no such unit; column and length say where, fix offers the nearest.
+        """
+        if not text.strip() or len(text) > LONGEST:
+            raise ExpressionError(
+                "a unit is missing" if not text.strip() else "the unit is too long", fix="write kg*m^2"
+            )
+        total, opened, group, direction, needed = Unit(text), -1, 1, 1, True
+        position = skip_space(text, 0)
+        while position < len(text):
+            character = text[position]
+            if needed and character == "(" and opened < 0:
+                opened, group, direction = position, direction, 1
+            elif not needed and character == ")" and opened >= 0:
+                opened, group = -1, 1
+            elif not needed and character in "*·/":
+                needed, direction = True, -1 if character == "/" else 1
+            elif piece := _PIECE.match(text, position):
+                total = total.times(_unit_of(piece).raised(group * direction * _power_of(piece)))
+                needed, direction, position = False, 1, piece.end() - 1
+            else:
+                raised = position and text[position - 1].isalpha() and character.isdigit()
+                fix = f"write {text[:position]}^{text[position:]}" if raised else "write kg*m^2"
+                raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, fix)
+            position = skip_space(text, position + 1)
+        if needed or opened >= 0:
+            what = "'(' is never closed" if opened >= 0 else "a unit is missing at the end"
+            raise ExpressionError(what, max(opened, 0) if opened >= 0 else len(text) - 1)
+        return total
 
     def __str__(self) -> str:
         return self.text
@@ -165,38 +206,6 @@ _PIECE = re.compile(
 _RAISED = str.maketrans("⁻¹²³⁴", "-1234")
 
 
-def parse_unit(text: str) -> Unit:
-    """The unit that a text writes: `kg*m^2`, `m/s^2`, `kg m^2`, `N/(m*s)`; `1` is the plain number.
-
-    Raises:
-        ExpressionError: there is no such unit; column and length say where, fix offers the nearest.
-    """
-    if not text.strip() or len(text) > LONGEST:
-        raise ExpressionError("a unit is missing" if not text.strip() else "the unit is too long", fix="write kg*m^2")
-    total, opened, group, direction, needed = Unit(text), -1, 1, 1, True
-    position = skip_space(text, 0)
-    while position < len(text):
-        character = text[position]
-        if needed and character == "(" and opened < 0:
-            opened, group, direction = position, direction, 1
-        elif not needed and character == ")" and opened >= 0:
-            opened, group = -1, 1
-        elif not needed and character in "*·/":
-            needed, direction = True, -1 if character == "/" else 1
-        elif piece := _PIECE.match(text, position):
-            total = total.times(_unit_of(piece).raised(group * direction * _power_of(piece)))
-            needed, direction, position = False, 1, piece.end() - 1
-        else:
-            raised = position and text[position - 1].isalpha() and character.isdigit()
-            fix = f"write {text[:position]}^{text[position:]}" if raised else "write kg*m^2"
-            raise ExpressionError(f"{character!r} has no place in the unit '{text}'", position, fix)
-        position = skip_space(text, position + 1)
-    if needed or opened >= 0:
-        what = "'(' is never closed" if opened >= 0 else "a unit is missing at the end"
-        raise ExpressionError(what, max(opened, 0) if opened >= 0 else len(text) - 1)
-    return total
-
-
 def _unit_of(piece: re.Match[str]) -> Unit:
     name = piece.group("unit")
     if name not in UNITS:
@@ -247,7 +256,7 @@ def seconds(typed: Any) -> float:
     refused = UsageError(f"{typed!r} is no time", fix="write 5, or '5 s'")
     try:
         value, unit = read_typed(typed)
-        if not is_plain(value) or not (unit is None or unit.fits(parse_unit("s"))):
+        if not value.is_plain or not (unit is None or unit.fits(Unit.parse("s"))):
             raise refused
         found = float((value if unit is None else unit.expression_in_si(value)).evaluate({"pi": math.pi}))
     except (ExpressionError, TypeError, ValueError, ArithmeticError):
@@ -266,19 +275,14 @@ def read_typed(typed: Any) -> tuple[Expression, Unit | None]:
     if isinstance(typed, str):
         return parse_typed(typed)
     if isinstance(typed, tuple) and len(typed) == 2 and isinstance(typed[1], str):
-        return as_expression(_plain(typed[0])), parse_unit(typed[1])
+        return as_expression(_plain(typed[0])), Unit.parse(typed[1])
     if hasattr(typed, "to_base_units") and hasattr(typed, "dimensionality"):
         base = typed.to_base_units()
         if not base.dimensionality.keys() <= _OF_PINT.keys():
             raise ExpressionError(f"'{typed}' is in units that mechanics does not have", fix="use m, kg, s, rad")
         powers = (f"{_OF_PINT[kind]}^{int(power)}" for kind, power in base.dimensionality.items())
-        return as_expression(_plain(base.magnitude)), parse_unit("*".join(powers) or "1")
+        return as_expression(_plain(base.magnitude)), Unit.parse("*".join(powers) or "1")
     return as_expression(_plain(typed)), None
-
-
-def is_plain(value: Expression) -> bool:
-    """True if it is a number: no names but pi, and no function of an output."""
-    return value.names <= {"pi"} and not value.calls
 
 
 def _plain(value: Any) -> Any:
@@ -305,7 +309,7 @@ def parse_typed(text: str, *, references: bool = False, start: int = 0) -> tuple
         except ExpressionError:
             continue
         try:
-            unit = parse_unit(text[gap.end() :])
+            unit = Unit.parse(text[gap.end() :])
         except ExpressionError as error:
             if expression.names <= {"pi"} and text[gap.end() :].strip().isalpha():
                 raise ExpressionError(error.what, start + gap.end(), error.fix, error.length) from None
