@@ -16,7 +16,7 @@ from eomgen.codegen import parameter_vector
 from eomgen.errors import DerivationError, visible
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import GROUND, BodyLink, mass_properties
+from eomgen.mechanics.kinematics import GROUND, BodyLink
 from eomgen.model import ModelOrPath, UniformField
 from eomgen.pipeline import derive
 from eomgen.robots import UNLIMITED, LeftOut, LegalNames, remarked
@@ -107,7 +107,7 @@ class _Writing:
         return [float(x) for x in evaluate(tuple(scalars), self.known, FLOAT)]
 
     def _link(self, link: BodyLink) -> list[str]:
-        mass = mass_properties(self.system.scope, link.name)
+        mass = self.system.scope.mass_properties(link.name)
         where = f"bodies.{link.name}"
         m, *com = self.numbers((mass.m, *minus(mass.com, link.point)), where)
         tensor = self.numbers([x for row in mass.I for x in row], where)

@@ -39,7 +39,7 @@ from eomgen.mechanics.dynamics import (
 from eomgen.mechanics.free_bodies import equations_of_motion, still, values_at_a_state, with_rest
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.mechanics.start import ExactStart, known_exactly, start_state
+from eomgen.mechanics.start import ExactStart, start_state
 from eomgen.mechanics.statics import contacts_at_start
 from eomgen.model import BALANCE, MASSES, Model, in_loads, refuse_motion
 from eomgen.symbolic.exact import legible, readable_all
@@ -206,7 +206,7 @@ class Study:
     @cached_property
     def parameters(self) -> dict[Node, Scalar]:
         """The parameters that have a value, exactly."""
-        return known_exactly(self.system.scope)
+        return self.system.scope.known_exactly
 
     @cached_property
     def start(self) -> ExactStart:

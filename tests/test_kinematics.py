@@ -13,7 +13,6 @@ import eomgen
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.motion import slide_of, velocity_of
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.spatial import ZERO, apply
@@ -150,9 +149,9 @@ def test_the_velocity_of_a_moving_point_is_the_rate_of_its_place():
     scene, state = SystemScene(system.motion), state_of(system)
     place = scene.place("bar.P")
     assert at(scene.velocity(place), state) == pytest.approx(rate(system, scene.position(place), state), rel=1e-14)
-    assert equal(velocity_of(system.motion, place), scene.velocity(place))
+    assert equal(system.motion.velocity(place), scene.velocity(place))
     in_body = (value(system, "s'"), value(system, "l*w*cos(w*t)"), 0)
-    assert equal(slide_of(system.motion, place), apply(system.motion.link("bar").pose.R, in_body))
+    assert equal(system.motion.slide(place), apply(system.motion.link("bar").pose.R, in_body))
 
 
 def test_the_velocity_of_a_fixed_point_by_its_twist_is_the_rate_of_its_place():
@@ -160,8 +159,8 @@ def test_the_velocity_of_a_fixed_point_by_its_twist_is_the_rate_of_its_place():
     system = written(MOVING_POINT)
     scene, state = SystemScene(system.motion), state_of(system)
     place = scene.place("bar.Q")
-    assert slide_of(system.motion, place) == ZERO
-    assert at(velocity_of(system.motion, place), state) == pytest.approx(rate(system, scene.position(place), state))
+    assert system.motion.slide(place) == ZERO
+    assert at(system.motion.velocity(place), state) == pytest.approx(rate(system, scene.position(place), state))
 
 
 BODIES = {

@@ -40,8 +40,8 @@ from eomgen.documents.statements import MEANINGS, Entry, Formula, Name, Partial,
 from eomgen.documents.text import WIDTH, broken, formula_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.dynamics.system import System, generalized_forces, per_speed
-from eomgen.mechanics.kinematics.inertia import kinetic_energy
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.inertia import Inertia
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import gradient, substituted
@@ -166,7 +166,7 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
     system = _printed_system(derived)
     for free in (*system.symbols.u, *system.symbols.a):  # rates of dependent coordinates, as they stand there
         also.pop(free.name, None)
-    T = kinetic_energy(system.motion)
+    T = Inertia(system.motion).kinetic_energy
     pairs = []
     if is_complete(energy):
         total = next(f for f in energy.statements[::-1] if isinstance(f, Formula))
@@ -178,7 +178,9 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
         if isinstance(of, Rate):
             expected = system.scope.with_accelerations((expected,))[0]
         elif isinstance(of, Partial) and of.by in system.symbols.q:
-            expected = per_speed(system.motion, gradient(T, system.symbols.q))[moved_coordinates(system).index(of.by)]
+            expected = system.motion.scope.per_speed(gradient(T, system.symbols.q))[
+                moved_coordinates(system).index(of.by)
+            ]
         pairs.append((read_back(to_text(x), derived, also), expected))
     if all(map(is_complete, in_time(derived).steps)):
         assert len(pairs) == 1 + 3 * len(system.symbols.u)
@@ -207,7 +209,7 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
         if isinstance(f.sides[0], Name) and f.sides[0].letter == "Q" and f.sides[0].of == ""
     ]
     also = printed_definitions(rendered(in_time(derived), "text"), derived, in_time(derived))
-    forces = generalized_forces(_printed_system(derived).loads)
+    forces = _printed_system(derived).loads.generalized_forces
     pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, forces, strict=True)]
     assert equal_at_random_states(at_unit_norms(derived, pairs)).equal
 

@@ -48,10 +48,7 @@ from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     Extent,
     System,
-    effort_row,
-    force_row,
     free_rates,
-    per_speed,
     short_accelerations,
 )
 from eomgen.mechanics.integrals import (
@@ -66,12 +63,8 @@ from eomgen.mechanics.integrals import (
 from eomgen.mechanics.kinematics import (
     Applied,
     BodyEnergy,
+    Inertia,
     JointEffort,
-    armature_energy,
-    body_energies,
-    given_energy,
-    mass_properties,
-    velocity_of,
 )
 from eomgen.mechanics.start import known_start
 from eomgen.model import Couple, Load, PointForce
@@ -111,7 +104,7 @@ def momenta_of(system: System, reader: Reader, T: Scalar) -> Momenta:
     scope = system.scope
     momenta = reader.short(gradient(T, scope.symbols.u))
     rates = reader.short(scope.with_accelerations(momenta))
-    held = reader.short(per_speed(system.motion, gradient(T, scope.symbols.q)))
+    held = reader.short(system.motion.scope.per_speed(gradient(T, scope.symbols.q)))
     return Momenta(T, momenta, rates, held)
 
 
@@ -133,16 +126,16 @@ def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
         of_body = energy.translation + energy.rotation
         if not is_zero(of_body):
             formulas.append((Name("T", link.name), of_body))
-        rotor = armature_energy(system.motion, link)
+        rotor = Inertia(system.motion).rotor_energy(link)
         if not is_zero(rotor):
             formulas.append((Name("T", f"{link.name}, rotor"), rotor))
-    given = given_energy(system.scope)
+    given = Inertia(system.motion).given_energy
     return formulas if is_zero(given) else [*formulas, (Name("T", "given"), given)]
 
 
 def energies_by_parts(system: System, reader: Reader, T: Scalar) -> tuple[Scalar, Scalar]:
     """(T, V), each as the sum over bodies or forces where that is shorter."""
-    bodies = [x for _, x in _of_bodies(system, body_energies(system.motion))]
+    bodies = [x for _, x in _of_bodies(system, Inertia(system.motion).bodies)]
     V, loads = system.loads.potential_energy, system.loads
     held = [*(force.potential for force in loads.applied), *(effort.potential for effort in loads.efforts)]
     potentials = [reader.as_square(x) for x in held if x is not None and not is_zero(x)]
@@ -184,7 +177,7 @@ def _force(system: System, force: Applied) -> list[Pair]:
     formulas: list[Pair] = []
     for number, load in enumerate(force.loads, start=1):
         formulas += _load(system, load, force.name if len(force.loads) == 1 else f"{force.name} {number}")
-    return formulas + _contributions(system, force.name, force_row(system.loads, force))
+    return formulas + _contributions(system, force.name, system.loads.force_row(force))
 
 
 def _load(system: System, load: Load, name: str) -> list[Pair]:
@@ -206,7 +199,7 @@ def _effort(system: System, effort: JointEffort) -> list[Pair]:
     formulas: list[Pair] = [] if is_zero(effort.potential) else [(Name("V", name), effort.potential)]
     if is_zero(effort.drive):
         return formulas
-    return formulas + _contributions(system, name, effort_row(system.motion, effort))
+    return formulas + _contributions(system, name, system.loads.effort_row(effort))
 
 
 def derivatives_step(system: System, reader: Reader, momenta: Momenta) -> Step:
@@ -241,9 +234,9 @@ def twists_step(system: System, reader: Reader) -> Step:
     """Velocities of the mass centres and angular velocities, from body to body along the tree."""
     formulas: list[Pair] = []
     for link in system.motion.links:
-        body = mass_properties(system.scope, link.name)
+        body = system.scope.mass_properties(link.name)
         if not is_zero(body.m):
-            velocity = velocity_of(system.motion, (link.name, body.com))
+            velocity = system.motion.velocity((link.name, body.com))
             if not is_still(velocity):
                 formulas += component_pairs(system, "v", f"{link.name}.center", velocity)
         formulas += spins(system, link.name, link.twist.w)

@@ -15,7 +15,7 @@ from eomgen.documents.statements import Formula, Law, Meaning, Name, Piece, Rate
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints import Row, dependent_coordinates, integrability_of
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope, mass_properties
+from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import Coordinate, Input, Parameter, PointForce, exact_parameters, quaternions_of
 from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, dot, is_zero
@@ -39,7 +39,7 @@ def positions_step(system: System, reader: Reader) -> Step:
     motion = system.motion
     formulas: list[Pair] = []
     for link in motion.links:
-        body = mass_properties(system.scope, link.name)
+        body = system.scope.mass_properties(link.name)
         if not is_zero(body.m):
             at = motion.position((link.name, body.com))
             formulas += component_pairs(system, "", f"{link.name}.center", at)
@@ -74,7 +74,7 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
     """Velocities of the mass centres and angular velocities, by differentiation."""
     formulas: list[Pair] = []
     for energy in energies:
-        if not is_zero(mass_properties(system.scope, energy.body).m) and not is_still(energy.velocity):
+        if not is_zero(system.scope.mass_properties(energy.body).m) and not is_still(energy.velocity):
             of = f"{energy.body}.center"
             formulas += component_pairs(system, "v", of, energy.velocity)
             formulas.append((Name("speed", of, power=2), dot(energy.velocity, energy.velocity)))

@@ -36,7 +36,6 @@ from eomgen.identification.constrained_rows import (
     sampled_rows,
 )
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import velocity_of
 from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import exact_state, simplest
 from eomgen.symbolic.expression import (
@@ -518,7 +517,7 @@ def _shared(system: System, states: Sequence[State]) -> Iterator[SharedPoint]:
     for there in met.values():
         yield from (SharedPoint((a, b), (r, s)) for (a, r), (b, s) in combinations(there.items(), 2))
         for name, r in there.items():
-            if not any(any(rates) for rates in _seen(velocity_of(motion, (name, r)), states)):
+            if not any(any(rates) for rates in _seen(motion.velocity((name, r)), states)):
                 yield SharedPoint((name, None), (r, ZERO))
 
 

@@ -11,7 +11,6 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import gaps_of, generic_state, movable, norms_of
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.symbolic.expression import Fraction, ScalarRow, State, jacobian
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -60,7 +59,7 @@ def constrained_states(system: System, rng: Random, *, shaken: bool = False) -> 
     symbols, constraints = system.symbols, system.constraints
     size = len(symbols.u)
     J = tuple(x for row in constraints.J for x in row)
-    given = {} if shaken else values_of_parameters(system.scope, None)
+    given = {} if shaken else system.scope.values_of_parameters(None)
     while True:
         state = _closed_to_the_last_digit(system, generic_state(constraints, rng, shaken=shaken, spreads=FAR) | given)
         numbers = np.array(evaluate((*J, *constraints.sigma), state, fifty_digits()), dtype=object)

@@ -27,7 +27,6 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.identification.proof_of_groups import StackedSamples, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressors import Regressor, regressor_of
-from eomgen.mechanics.dynamics import generalized_forces
 from eomgen.model import ModelOrPath, model_at
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate, Check, checked
@@ -209,7 +208,7 @@ def stacking_of(found: Regressor) -> Stacking:
     """data -> W and b, along the motions that the constraints allow; UsageError where a coordinate has no samples."""
     system, symbols = found.system, found.system.symbols
     still = dict.fromkeys(symbols.inputs.values(), 0)
-    Q = generalized_forces(system.loads)
+    Q = system.loads.generalized_forces
     applied = tuple(x - y for x, y in zip(Q, substituted(Q, still), strict=True))
     J = tuple(x for row in system.constraints.J for x in row)
     outputs = (*(x for row in found.rows for x in row), *found.known, *applied, *J)

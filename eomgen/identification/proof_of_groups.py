@@ -25,7 +25,6 @@ from eomgen.identification.base_parameters import BaseParameters, Group
 from eomgen.identification.constrained_rows import columns_along, constrained_states, in_50_digits
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import equations_of_motion
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.proof import Certificate, Check, PhaseMotion, Tally, TriedState, attempted, checked, first_wrong
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Fraction, ScalarRow, parse, substituted
@@ -141,7 +140,7 @@ def _rank(W: np.ndarray) -> int:
 def _misread(found: LinearForces, group: Group) -> str:
     scope = found.system.scope
     read = tuple(scope.value(parse(text)) for text in group.terms.values())
-    values = evaluate(read, values_of_parameters(scope, None), fifty_digits())
+    values = evaluate(read, scope.values_of_parameters(None), fifty_digits())
     for (parameter, text), value in zip(group.terms.items(), values, strict=True):
         if abs(value - group.numbers[parameter]) > tolerances.COMPUTED * (1 + abs(value)):
             return f"{text} of {parameter} is {float(value):.10g}, not {group.numbers[parameter]:.10g}"

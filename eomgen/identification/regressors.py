@@ -20,9 +20,9 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameters, base_of, named_entries
 from eomgen.identification.proof_of_groups import certify_regressor
-from eomgen.mechanics.dynamics import System, force_row
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import frictions, has_friction
-from eomgen.mechanics.kinematics import given_inertia, joint_row, mass_properties
+from eomgen.mechanics.kinematics import Inertia
 from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate
@@ -139,7 +139,7 @@ def regressor_of(system: System) -> Regressor:
         )
     size = len(system.symbols.u)
     columns = [*_bodies(system), *_joints(system)]
-    rest = tuple(x - y for x, y in zip(_rest(system), given_inertia(system.scope), strict=True))
+    rest = tuple(x - y for x, y in zip(_rest(system), Inertia(system.motion).given_inertia, strict=True))
     columns += [(name, system.symbols.parameters[name], row) for name, row in _linear(system, rest).items()]
     known = substituted(rest, {x: 0 for name, x, _ in columns if name in system.symbols.parameters and type(x) is Node})
     names, values, by_column = zip(*columns, strict=True) if columns else ((), (), ())
@@ -155,7 +155,7 @@ def _bodies(system: System) -> Iterator[Column]:
     motion, a = system.motion, system.symbols.a
     names = PLANE if motion.scope.model.space == "plane" else SPACE
     for i, link in enumerate(motion.links):
-        mass = mass_properties(motion.scope, link.name)
+        mass = motion.scope.mass_properties(link.name)
         if is_zero(mass.m) and all(is_zero(x) for row in mass.I for x in row):
             continue
         own = SpatialInertia.about_center(mass.m, mass.com, mass.I)
@@ -198,7 +198,7 @@ def _joints(system: System) -> Iterator[Column]:
         for k, effort in enumerate(efforts):
             if effort is None:
                 continue
-            row = joint_row(motion, link.name, k)
+            row = motion.joint_row(link.name, k)
             rate = link.s_rate[k]
             (push,) = motion.scope.time_derivative((rate,))
             for i, factor in row.items():
@@ -220,12 +220,12 @@ def _rest(system: System) -> ScalarRow:
     total: list[Scalar] = [0] * size
     for force in loads.applied:
         if not any(isinstance(load, UniformField) for load in force.loads):
-            total = [x + y for x, y in zip(total, force_row(loads, force), strict=True)]
+            total = [x + y for x, y in zip(total, loads.force_row(force), strict=True)]
     for link in motion.links:
         for k, effort in enumerate(() if link.joint is None else link.joint.efforts()):
             if effort is not None and effort.drive is not None:
                 drive = motion.scope.value(effort.drive)
-                for i, factor in joint_row(motion, link.name, k).items():
+                for i, factor in motion.joint_row(link.name, k).items():
                     total[i] = total[i] + factor * drive
     return substituted(tuple(total), dict.fromkeys(system.symbols.inputs.values(), 0))
 

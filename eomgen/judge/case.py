@@ -16,11 +16,10 @@ from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System, free_rates, per_speed
+from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System, free_rates
 from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.kinematics import let_go
-from eomgen.mechanics.start import ExactStart, known_parameters
+from eomgen.mechanics.start import ExactStart
 from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, exact_parameters, inferred, leaves_of
 from eomgen.questions import Answer, MotionFromStart, solve
 from eomgen.simulation import has_phases
@@ -91,7 +90,7 @@ class Case:
             return None
         if self.starting.is_exact:
             return is_zero_everywhere(self.system, *substituted(scalars, self.start)).holds
-        return vanish_at(scalars, {**known_parameters(self.system.scope), **self.starting.numbers})
+        return vanish_at(scalars, {**self.system.scope.known_parameters, **self.starting.numbers})
 
     @cached_property
     def as_begun(self) -> Case | None:
@@ -110,8 +109,7 @@ class Case:
         with suppress(ModelError):
             scope = self.system.scope
             free = {
-                name: replace(let_go(scope, name) if q.driven else q, dependent=False)
-                for name, q in coordinates.items()
+                name: replace(scope.let_go(name) if q.driven else q, dependent=False) for name, q in coordinates.items()
             }
             return Case(replace(self.model, coordinates=Table(free), outputs=Table()), self.at_rest)
         return None
@@ -334,7 +332,7 @@ class Case:
         if str(by) in names:
             slope = derivative(value, symbols.u[names.index(str(by))])
         else:
-            slope = per_speed(system.motion, gradient(value, symbols.q))[names.index(f"{by}'")]
+            slope = system.motion.scope.per_speed(gradient(value, symbols.q))[names.index(f"{by}'")]
         if system is self.system:
             return self.solved(slope)
         return substituted((slope,), dict(zip(symbols.u, free_rates(self.system, system), strict=True)))[0]

@@ -17,13 +17,9 @@ from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
-    drive_row,
     free_rates,
-    from_potential,
-    load_row,
-    per_speed,
 )
-from eomgen.mechanics.kinematics import Applied, armature_energy, body_energies, given_energy, mass_properties
+from eomgen.mechanics.kinematics import Applied, Inertia
 from eomgen.model import Catalog, Couple, Dimension, Load, PointForce, UniformField, inferred
 from eomgen.symbolic.expression import (
     Node,
@@ -98,7 +94,7 @@ class Operator:
             return part.row
         left = [0] * len(self.base.symbols.u) if is_zero(part.T) else [sum(x, start=0) for x in self._inertia(part.T)]
         motion = self.base.motion
-        elastic = [0] * len(left) if is_zero(part.V) else from_potential(motion, part.V)
+        elastic = [0] * len(left) if is_zero(part.V) else motion.scope.from_potential(part.V)
         forces = part.Q or [0] * len(left)
         return self.reduced([a - b - c for a, b, c in zip(left, elastic, forces, strict=True)])
 
@@ -113,7 +109,7 @@ class Operator:
         momenta = gradient(T, scope.symbols.u)
         accelerated = tangent(momenta, dict(zip(scope.symbols.u, scope.symbols.a, strict=True)))
         carried = scope.time_derivative(momenta)
-        held = per_speed(self.base.motion, gradient(T, scope.symbols.q))
+        held = self.base.motion.scope.per_speed(gradient(T, scope.symbols.q))
         return [(a, b, -c) for a, b, c in zip(accelerated, carried, held, strict=True)]
 
     def reduced(self, row: Sequence[Scalar]) -> ScalarRow:
@@ -188,13 +184,13 @@ class Contributions:
 
     def _kinetic(self) -> list[Contribution]:
         motion, found = self.operator.base.motion, []
-        for link, energy in zip(motion.links, body_energies(motion), strict=True):
-            rotor = armature_energy(motion, link)
+        for link, energy in zip(motion.links, Inertia(motion).bodies, strict=True):
+            rotor = Inertia(motion).rotor_energy(link)
             for kind, T in (("translation", energy.translation), ("rotation", energy.rotation), ("rotor", rotor)):
                 if not is_zero(T):
                     name = f"the {kind} of {link.name}"
                     found.append(Contribution(name, link.name, "", T, kind=kind))
-        given = given_energy(motion.scope)
+        given = Inertia(motion).given_energy
         return found if is_zero(given) else [*found, Contribution("the given kinetic energy", T=given, kind="given")]
 
     def _forces(self) -> list[Contribution]:
@@ -207,7 +203,7 @@ class Contributions:
             if not is_zero(effort.potential):
                 found.append(Contribution(f"the spring {where}", effort.body, name, V=effort.potential, kind="force"))
             if not is_zero(effort.drive):
-                Q = drive_row(loads.motion, effort)
+                Q = loads.drive_row(effort)
                 found.append(Contribution(f"the drive or damper {where}", effort.body, name, Q=Q, kind="force"))
         return found
 
@@ -217,7 +213,7 @@ class Contributions:
         for load in force.loads:
             if isinstance(load, UniformField):
                 for link in motion.links:
-                    mass = mass_properties(motion.scope, link.name)
+                    mass = motion.scope.mass_properties(link.name)
                     if not is_zero(mass.m):
                         weight = times(mass.m, load.acceleration)
                         place = (link.name, mass.com)
@@ -239,7 +235,7 @@ class Contributions:
                 V = -dot(load.force, motion.position(load.place))
                 found.append(Contribution(name, body, force.name, V=V, kind="constant", load=load))
                 continue
-            Q = load_row(loads, load)
+            Q = loads.load_row(load)
             found.append(Contribution(name, body, force.name, Q=Q, kind="force", load=load))
         return found
 

@@ -454,11 +454,10 @@ def _rational(x: float) -> Any:
 
 def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
     """The starts of coordinates that are given by numbers."""
-    from eomgen.mechanics.kinematics import start_values
 
     values = {**dict.fromkeys(system.symbols.parameters.values(), 1.0), **own, system.symbols.t: 0.0}
     found = {}
-    for q, x in start_values(system.scope).items():
+    for q, x in system.scope.start_values().items():
         value = evaluate((x,), values, FLOAT)[0] if not set(symbols_of((x,))) - values.keys() else 0.0
         found[q] = float(value) if value == value else 0.0
     return found

@@ -19,8 +19,17 @@ from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Mistake
 from eomgen.judge.terms import terms_of
 from eomgen.judge.wrong_terms import Term, WrongTerms
-from eomgen.mechanics.kinematics import HALF
-from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, gradient, is_zero, substituted, symbols_of
+from eomgen.symbolic.expression import (
+    Fraction,
+    Node,
+    Scalar,
+    ScalarRow,
+    depends_on,
+    gradient,
+    is_zero,
+    substituted,
+    symbols_of,
+)
 
 MOST = 3000  # mistakes of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
@@ -195,7 +204,9 @@ class Mistakes:
                 yield Mistake(name, "factor", row, PIECES, part.body, squares=True)
             first = [gradient(value, u) for value in moving] if len(u) <= MOST_SPEEDS else []
             for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))] if first else ():
-                row = tuple(gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else HALF) for row in first)
+                row = tuple(
+                    gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else Fraction(1, 2)) for row in first
+                )
                 name = f"{u[i].name}*{u[j].name}" if i != j else f"{u[i].name}^2"
                 kind = "coriolis" if i != j else "factor"
                 title = f"the Coriolis term with {name}" if i != j else f"the term with {name}"

@@ -20,7 +20,6 @@ from eomgen.frozen import dataclass
 from eomgen.judge.contributions import FEW, Contributions
 from eomgen.judge.diagnosis import EXCHANGED, PLACED, PLAINEST, SHARED, SHORTER, Explanation, Mistake, Share
 from eomgen.judge.terms import term_text, wrong_parameters
-from eomgen.mechanics.kinematics import mass_properties
 from eomgen.model import Body, Coordinate, Leaf, MassProperties, Model, Table, leaves_of, slots_of, whereabouts
 from eomgen.symbolic.expression import (
     Expression,
@@ -208,7 +207,7 @@ class _Editor:
 
     def _of_body(self, name: str) -> Iterator[ModelEdit]:
         """Its mass at a point, its inertia about a point, or of another shape."""
-        mass, plane = mass_properties(self.parts.system.scope, name), self.model.space == "plane"
+        mass, plane = self.parts.system.scope.mass_properties(name), self.model.space == "plane"
         if is_zero(mass.m):
             return
         I = mass.I
@@ -245,7 +244,7 @@ class _Editor:
     def _massive(self, kind: str, text: str, name: str, com: Vector, inertia: Sequence[Scalar]) -> ModelEdit:
         """The model with a body whose mass centre and inertia are others, its points where they were."""
         body, size = self.model.bodies[name], 2 if self.model.space == "plane" else 3
-        mass, points = mass_properties(self.parts.system.scope, name).m, self.parts.operator.base.motion.points[name]
+        mass, points = self.parts.system.scope.mass_properties(name).m, self.parts.operator.base.motion.points[name]
         own = {x: tuple(map(_formula, r[:size])) for x, r in points.items() if x not in ("origin", "center")}
         made = Body(
             mass=_formula(mass),

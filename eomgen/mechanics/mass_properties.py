@@ -6,8 +6,7 @@ from collections.abc import Collection, Mapping, Sequence
 from functools import cached_property, cmp_to_key
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics import Motion, Scope, mass_properties, velocity_of
-from eomgen.mechanics.start import known_exactly
+from eomgen.mechanics.kinematics import Motion, Scope
 from eomgen.model import MassProperties, about
 from eomgen.symbolic.exact import common_factor, sign_of_terms, simplest
 from eomgen.symbolic.expression import (
@@ -53,7 +52,7 @@ from eomgen.symbolic.solve import roots, vanishes
 
 def in_ground(motion: Motion, body: str) -> MassProperties:
     """The mass properties of a body where it is: mass centre from the ground's origin, inertia in ground axes."""
-    own, pose = mass_properties(motion.scope, body), motion.link(body).pose
+    own, pose = motion.scope.mass_properties(body), motion.link(body).pose
     return MassProperties(own.m, pose.point(own.com), product(product(pose.R, own.I), transposed(pose.R)))
 
 
@@ -70,7 +69,7 @@ def angular_momentum(motion: Motion, point: Vector, bodies: Sequence[str]) -> Ve
     total: Vector = ZERO
     for body in bodies:
         link, mass = motion.link(body), in_ground(motion, body)
-        velocity = velocity_of(motion, (body, mass_properties(motion.scope, body).com))
+        velocity = motion.velocity((body, motion.scope.mass_properties(body).com))
         spin = apply(mass.I, apply(link.pose.R, link.twist.w))
         total = plus(total, plus(spin, times(mass.m, cross(minus(mass.com, point), velocity))))
     return total
@@ -85,14 +84,14 @@ def flat_bodies(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
     if scope.model.space != "plane":
         return ()
     given = [body for body in bodies if scope.model.bodies[body].inertia is not None]
-    return tuple(body for body in given if not is_zero(mass_properties(scope, body).I[2][2]))
+    return tuple(body for body in given if not is_zero(scope.mass_properties(body).I[2][2]))
 
 
 def shapeless(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
     """Bodies that have a mass but no stated inertia."""
     parts = motion.scope.model.bodies
     silent = [b for b in bodies if parts[b].shape is None and parts[b].parts is None and parts[b].inertia is None]
-    return tuple(body for body in silent if not is_zero(mass_properties(motion.scope, body).m))
+    return tuple(body for body in silent if not is_zero(motion.scope.mass_properties(body).m))
 
 
 # -------- principal -------------------------------------------------------------------------------------------
@@ -412,5 +411,5 @@ def numbers_in(
     Args:
         state: values of symbols other than parameters; None: these have none.
     """
-    known = {**(state or {}), **known_exactly(scope)}
+    known = {**(state or {}), **scope.known_exactly}
     return None if any(symbol not in known for symbol in symbols_of(tuple(scalars))) else numbers_of(scalars, known)

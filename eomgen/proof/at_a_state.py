@@ -16,11 +16,9 @@ import numpy as np
 from eomgen.codegen import RightHandSide, compiled, right_hand_side
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import of_50_digits as precise
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
 from eomgen.mechanics.free_bodies import Balance, Indeterminate, reactions_of
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.kinematics import weights
 from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.check import differing
 from eomgen.proof.in_numbers import pushes_of, with_inputs
@@ -41,6 +39,7 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import of_50_digits as precise
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times the change between nearby states, by which a number may be wrong
@@ -161,7 +160,7 @@ class NumericState:
         """Wrenches applied to each body of a structure, about the ground's origin."""
         loads = self.equations.system.loads
         placed = [load for force in loads.applied for load in force.loads]
-        pushes = pushes_of(self.equations.system.motion, self.values, (*placed, *weights(loads)))
+        pushes = pushes_of(self.equations.system.motion, self.values, (*placed, *loads.weights))
         return [x for moment, force in pushes.values() for x in (*moment, *force)]
 
     @property

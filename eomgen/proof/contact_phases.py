@@ -24,10 +24,10 @@ import numpy as np
 from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, of_50_digits, on_unit_norms, rows_of_constraint
+from eomgen.mechanics.constraints import Row, on_unit_norms, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies import frictions, reactions_of
-from eomgen.mechanics.kinematics import CLOSED, ContactMode, armatures, given_momenta, mass_properties, velocity_of
+from eomgen.mechanics.kinematics import CLOSED, ContactMode, Inertia
 from eomgen.mechanics.start import start_of_motion
 from eomgen.model import Contact, Resistance, contacts_of, exact_parameters
 from eomgen.proof.check import Check, Tally
@@ -36,7 +36,7 @@ from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, Values, slack_name, sliding_velocity
 from eomgen.symbolic.expression import Scalar, State, apply
-from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
 
@@ -295,15 +295,15 @@ class _Bodies:
         motions: list[Scalar] = []
         momenta: list[Scalar] = []
         for link in self.system.motion.links:
-            mass = mass_properties(self.system.scope, link.name)
-            v = velocity_of(self.system.motion, (link.name, mass.com))
+            mass = self.system.scope.mass_properties(link.name)
+            v = self.system.motion.velocity((link.name, mass.com))
             motions += [*v, *link.twist.w]
             momenta += [mass.m * x for x in v] + list(apply(mass.I, link.twist.w))
-        for link, k, armature in armatures(self.system.motion):
+        for link, k, armature in Inertia(self.system.motion).rotors:
             motions.append(link.s_rate[k])
             momenta.append(armature * link.s_rate[k])
         motions += self.system.scope.rates
-        momenta += given_momenta(self.system.scope)
+        momenta += Inertia(self.system.motion).given_momenta
         return (*motions, *momenta)
 
     def _with(self, state: np.ndarray, speeds: Sequence[np.ndarray]) -> np.ndarray:

@@ -11,14 +11,10 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import (
-    HALF,
     Applied,
     BodyLink,
     JointEffort,
     SystemScene,
-    mass_properties,
-    velocity_of,
-    weights,
 )
 from eomgen.model import (
     Act,
@@ -47,6 +43,7 @@ from eomgen.proof.in_numbers import (
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import (
     ZERO,
+    Fraction,
     Numbers,
     Pose,
     Scalar,
@@ -80,6 +77,7 @@ Term = tuple[Scalar, Any]
 """(a scalar that moves, the work for a unit of it)"""
 Placed = tuple[str | None, tuple[Scalar, ...], Numbers]
 """(body, a place of it as a function of the coordinates, the force there in ground axes)"""
+HALF = Fraction(1, 2)
 SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
 
 
@@ -97,7 +95,7 @@ def acting_otherwise(system: System, state: State) -> str:
         if body := pushed_otherwise(pushes_of(system.motion, state, applied.loads), due, _size(due)):
             return f"forces.{applied.name} pushes '{body}' otherwise than it is declared"
     due = proof.pushes(proof.acts)
-    stated = pushes_of(system.motion, state, (*system.loads.placed, *weights(system.loads)))
+    stated = pushes_of(system.motion, state, (*system.loads.placed, *system.loads.weights))
     if body := pushed_otherwise(stated, due, _size(due)):
         return f"all forces together push '{body}' otherwise than they are declared"
     return ""
@@ -237,7 +235,7 @@ class _Declared(InNumbers):
         elif isinstance(act, PushOfMass):
             g = self.vector(self.scene.vector(act.acceleration))
             for name in act.bodies or [link.name for link in self.motion.links]:
-                mass = mass_properties(self.system.scope, name)
+                mass = self.system.scope.mass_properties(name)
                 yield name, self.scene.position((name, mass.com)), times(self.one(mass.m), g)
         elif isinstance(act, Element):
             yield from self._of_element(act)
@@ -424,7 +422,7 @@ class ActingElement(InNumbers):
         if not self.element.points:
             (first, w_1), (second, w_2) = map(self._turned, self.element.bodies)
             return second - first, w_2 - w_1
-        speeds = [self.vector(velocity_of(self.motion, self.scene.place(p))) for p in self.element.points]
+        speeds = [self.vector(self.motion.velocity(self.scene.place(p))) for p in self.element.points]
         n = self.direction
         return dot(minus(self.ends[1], self.ends[0]), n), dot(minus(speeds[1], speeds[0]), n)
 

@@ -28,7 +28,7 @@ from eomgen.mechanics.constraints import Constraints, Freedom, Row, RowName, con
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
-from eomgen.mechanics.start import start_of_motion, values_of_parameters
+from eomgen.mechanics.start import start_of_motion
 from eomgen.model import Model, exact_parameters
 from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
@@ -81,7 +81,7 @@ def _unnamed(constraints: Constraints, found: Freedom) -> str:
 
 def standing_otherwise(structure: Structure) -> str:
     """Message if the rank of a structure is another in doubles; ""."""
-    state = values_of_parameters(structure.system.scope, Random(3))
+    state = structure.system.scope.values_of_parameters(Random(3))
     try:
         at = evaluate(tuple(structure.at.values()), state, fifty_digits())
         known = {**dict.fromkeys(structure.unknowns, 0), **state, **dict(zip(structure.at, at, strict=True))}

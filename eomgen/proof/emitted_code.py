@@ -22,14 +22,13 @@ from eomgen.codegen import Role, Written
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import closed, movable, speeds_closed
-from eomgen.mechanics.constraints import of_50_digits as precise
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, accelerations_at, free_rates
-from eomgen.mechanics.kinematics import joint_row
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import instant_of, with_inputs
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, State, order
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, of_one_length, tolerances
+from eomgen.symbolic.numeric import of_50_digits as precise
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
 FAR = 1e-2  # of the least of the singular values of scaled rows, from which doubles solve them to COMPUTED
@@ -493,7 +492,7 @@ def acting(system: System, name: str) -> tuple[Scalar, ...]:
         return tuple(int(u.name == name) for u in symbols.u)
     if name in [q.name for q in symbols.q]:
         return tuple(system.scope.N[[q.name for q in symbols.q].index(name)])
-    row = joint_row(system.motion, name, 0)
+    row = system.motion.joint_row(name, 0)
     return tuple(row.get(k, 0) for k in range(len(symbols.u)))
 
 

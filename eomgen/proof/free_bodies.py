@@ -24,7 +24,7 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import generic_state, rows_where_closed
-from eomgen.mechanics.dynamics import System, free_rates, joint_forces, placeless_forces
+from eomgen.mechanics.dynamics import System, free_rates
 from eomgen.mechanics.free_bodies import (
     Balance,
     Effect,
@@ -36,7 +36,7 @@ from eomgen.mechanics.free_bodies import (
     named_reactions,
     with_drive_let_go,
 )
-from eomgen.mechanics.kinematics import BodyLink, armature_bias, armature_mass, body_wrench, mass_properties, weights
+from eomgen.mechanics.kinematics import BodyLink, Inertia
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
 from eomgen.symbolic.expression import (
     ZERO,
@@ -313,14 +313,14 @@ class _Formulas:
     @cached_property
     def masses(self) -> tuple[Scalar, ...]:
         """m, c and I of every body."""
-        masses = [mass_properties(self.system.scope, link.name) for link in self.system.motion.links]
+        masses = [self.system.scope.mass_properties(link.name) for link in self.system.motion.links]
         return tuple(x for mass in masses for x in (mass.m, *mass.com, *(y for row in mass.I for y in row)))
 
     @cached_property
     def pushes(self) -> list[tuple[str, Wrench, Node | None]]:
         """(body, wrench about its origin in its axes, its lam): loads and weights, then constraint rows."""
         constraints, loads = self.system.constraints, self.system.loads
-        found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
+        found = [self.system.motion.body_wrench(load) for load in (*loads.placed, *loads.weights)]
         rows = zip(constraints.closing, self.system.symbols.lam, strict=True)
         of_rows = [(body, wrench, lam) for row, lam in rows for body, wrench in row.wrenches]
         return [*((*pair, None) for pair in found if pair is not None), *of_rows]
@@ -329,8 +329,8 @@ class _Formulas:
     def direct(self) -> tuple[Scalar, ...]:
         """Bias of rotors along every speed, less the generalized forces without a place."""
         loads = self.system.loads
-        acting = [x + y for x, y in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
-        rotors = armature_bias(self.system.motion, len(self.system.scope.symbols.u))
+        acting = [x + y for x, y in zip(loads.joint_forces, loads.placeless_forces, strict=True)]
+        rotors = Inertia(self.system.motion).added_bias
         return tuple(y - x for x, y in zip(acting, rotors, strict=True))
 
     @cached_property
@@ -479,7 +479,7 @@ class _Bodies(InNumbers):
 
     def of_rotors(self) -> Iterator[tuple[int, Any]]:
         """Rotors behind gears: armature D_k D_l a_l."""
-        found, a = armature_mass(self.system.motion), self.system.scope.symbols.a
+        found, a = Inertia(self.system.motion).added_mass, self.system.scope.symbols.a
         values = self.at([value for _, _, value in found])
         return ((i, value * self.state[a[j]]) for (i, j, _), value in zip(found, values, strict=True))
 

@@ -11,9 +11,9 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import ALL as FORMULATIONS
-from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates, powered_forces, summed
+from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates
 from eomgen.mechanics.free_bodies import inverse_residual, with_friction
-from eomgen.mechanics.kinematics import kinetic_energy
+from eomgen.mechanics.kinematics import Inertia
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
 from eomgen.symbolic.exact import Equality, equal_at_real_states, equal_in_field
@@ -163,7 +163,8 @@ def given_power(equations: EquationsOfMotion) -> Scalar:
     """dH/dt without the constraints' power u . J^T lam: Q_nc . u - dT/dt + dV/dt by explicit time and nu."""
     system = equations.system
     speeds = equations.symbols.u
-    powered = summed([powered_forces(system.loads), equations.friction or (0,) * len(speeds)], len(speeds))
+    friction = equations.friction or (0,) * len(speeds)
+    powered = tuple(a + b for a, b in zip(system.loads.powered_forces, friction, strict=True))
     power = tangent((equations.V - equations.T,), _own_motion(system.scope))[0] + _carried_power(system)
     return sum((u * Q for u, Q in zip(speeds, powered, strict=True)), start=power)
 
@@ -182,7 +183,7 @@ def _carried_power(system: System) -> Scalar:
     along = {q: rate - bias for q, rate, bias in zip(scope.symbols.q, scope.rates, scope.nu, strict=True)}
     apart = zip(tangent(own, _own_motion(scope)), tangent(carried, along), strict=True)
     differences = [a - b for a, b in apart]
-    momenta = gradient(kinetic_energy(system.free.motion), free)
+    momenta = gradient(Inertia(system.free.motion).kinetic_energy, free)
     power = sum((p * x for p, x in zip(momenta, differences, strict=True)), start=0)
     return substituted((power,), dict(zip(free, rates, strict=True)))[0]
 

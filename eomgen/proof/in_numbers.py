@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import Motion, in_ground_axes
+from eomgen.mechanics.kinematics import Motion
 from eomgen.model import Couple, PointForce, given_samples
 from eomgen.symbolic.expression import (
     ZERO,
@@ -114,11 +114,11 @@ def pushes_of(motion: Motion, state: State, loads: Iterable[Any]) -> Pushes:
     found: Pushes = {}
     for load in loads:
         if isinstance(load, PointForce):
-            scalars = (*motion.position(load.place), *in_ground_axes(motion, load.force, load.axes))
+            scalars = (*motion.position(load.place), *motion.in_ground_axes(load.force, load.axes))
             values = evaluate(scalars, state, fifty_digits())
             add_push(found, load.place[0], cross(vector_of(values[:3]), vector_of(values[3:])), vector_of(values[3:]))
         elif isinstance(load, Couple):
-            couple = evaluate(in_ground_axes(motion, load.couple, load.axes), state, fifty_digits())
+            couple = evaluate(motion.in_ground_axes(load.couple, load.axes), state, fifty_digits())
             add_push(found, load.body, vector_of(couple), ZERO)
     return found
 

@@ -23,8 +23,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import FIXED, BodyMotion, Kind, KinematicState, Quantities, composition_of
-from eomgen.mechanics.kinematics import JointEffort, armature_energy, weights
-from eomgen.mechanics.start import values_of_parameters
+from eomgen.mechanics.kinematics import Inertia, JointEffort
 from eomgen.model import FUNCTIONS, GeneralizedForce, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
@@ -99,7 +98,7 @@ def instant_checks(
 def values_of(state: KinematicState) -> Mapping[Node, Any]:
     """Every symbol at the instant, with 50 digits; parameters and rates that have no value are something."""
     rng = Random(3)
-    known: dict[Node, Any] = values_of_parameters(state.system.scope, rng)
+    known: dict[Node, Any] = state.system.scope.values_of_parameters(rng)
     scalars = tuple(state.state.values())
     for x in symbols_of(scalars):
         if x not in known:
@@ -527,7 +526,7 @@ class NearbyStates:
         Some of these masses are negative; energy, momentum and moments of inertia are linear in them.
         """
         motion = self.state.equations.system.motion
-        if not still and not is_zero(armature_energy(motion, motion.link(body))):
+        if not still and not is_zero(Inertia(motion).rotor_energy(motion.link(body))):
             raise NoValue("rotors in a joint are no particles of the body")
         mass = self.scene.mass(body)
         P = self._second_moments(body, mass.I)
@@ -574,7 +573,7 @@ class NearbyStates:
         if system.symbols.t in symbols_of(energies):
             raise NoValue("a potential depends on time")
         total = 0 * SECOND_STEP - sum(self.along(energies)[1])
-        pushes = pushes_of(system.motion, known, (*placed, *weights(loads)))
+        pushes = pushes_of(system.motion, known, (*placed, *loads.weights))
         for effort in loads.efforts if body is not None else ():
             self._add_effort(pushes, effort)
         for name, (moment, force) in pushes.items():

@@ -20,13 +20,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import of_50_digits, on_unit_norms
-from eomgen.mechanics.kinematics import Motion, Scope, made_of, mass_properties
-from eomgen.mechanics.start import values_of_parameters
+from eomgen.mechanics.constraints import on_unit_norms
+from eomgen.mechanics.kinematics import Motion, Scope
 from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.symbolic.expression import Expression, Node, Pose, Scalar, Vector
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, tolerances
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, of_50_digits, tolerances
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"
@@ -100,7 +99,7 @@ def other_masses(motion: Motion) -> Iterator[Check]:
 def tried(scope: Scope) -> dict[Node, float]:
     """Values of parameters without one, and of coordinates: mass properties hold at any orientation."""
     rng, symbols = Random(3), scope.symbols
-    known = {x: float(v) for x, v in values_of_parameters(scope, rng).items()}
+    known = {x: float(v) for x, v in scope.values_of_parameters(rng).items()}
     known |= {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
     return known | {e: float(v) for e, v in on_unit_norms(scope.quaternions, known).items()}
 
@@ -247,12 +246,12 @@ class _Proof:
         if body not in self._known:
             part = self.motion.scope.model.bodies[body]
             if part.parts is not None:
-                self._known[body] = np.sum([self._piece(p) for p in made_of(self.motion.scope, body).pieces], axis=0)
+                self._known[body] = np.sum([self._piece(p) for p in self.motion.scope.made_of(body).pieces], axis=0)
             elif part.shape is not None:
-                (m,) = self.numbers((mass_properties(self.motion.scope, body).m,))
+                (m,) = self.numbers((self.motion.scope.mass_properties(body).m,))
                 self._known[body] = m * filled(part.shape, self.value)[1]
             else:
-                self._known[body] = _moments_of(mass_properties(self.motion.scope, body), self.numbers)
+                self._known[body] = _moments_of(self.motion.scope.mass_properties(body), self.numbers)
         return self._known[body]
 
     @cached_property
@@ -274,7 +273,7 @@ class _Proof:
 
     def wrong_parts(self, body: str) -> str:
         """The whole against the sum; parts that share a mass have one density."""
-        made = made_of(self.motion.scope, body)
+        made = self.motion.scope.made_of(body)
         if _differs(self.own(body), _moments_of(made.whole, self.numbers)):
             return f"those of '{body}'"
         shared = [p for p in made.pieces if p.piece.shape.mass is None]

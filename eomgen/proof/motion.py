@@ -13,15 +13,15 @@ from eomgen.codegen import RightHandSide, bordered, compiled, program_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import with_rest
-from eomgen.mechanics.kinematics import HALF, mass_properties
 from eomgen.model import GivenEnergy, PushOfMass
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.identities import energy_function, given_power
-from eomgen.symbolic.expression import Scalar, State, apply, depends_on, dot, gradient, is_zero
+from eomgen.symbolic.expression import Fraction, Scalar, State, apply, depends_on, dot, gradient, is_zero
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
+HALF = Fraction(1, 2)
 PER_STEP = 10  # tolerances of the run that one step may cost
 SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it
 VISITED = 5  # states of a phase at which the code is tried
@@ -430,7 +430,7 @@ def _of_motion(system: System) -> Iterator[Scalar]:
     for force in scope.model.forces.values():
         yield from (scope.value(act.kinetic) for act in force.acts if isinstance(act, GivenEnergy))
     for link in system.motion.links:
-        mass, w = mass_properties(scope, link.name), link.twist.w
+        mass, w = scope.mass_properties(link.name), link.twist.w
         v = link.twist.at(mass.com).v
         yield HALF * mass.m * dot(v, v)
         yield HALF * dot(w, apply(mass.I, w))
@@ -462,5 +462,5 @@ def _of_places(system: System) -> Iterator[Scalar]:
 def _of_weights(system: System, act: PushOfMass) -> Iterator[Scalar]:
     g = system.scope.vector(act.acceleration)
     for name in act.bodies or [link.name for link in system.motion.links]:
-        mass = mass_properties(system.scope, name)
+        mass = system.scope.mass_properties(name)
         yield -mass.m * dot(g, system.motion.position((name, mass.com)))

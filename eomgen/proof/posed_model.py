@@ -21,9 +21,6 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import (
     BodyLink,
     SystemScene,
-    body_wrench,
-    ground_place,
-    mass_properties,
     motion_of,
     scope_of,
 )
@@ -114,7 +111,7 @@ class PosedModel:
 
     def weight(self, body: str) -> np.ndarray:
         """m, m c, the inertia about the mass centre in body axes: 13 numbers."""
-        own = mass_properties(self.motion.scope, body)
+        own = self.motion.scope.mass_properties(body)
         found = self.at((own.m, *own.com, *(x for row in own.I for x in row)))
         found[1:4] *= found[0]
         return found
@@ -275,7 +272,7 @@ class _Seated(InNumbers):
             return ZERO
         if joint.on is not None and "." in joint.on:
             return self.vector(self.motion.place(joint.on)[1])
-        return self.vector(ground_place(self.motion.scope, joint.at)) if joint.seated else ZERO
+        return self.vector(self.motion.scope.ground_place(joint.at)) if joint.seated else ZERO
 
     @property
     def _own_point(self) -> Sequence[Scalar]:
@@ -443,7 +440,7 @@ class _Contact(InNumbers):
         """True if pushes are not a unit force at the contact on its body, and the opposite one on the other."""
         found: dict[str, tuple[Numbers, Numbers]] = {}
         for push in pushes:
-            wrench = body_wrench(self.motion, push)
+            wrench = self.motion.body_wrench(push)
             if wrench is not None:
                 body, W = wrench
                 f, tau = found.get(body, (ZERO, ZERO))

@@ -16,15 +16,14 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import of_50_digits as precise
 from eomgen.mechanics.dynamics import EquationsOfMotion, exact_accelerations
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.kinematics import spin_of
 from eomgen.model import BALANCE, FUNCTIONS, exact_parameters
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_one_length, tolerances
+from eomgen.symbolic.numeric import of_50_digits as precise
 
 SPINS = ("omega_1", "omega_2", "omega_3")  # about the axes of the body
 SOON = (precise(1) / 1000, precise(1) / 70)  # s after the start, in whose piece a law holds
@@ -162,7 +161,7 @@ class ReadBack:
     def _spin(self, body: str) -> Vector:
         """Angular velocity of a body by its pose, in the axes of the body as a derivation prints it."""
         motion = self.equations.system.motion
-        return spin_of(motion, motion.link(body))
+        return motion.spin(motion.link(body))
 
     @cached_property
     def _derivatives(self) -> dict[str, Scalar]:

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics import BodyLink, SystemScene, mass_properties
+from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.model import PointForce, PushAt, Shape, TouchingRound, pose_of
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
@@ -281,7 +281,7 @@ class _Shown(InNumbers):
 
     def _wrong_mass(self, link: BodyLink, drawn: np.ndarray) -> str:
         """Message if the ellipsoid for a body has another centre or other moments: A = m (b^2 + c^2)/5; ""."""
-        mass = mass_properties(self.system.scope, link.name)
+        mass = self.system.scope.mass_properties(link.name)
         low, high = drawn.min(axis=0), drawn.max(axis=0)
         size = float(np.max(high - low))
         if float(np.max(np.abs((low + high) / 2 - self.placed(mass.com)))) > tolerances.STANDS_FOR_A_MASS * size:

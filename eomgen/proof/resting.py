@@ -18,7 +18,6 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, standing_system
 from eomgen.mechanics.linearization import FirstOrder
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
@@ -43,7 +42,7 @@ def balance_check(places: Sequence[Equilibrium]) -> Check:
 def _unbalanced(place: Equilibrium) -> str:
     """Message if an equation of statics has a residual, compared with its change along each coordinate; ""."""
     statics, digits = place.statics, fifty_digits()
-    known: dict[Node, Any] = values_of_parameters(statics.system.scope, Random(3))
+    known: dict[Node, Any] = statics.system.scope.values_of_parameters(Random(3))
     known |= _places(place, statics.unknowns, known)
     left = evaluate(statics.equations, known, digits)
     for i, (x, usual) in enumerate(zip(left, _usual(statics, known), strict=True)):
@@ -89,7 +88,7 @@ def _pushed(place: Equilibrium) -> str:
     standing = standing_system(statics.system)
     free = standing.free or standing
     symbols, digits = free.symbols, fifty_digits()
-    known: dict[Node, Any] = values_of_parameters(free.scope, Random(3))
+    known: dict[Node, Any] = free.scope.values_of_parameters(Random(3))
     still = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
     known = {**dict.fromkeys(still, digits.number(0)), **known}
     held = {q: value for q, value in statics.given.items() if q in symbols.q}
@@ -164,7 +163,7 @@ class _Proof:
         """Every symbol at rest there, with 50 digits."""
         system, digits = self.first.system, fifty_digits()
         symbols = system.symbols
-        known: dict[Node, Any] = values_of_parameters(system.scope, Random(3))
+        known: dict[Node, Any] = system.scope.values_of_parameters(Random(3))
         known |= {x: digits.number(0) for x in (symbols.t, *symbols.u)}
         known |= _places(self.place, symbols.q, known)
         return with_inputs(system, known)

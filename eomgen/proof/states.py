@@ -13,13 +13,13 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import closed, generic_state, movable, of_50_digits, on_unit_norms
+from eomgen.mechanics.constraints import closed, generic_state, movable, on_unit_norms
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import start_state
 from eomgen.model import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.symbolic.expression import Scalar, State, is_zero
-from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, switches_of, tolerances
+from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, of_50_digits, switches_of, tolerances
 
 CONSISTENT = (11,)  # seeds of states at which all constraints hold
 OWN_START = "own start"

@@ -29,7 +29,6 @@ from eomgen.mechanics.free_bodies import (
     members_of,
     named_reactions,
 )
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.mechanics.statics import (
     KINDS,
     InfluenceLine,
@@ -147,7 +146,7 @@ class _Proof:
     def state(self) -> dict[Node, Any]:
         """Every symbol with 50 digits; parameters without a value are random, unknown loads have their solution."""
         structure = self.found.structure
-        known: dict[Node, Any] = values_of_parameters(structure.system.scope, Random(3))
+        known: dict[Node, Any] = structure.system.scope.values_of_parameters(Random(3))
         for given in (structure.at, self.found.balance.unknowns):
             known |= dict(zip(given, evaluate(tuple(given.values()), known, fifty_digits()), strict=True))
         return {**dict.fromkeys(structure.unknowns, 0), **known}

@@ -16,7 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.mechanics.free_bodies import friction_contacts, frictions, imbalance, push_sizes, reactions_of
-from eomgen.mechanics.kinematics import CLOSED, mass_properties, spin_between
+from eomgen.mechanics.kinematics import CLOSED, spin_between
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
@@ -334,7 +334,7 @@ class Trials:
         for name, inertia in ((name, part.inertia or ()) for name, part in plain.items()):
             if len(inertia) <= 1:  # about z alone
                 continue
-            tensor = mass_properties(scope, name).I
+            tensor = scope.mass_properties(name).I
             for x, y, z in DIRECTIONS:
                 products = (x * x, y * y, z * z, 2 * x * y, 2 * y * z, 2 * z * x)
                 typed = inner([scope.value(e) for e in inertia], products[: len(inertia)])

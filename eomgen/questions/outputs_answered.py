@@ -38,7 +38,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
 from eomgen.mechanics.instant import InstantKinematics, instant_kinematics_of, requests_motion, requests_of
 from eomgen.mechanics.integrals import stay_constant
-from eomgen.mechanics.start import known_parameters
 from eomgen.model import (
     FUNCTIONS,
     SMALL_MOTIONS,
@@ -283,7 +282,7 @@ class _Solver:
     def _friction_at_rest(self) -> str:
         """Names of the contacts on surfaces that are at rest at the start, with friction."""
         phase = self.phase
-        values = {**known_parameters(phase.system.scope), **self.motions[False].numbers}
+        values = {**phase.system.scope.known_parameters, **self.motions[False].numbers}
         rows = [row for row in phase.system.constraints.rows if row.shares and row.friction is not None]
         return ", ".join(f"'{row.constraint}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
 

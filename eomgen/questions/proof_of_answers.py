@@ -24,7 +24,7 @@ from eomgen.mechanics.constraints import dependent_coordinates
 from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
 from eomgen.mechanics.linearization import MATRICES
-from eomgen.mechanics.start import known_exactly, start_state
+from eomgen.mechanics.start import start_state
 from eomgen.model import FUNCTIONS, SMALL_MOTIONS, AtRest, Model, Output, WrittenEquation, exact_parameters, names_of
 from eomgen.proof import (
     Certificate,
@@ -139,7 +139,7 @@ class _Proof:
         """Values of the symbols of a text: parameters, the state at the start, inputs there."""
         motion = self.solver.motions[False]
         system = motion.phase.system
-        known: dict[Node, Scalar | float] = {**known_exactly(system.scope), system.symbols.t: 0.0, **_start(motion)}
+        known: dict[Node, Scalar | float] = {**system.scope.known_exactly, system.symbols.t: 0.0, **_start(motion)}
         for name, node in system.symbols.inputs.items():
             if set(symbols_of((system.inputs[name],))) <= known.keys():
                 known[node] = number_of(system.inputs[name], known)
@@ -259,7 +259,7 @@ class _Proof:
         key = id(phase), tuple(numbers.values())
         if key not in self._states:
             state = {phase.system.symbols.t: 0.0, **numbers}
-            self._states[key] = NumericState(phase.equations, known_exactly(phase.system.scope), state)
+            self._states[key] = NumericState(phase.equations, phase.system.scope.known_exactly, state)
         return self._states[key]
 
     @cached_property
@@ -376,7 +376,7 @@ class _Proof:
         scalar, symbols = read_back(phase.system, found.exact or ""), phase.system.symbols
         if depends_on(scalar, symbols.u):
             return ""  # a function of the state: its number is compared
-        nodes, parameters = (*symbols.q, *symbols.u), known_exactly(phase.system.scope)
+        nodes, parameters = (*symbols.q, *symbols.u), phase.system.scope.known_exactly
         one_way = _before_a_turn(run, len(symbols.q))
         rows = list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way]
         for t, x in (*rows[:: max(4, one_way // TRIED)], *rows[-LAST:]):
@@ -498,7 +498,7 @@ def _by_matrices(found: Linearization, system: System, output: Output, value: fl
             return Fraction(getattr(small.numbers, MATRICES[call.name])[row][column])
         return Fraction(_rates(found)[int(found.number_of(call)) - 1])
 
-    right = number_of(output.value.evaluate(system.scope.names, second), known_exactly(system.scope))
+    right = number_of(output.value.evaluate(system.scope.names, second), system.scope.known_exactly)
     frequency = any(call.name == "frequency" for call in output.value.calls)
     return differing(value, in_unit(right, output), tolerances.SAME_PLACE if frequency else tolerances.COMPUTED)
 

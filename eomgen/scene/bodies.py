@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import GROUND, BodyLink, mass_properties
+from eomgen.mechanics.kinematics import GROUND, BodyLink
 from eomgen.model import (
     ArcForm,
     EllipsoidForm,
@@ -125,7 +125,7 @@ def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
         return [Mark(SymbolForm(symbol, link.point, axis), frame, "body", link.name), pins]
     if shaft := shaft_of(system, link):
         return [Mark(SymbolForm("shaft", link.point, shaft), frame, "body", link.name)]
-    return [*rods, *inertia_mark(mass_properties(system.scope, link.name), frame, link.name)]
+    return [*rods, *inertia_mark(system.scope.mass_properties(link.name), frame, link.name)]
 
 
 def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
@@ -136,7 +136,7 @@ def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
     part, motion = system.scope.model.bodies[link.name], system.motion
     if system.scope.model.space == "plane" or not _turns(link) or part.shape is not None or part.parts is not None:
         return None
-    mass, axis = mass_properties(system.scope, link.name), link.S[0][0]
+    mass, axis = system.scope.mass_properties(link.name), link.S[0][0]
     hung = [other for other in motion.links if other.parent == motion.index[link.name]]
     if not is_zero(mass.m) or len(hung) > 1 or len(places_of_body(system, link)) > 1:
         return None

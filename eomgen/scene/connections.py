@@ -13,7 +13,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of, members_of
-from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene, ground_place, in_ground_axes
+from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene
 from eomgen.model import (
     ArcForm,
     BodyLine,
@@ -297,7 +297,7 @@ def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
         at = _level(system, meeting, surface)
         return [Mark(TrackForm(at, along, n), frame, "track", of)] if system.symbols.q and at is not None else []
     if isinstance(surface, RoundSurface) and surface.at is not None:
-        at = ground_place(scope, surface.at) if surface.on is None else scope.vector(surface.at)
+        at = scope.ground_place(surface.at) if surface.on is None else scope.vector(surface.at)
         r = scope.value(surface.radius)
         return [Mark(ArcForm(at, r, r), frame, "track", of)]
     return []
@@ -448,12 +448,12 @@ def applied_marks(system: System) -> Iterator[Mark]:
             yield Mark(LoadForm(a, b, *ends, applied.name), 0, "force", applied.name)
         for load in () if applied.spread else applied.loads:
             if isinstance(load, PointForce) and load.place[0] is not None:
-                f = _known(system, in_ground_axes(motion, load.force, load.axes))
+                f = _known(system, motion.in_ground_axes(load.force, load.axes))
                 at = motion.position(load.place)
                 yield Mark(ArrowForm(at, f, "N", text=applied.name), 0, "force", applied.name)
             elif isinstance(load, Couple):
                 at = motion.position(load.place or (load.body, ZERO))
-                couple = _known(system, in_ground_axes(motion, load.couple, load.axes))
+                couple = _known(system, motion.in_ground_axes(load.couple, load.axes))
                 yield Mark(CoupleForm(at, couple, applied.name), 0, "force", applied.name)
     yield from _drives(system)
 

@@ -22,7 +22,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.mechanics.instant import requests_of
 from eomgen.mechanics.linearization import MATRICES, ParameterSlopes
-from eomgen.mechanics.start import Seeds, parameter_seeds, start_seeds, start_state
+from eomgen.mechanics.start import Seeds, start_seeds, start_state
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import (
     OF_A_RUN,
@@ -378,7 +378,7 @@ class _Asking:
     def _changed(self, name: str, phase: Study | None = None) -> Seeds:
         """Derivatives of the parameters by a name; {} where the name is no parameter."""
         scope = (phase or self.phase).system.scope
-        return parameter_seeds(scope, name) if name in self.model.parameters else {}
+        return scope.parameter_seeds(name) if name in self.model.parameters else {}
 
     def _at_the_start(self, formula: Expression, name: str) -> Derived:
         phase = self.phase

@@ -27,7 +27,7 @@ from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compi
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE, gaps_of, rank_of_constraints, singular_blocks
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
-from eomgen.mechanics.kinematics import branches_of, locks_of
+from eomgen.mechanics.kinematics import branches_of
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import Newton, dense, tolerances
@@ -588,7 +588,7 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
 
     found = of(singular_blocks(system.elimination, system.scope), PLACE, is_watched=True)
     found += of(system.declared, "declare other speeds")
-    found += of(locks_of(system.motion), "gimbal lock: choose another `orientation`, or a quaternion")
+    found += of(system.motion.locks, "gimbal lock: choose another `orientation`, or a quaternion")
     rows = independence_of(equations, p, declared)
     return (*found, *([] if rows is None else [Undetermined(rows, (), is_watched=True)]))
 

@@ -26,7 +26,6 @@ from eomgen.codegen import (
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import CLOSING, fixed_by_position, gaps_of, norms_of
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import start_value
 from eomgen.mechanics.start import start_speeds
 from eomgen.simulation import constraint_drift, event_location
 from eomgen.simulation.constraint_drift import ARMED, REMEMBERED, STEEP
@@ -280,7 +279,7 @@ class ManyStarts:
         scope = self._system.scope
         near = {q: scope.model.coordinates[q.name].near for q in self._sought}
         guesses = {q: scope.value(value) for q, value in near.items() if value is not None}
-        return self._of(tuple(guesses[q] if q in guesses else start_value(scope, q) for q in scope.symbols.q))
+        return self._of(tuple(guesses[q] if q in guesses else scope.start_value(q) for q in scope.symbols.q))
 
     @cached_property
     def _speeds(self) -> RightHandSide:

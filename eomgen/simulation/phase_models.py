@@ -22,7 +22,7 @@ from eomgen.mechanics.constraints import (
 )
 from eomgen.mechanics.dynamics import EquationsOfMotion, PullBack, System, assembled_by_recursion, stabilized, system_of
 from eomgen.mechanics.free_bodies import equations_of_motion, released, stays_straight, with_friction
-from eomgen.mechanics.kinematics import ContactMode, ContactModes, start_values, with_unit_quaternions
+from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.model import Contact, Model, contacts_of
 from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, has_phases, on_pieces, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
@@ -347,7 +347,7 @@ class DerivedAt:
     def declared(self) -> RightHandSide:
         """Function of the parameters that gives the declared start of the coordinates."""
         scope = self.system.scope
-        return self._of(self.system, tuple(with_unit_quaternions(scope, start_values(scope)).values()))
+        return self._of(self.system, tuple(scope.with_unit_quaternions(scope.start_values()).values()))
 
     @cached_property
     def _requested(self) -> RightHandSide:

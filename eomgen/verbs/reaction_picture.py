@@ -7,7 +7,6 @@ import math
 from eomgen import pipeline
 from eomgen.documents import Picture, run_picture
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.start import known_exactly
 from eomgen.model import Model
 from eomgen.questions import run_of_a_page
 from eomgen.symbolic.expression import is_zero, symbols_of
@@ -43,6 +42,6 @@ def turn_of(system: System) -> float | None:
     rates = [scope.names[f"{q.name}'"] for q in driven if q in turned]
     parameters = set(system.symbols.parameters.values())
     steady = [rate for rate in rates if parameters.issuperset(symbols_of((rate,)))]
-    known = known_exactly(scope)
+    known = scope.known_exactly
     sizes = [abs(number_of(rate, known)) for rate in steady if not is_zero(rate)]
     return math.tau / min(sizes) if sizes else None

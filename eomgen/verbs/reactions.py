@@ -35,7 +35,6 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.dynamics import System, refuse_jump, system_of, with_nodes_balanced
 from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
-from eomgen.mechanics.start import known_exactly
 from eomgen.mechanics.statics import resting_contacts
 from eomgen.model import (
     FUNCTIONS,
@@ -249,7 +248,7 @@ def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> C
     try:
         symbols, start = graph.symbols, equations.start()
         numbers = {symbols.t: 0.0, **dict(zip((*symbols.q, *symbols.u), start.tolist(), strict=True))}
-        state = NumericState(graph, known_exactly(graph.system.scope), numbers)
+        state = NumericState(graph, graph.system.scope.known_exactly, numbers)
     except (MissingValues, DerivationError):
         return certificate + reaction_texts(graph, texts)
     return certificate + reaction_texts(graph, texts) + reaction_numbers(state, texts, values)

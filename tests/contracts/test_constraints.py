@@ -10,7 +10,6 @@ from moving import State, at, equal, solved, state_of, written
 import eomgen
 from eomgen.mechanics.constraints.rows import Row
 from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.loads import body_wrench
 from eomgen.model.constraints import ALL
 from eomgen.symbolic.expression.derivatives import gradient, tangent
 from eomgen.symbolic.expression.node import Scalar
@@ -353,10 +352,10 @@ def test_a_contact_of_two_bodies_pushes_both_at_one_place(kind, space, fields):
     """sum F = 0 and sum M = 0 about any point, of every row and of the friction: also where the contact is open."""
     system = system_with(kind, space, fields)
     for row in system.constraints.rows:
-        pushed = [w for push in row.pushes if (w := body_wrench(system.motion, push)) is not None]
+        pushed = [w for push in row.pushes if (w := system.motion.body_wrench(push)) is not None]
         assert equal(total(system, pushed), (0,) * 6)
         if kind == "rolling":
-            friction = [w for push in row.tangent for w in [body_wrench(system.motion, push)] if w is not None]
+            friction = [w for push in row.tangent for w in [system.motion.body_wrench(push)] if w is not None]
             assert equal(total(system, friction), (0,) * 6)
 
 

@@ -16,15 +16,9 @@ from eomgen.mechanics.dynamics import formulations as projection
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import (
     System,
-    effort_row,
-    force_row,
-    from_potential,
-    generalized_forces,
-    load_row,
-    summed,
 )
-from eomgen.mechanics.kinematics.inertia import armature_mass
-from eomgen.mechanics.kinematics.loads import Loads, body_wrench, in_ground_axes, joint_wrenches
+from eomgen.mechanics.kinematics.inertia import Inertia
+from eomgen.mechanics.kinematics.loads import Loads
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
@@ -190,7 +184,12 @@ def applied(system: System):
 
 def work_row(loads: Loads, force) -> tuple[Scalar, ...]:
     """Q by virtual work of the loads, whether or not there is a potential."""
-    return summed([load_row(loads, load) for load in force.loads], len(loads.motion.scope.symbols.u))
+    rows = [loads.load_row(load) for load in force.loads]
+    return (
+        tuple(sum(column, start=0) for column in zip(*rows, strict=True))
+        if rows
+        else (0,) * len(loads.motion.scope.symbols.u)
+    )
 
 
 def test_every_kind_of_force_has_examples_here():
@@ -215,7 +214,7 @@ def test_the_potential_and_the_work_of_the_loads_agree(kind, space, fields):
     if force.potential is None or force.placeless:
         assert force.placeless or kind not in ("gravity", "spring", "torsion_spring")
         return
-    assert equal(from_potential(system.motion, force.potential), work_row(system.loads, force))
+    assert equal(system.motion.scope.from_potential(force.potential), work_row(system.loads, force))
 
 
 @built
@@ -236,16 +235,16 @@ def test_every_force_says_what_it_does_to_the_proof_too(kind, space, fields):
 def test_virtual_work_and_wrenches_on_twists_agree(kind, space, fields):
     """Q_k = sum F . dp/dq_k = sum over bodies of B^T W"""
     system = system_with(kind, space, fields)
-    assert equal(generalized_forces(system.loads), projection.force_side(system.loads))
+    assert equal(system.loads.generalized_forces, projection.force_side(system.loads))
 
 
 @built
 def test_a_force_acts(kind, space, fields):
     """Q is not 0 at a random state; of a kinetic energy M has entries of its own."""
     system = system_with(kind, space, fields)
-    acts = force_row(system.loads, applied(system))
+    acts = system.loads.force_row(applied(system))
     if kind == "kinetic":
-        acts = tuple(value for _, _, value in armature_mass(system.motion))
+        acts = tuple(value for _, _, value in Inertia(system.motion).added_mass)
     assert np.abs(at(acts, state_of(system))).max() > 1e-6
 
 
@@ -287,9 +286,9 @@ def resultant(system: System, loads, about: Vector) -> Resultant:
     F, M = ZERO, ZERO
     for load in loads:
         if isinstance(load, Couple):
-            M = plus(M, in_ground_axes(system.motion, load.couple, load.axes))
+            M = plus(M, system.motion.in_ground_axes(load.couple, load.axes))
         else:
-            f = in_ground_axes(system.motion, load.force, load.axes)
+            f = system.motion.in_ground_axes(load.force, load.axes)
             F = plus(F, f)
             M = plus(M, cross(minus(system.motion.position(load.place), about), f))
     return F, M
@@ -357,7 +356,7 @@ def test_the_effort_of_a_joint_is_an_inner_force(space, joint):
     """Its wrenches on child and parent have no resultant and no moment about any ground point."""
     system = system_with_joint(space, joint)
     F, M = ZERO, ZERO
-    for body, wrench in joint_wrenches(system.motion, system.loads.efforts[0]):
+    for body, wrench in system.loads.efforts[0].wrenches(system.motion):
         pose = system.motion.link(body).pose
         f, tau = apply(pose.R, wrench.f), apply(pose.R, wrench.tau)
         F, M = plus(F, f), plus(M, plus(tau, cross(minus(pose.p, ground_point(system)), f)))
@@ -370,10 +369,10 @@ def test_the_wrenches_of_a_joint_do_the_work_of_its_effort(space, joint):
     system = system_with_joint(space, joint)
     (effort,) = system.loads.efforts
     link = system.motion.link("child")
-    power = sum((system.motion.link(b).twist.power(W) for b, W in joint_wrenches(system.motion, effort)), start=0)
+    power = sum((system.motion.link(b).twist.power(W) for b, W in effort.wrenches(system.motion)), start=0)
     assert equal((power,), (effort.effort * link.s_rate[0],))
     u = system.symbols.u
-    work = sum((Q * x for Q, x in zip(effort_row(system.motion, effort), u, strict=True)), start=0)
+    work = sum((Q * x for Q, x in zip(system.loads.effort_row(effort), u, strict=True)), start=0)
     assert equal((work,), (power,))
 
 
@@ -384,7 +383,7 @@ DAMPERS = [case for case in CASES if "damper" in case[0]]
 def test_dampers_take_power(kind, space, fields):
     """sum F . v + M . w <= 0 at every state, and < 0 where the damper moves."""
     system = system_with(kind, space, fields)
-    row = force_row(system.loads, applied(system))
+    row = system.loads.force_row(applied(system))
     power = sum((Q * u for Q, u in zip(row, system.symbols.u, strict=True)), start=0)
     taken = [at((power,), state_of(system, seed))[0] for seed in range(20)]
     assert max(taken) <= 0 and min(taken) < -1e-6
@@ -434,7 +433,7 @@ def test_the_weights_of_the_bodies_add_up_to_the_weight_of_all():
 
     def numbers(system: System) -> np.ndarray:
         force = applied(system)
-        return at((*force_row(system.loads, force), force.potential), state_of(system))
+        return at((*system.loads.force_row(force), force.potential), state_of(system))
 
     assert sum(numbers(system) for system in some) == pytest.approx(numbers(whole), rel=1e-13)
 
@@ -461,8 +460,8 @@ def test_a_force_in_the_axes_of_a_body_turns_with_it(axes):
     (load,) = applied(system).loads
     k = system.symbols.parameters["k"]
     turned = apply(system.motion.link(axes).pose.R, (3, k, 0))
-    assert equal(in_ground_axes(system.motion, load.force, load.axes), turned)
-    body, wrench = body_wrench(system.motion, load)
+    assert equal(system.motion.in_ground_axes(load.force, load.axes), turned)
+    body, wrench = system.motion.body_wrench(load)
     assert body == "lower" and equal(apply(system.motion.link(body).pose.R, wrench.f), turned)
 
 
@@ -475,7 +474,7 @@ def test_a_couple_in_the_axes_of_a_body_turns_with_it(space, axes):
     (load,) = applied(system).loads
     lower = system.motion.link("lower")
     power = dot(apply(system.motion.link(axes).pose.R, load.couple), apply(lower.pose.R, lower.twist.w))
-    assert equal(force_row(system.loads, applied(system)), gradient(power, system.symbols.u))
+    assert equal(system.loads.force_row(applied(system)), gradient(power, system.symbols.u))
 
 
 @pytest.mark.parametrize("space", [PLANE, SPACE])
@@ -502,7 +501,7 @@ def test_a_pull_of_the_distance_alone_is_the_slope_of_its_potential(law):
     system = system_with("between", PLANE, f'{TWO}, pull = "{law}"')
     force = applied(system)
     assert force.potential is not None
-    assert equal(from_potential(system.motion, force.potential), work_row(system.loads, force))
+    assert equal(system.motion.scope.from_potential(force.potential), work_row(system.loads, force))
 
 
 @pytest.mark.parametrize("law", ["c*r'", "k*r*sin(w*t)", "k*a", "tau*r"])
@@ -548,7 +547,7 @@ def test_a_force_in_a_fixed_direction_does_the_work_of_a_potential():
     (load,) = force.loads
     assert isinstance(load, PointForce)
     V = -dot(load.force, system.motion.position(load.place))
-    assert equal(from_potential(system.motion, V), force_row(system.loads, force))
+    assert equal(system.motion.scope.from_potential(V), system.loads.force_row(force))
 
 
 def test_a_force_that_needs_accelerations_is_refused_by_name():

@@ -19,10 +19,9 @@ from __future__ import annotations
 import numpy as np
 
 from eomgen.mechanics.dynamics.formulations import free_rates
-from eomgen.mechanics.dynamics.system import System, joint_forces, placeless_forces
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.equilibrium import BodyNumbers
-from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, mass_properties
-from eomgen.mechanics.kinematics.loads import body_wrench, weights
+from eomgen.mechanics.kinematics.inertia import Inertia
 from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import State
@@ -65,10 +64,10 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     A, right = np.zeros((size, size)), np.zeros(size)
     speeds, multipliers = slice(12 * n, 12 * n + nu), slice(12 * n + nu, size)
     _put_bodies(numbers, A, right, speeds)
-    direct = [a + b for a, b in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
-    rotors = armature_bias(system.motion, nu)
+    direct = [a + b for a, b in zip(system.loads.joint_forces, system.loads.placeless_forces, strict=True)]
+    rotors = Inertia(system.motion).added_bias
     right[speeds] = numbers.array(tuple(a - b for a, b in zip(direct, rotors, strict=True))) if nu else 0
-    for i, j, value in armature_mass(system.motion):
+    for i, j, value in Inertia(system.motion).added_mass:
         A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
     _close(numbers, A, right, multipliers)
     J = without_rounding(A[multipliers, speeds])
@@ -98,7 +97,7 @@ def _put_bodies(numbers: BodyNumbers, A: np.ndarray, right: np.ndarray, speeds: 
 def _body(numbers: BodyNumbers, link: BodyLink) -> tuple[np.ndarray, np.ndarray]:
     """(I, W - p) of a free body about its origin, body axes: W the applied wrench, p what velocity takes."""
     system = numbers.system
-    mass = mass_properties(system.scope, link.name)
+    mass = system.scope.mass_properties(link.name)
     m, com, I_com = float(numbers.array((mass.m,))[0]), numbers.array(mass.com), numbers.array(mass.I)
     w = numbers.array(link.twist.w)
     C = _tilde(com)
@@ -106,8 +105,8 @@ def _body(numbers: BodyNumbers, link: BodyLink) -> tuple[np.ndarray, np.ndarray]
     centripetal = m * np.cross(w, np.cross(w, com))
     p = np.concatenate([np.cross(w, I_com @ w) + np.cross(com, centripetal), centripetal])
     applied = np.zeros(6)
-    for load in (*system.loads.placed, *weights(system.loads)):
-        found = body_wrench(system.motion, load)
+    for load in (*system.loads.placed, *system.loads.weights):
+        found = system.motion.body_wrench(load)
         if found is not None and found[0] == link.name:
             applied += numbers.array((*found[1].tau, *found[1].f))
     return inertia, applied - p

@@ -20,11 +20,6 @@ from eomgen.mechanics.instant.kinematic_state import body_motions, composition_o
 from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
 from eomgen.mechanics.kinematics.motion import (
     VelocityField,
-    acceleration_pole,
-    field_of,
-    inflection_center,
-    least_speed,
-    rotation_center,
 )
 from eomgen.model.outputs.points import curvature_radius
 from eomgen.questions import outputs_answered as answers
@@ -222,15 +217,15 @@ def exact_field(seed: int) -> VelocityField:
 def test_centre_and_pole_have_no_velocity_and_no_acceleration(seed):
     """v(C) = 0, a(P) = 0"""
     field = exact_field(seed)
-    assert field.velocity(rotation_center(field)) == (0, 0, 0)
-    assert field.acceleration(acceleration_pole(field)) == (0, 0, 0)
+    assert field.velocity(field.rotation_center()) == (0, 0, 0)
+    assert field.acceleration(field.acceleration_pole()) == (0, 0, 0)
 
 
 @each("seed", range(5))
 def test_points_of_the_inflection_circle_have_no_acceleration_across_their_path(seed):
     """v x a = 0 at the point opposite to the centre of rotation, and at the one a quarter further."""
     field = exact_field(seed)
-    middle, pole = inflection_center(field), rotation_center(field)
+    middle, pole = field.inflection_center(), field.rotation_center()
     arm = minus(middle, pole)
     for place in (plus(middle, arm), plus(middle, (-arm[1], arm[0], 0))):
         assert cross(field.velocity(place), field.acceleration(place)) == (0, 0, 0)
@@ -246,7 +241,7 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
 
     field = exact_field(seed) if seed % 2 else VelocityField(*(vector() for _ in range(5)))
     start, end = vector(), vector()
-    least = float(evaluate((least_speed(field, start, end, lambda x: x),), {}, fifty_digits())[0])
+    least = float(evaluate((field.least_speed(start, end, lambda x: x),), {}, fifty_digits())[0])
     speeds = []
     for k in range(2001):
         place = tuple(a + k / 2000 * (b - a) for a, b in zip(start, end, strict=True))
@@ -258,8 +253,8 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
 
 def test_a_bar_that_does_not_turn_has_one_speed():
     """omega = 0 divides nothing: |v| of all its points."""
-    assert least_speed(VelocityField(v=(3, 4, 0)), (0, 0, 0), (1, 0, 0), lambda x: x) == 5
-    assert least_speed(VelocityField(v=(3, 4, 12)), (0, 0, 0), (1, 0, 2), lambda x: x) == 13
+    assert VelocityField(v=(3, 4, 0)).least_speed((0, 0, 0), (1, 0, 0), lambda x: x) == 5
+    assert VelocityField(v=(3, 4, 12)).least_speed((0, 0, 0), (1, 0, 2), lambda x: x) == 13
 
 
 def test_a_ladder_is_slowest_at_the_foot_of_the_perpendicular():
@@ -456,7 +451,7 @@ def test_the_moving_centrode_touches_the_fixed_one(text):
     kinds, _ = kinds_of(text)
     (found,) = all_centrodes(kinds)
     system, possible = kinds.system, kinds.possible
-    field, pose = field_of(system.motion, found.body), system.motion.link(found.body).pose
+    field, pose = system.motion.field(found.body), system.motion.link(found.body).pose
     moved = pose.point(found.moving)
     assert possible.vanish(*minus(moved, found.fixed))
     assert possible.vanish(*field.velocity(found.fixed))

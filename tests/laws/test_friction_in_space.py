@@ -12,7 +12,6 @@ from scipy.optimize import fsolve
 import eomgen
 from eomgen.mechanics.dynamics.system import free_system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
-from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.solve.cramer import LARGEST_BLOCK
 
@@ -339,7 +338,7 @@ def test_accelerations_of_many_unknowns_have_values_wherever_the_constraints_are
     equations, rng = equations_of_motion(system), Random(1)
     symbols = system.symbols
     assert len(symbols.u) + len(equations.J) > LARGEST_BLOCK
-    usual = values_of_parameters(system.scope, rng) | {x: rng.uniform(0.2, 1) for x in (*symbols.q, *symbols.u)}
+    usual = system.scope.values_of_parameters(rng) | {x: rng.uniform(0.2, 1) for x in (*symbols.q, *symbols.u)}
     for zero in (None, *symbols.q):
         state = {**usual, symbols.t: 0.0} | ({} if zero is None else {zero: 0.0})
         a = evaluate(equations.accelerations, state, FLOAT)

@@ -46,7 +46,7 @@ from eomgen.mechanics.equilibrium import (
 )
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.linearization import first_order_of
-from eomgen.mechanics.start import known_exactly, known_parameters, shown_numbers
+from eomgen.mechanics.start import shown_numbers
 from eomgen.model import Model, Unit, in_own_unit
 from eomgen.proof import (
     BY_MOTION,
@@ -155,7 +155,7 @@ def _family(place: Equilibrium, curve: Curve) -> dict[str, Any]:
 def _reaction_entries(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
     """JSON entries of the reactions at the first equilibrium."""
     _, reactions, why = those
-    numbers = shown_numbers([each.value for each in reactions], known_exactly(place.statics.system.scope))
+    numbers = shown_numbers([each.value for each in reactions], place.statics.system.scope.known_exactly)
     return {
         "reactions": {
             each.named.name: Quantity(
@@ -222,7 +222,7 @@ def resting_picture(places: Sequence[Equilibrium]) -> Picture:
 
 def _sketch(place: Equilibrium) -> Sketch:
     symbols = place.statics.system.symbols
-    plain = Sketch(place.statics.system, known_parameters(place.statics.system.scope))
+    plain = Sketch(place.statics.system, place.statics.system.scope.known_parameters)
     inputs = {node: plain.numbers((place.statics.given[node],))[0] for node in symbols.inputs.values()}
     still = dict.fromkeys((symbols.t, *symbols.u), 0.0)
     return Sketch(place.statics.system, {**plain.values, **inputs, **still, **place.numbers})
@@ -426,7 +426,7 @@ def _reaction_steps(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ..
         return (Step("reactions", title, (prose(f"The reactions do not follow: {why}."),)),)
     if not found:
         return ()
-    numbers = shown_numbers([each.value for each in found], known_exactly(place.statics.system.scope))
+    numbers = shown_numbers([each.value for each in found], place.statics.system.scope.known_exactly)
     rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
     grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
     pulls = [prose(f"But '{name}' would have to pull there: it does not hold.") for name in place.pulling]

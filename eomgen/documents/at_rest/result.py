@@ -25,7 +25,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan, blocks_of
-from eomgen.mechanics.start import known_exactly, shown_numbers
+from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import (
     InfluenceLine,
     RestCondition,
@@ -132,7 +132,7 @@ class Statics(Result):
     def _numbers(self, pairs: Sequence[tuple[str, Scalar]]) -> dict[str, float]:
         """The scalars in numbers, those whose parameters have values."""
         names, scalars = zip(*pairs, strict=True) if pairs else ((), ())
-        found = shown_numbers(scalars, known_exactly(self.found.system.scope))
+        found = shown_numbers(scalars, self.found.system.scope.known_exactly)
         return {name: x for name, x in zip(names, found, strict=True) if x is not None}
 
     def certify(self) -> Certificate:

@@ -25,7 +25,6 @@ from eomgen.mechanics.free_bodies import (
     numeral,
     resting_blocks,
 )
-from eomgen.mechanics.kinematics import mass_properties
 from eomgen.mechanics.statics import (
     Acting,
     RestCondition,
@@ -490,7 +489,7 @@ def point_name(plan: VelocityPlan, place: BodyPoint) -> str:
     given = [name for name in named if name not in ("origin", "center")]
     if given:
         return f"{body}.{given[0]}"
-    return f"mass centre of {body}" if _same(mass_properties(motion.scope, body).com, r) else body
+    return f"mass centre of {body}" if _same(motion.scope.mass_properties(body).com, r) else body
 
 
 def _same(a: Vector, b: Vector) -> bool:

@@ -14,7 +14,6 @@ from eomgen.documents.figures import Picture
 from eomgen.errors import MissingValues, RunFailed
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import FIXED, Centrodes, KinematicState, Mechanism
-from eomgen.mechanics.kinematics import field_of
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
@@ -82,7 +81,7 @@ def _configurations(system: System, body: str, values: State) -> list[State]:
     if symbols.u:
         rates, length = (0, *(row[0] for row in scope.N)), _reach(system, values)
     else:
-        spin = abs(float(evaluate((field_of(system.motion, body).w[2],), values, FLOAT)[0]))
+        spin = abs(float(evaluate((system.motion.field(body).w[2],), values, FLOAT)[0]))
         rates, length = (1, *scope.rates), math.pi / spin if spin > tolerances.COMPUTED else 1.0
     slope = _slope(system, rates, values)
     before, after = (_followed(system, slope, values, sign * length / STEPS) for sign in (-1, 1))

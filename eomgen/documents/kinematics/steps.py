@@ -44,7 +44,6 @@ from eomgen.mechanics.instant import (
     composition_of,
     readable_at,
 )
-from eomgen.mechanics.kinematics import body_wrench, joint_wrenches, mass_properties, weights
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import (
     ZERO,
@@ -391,13 +390,13 @@ def _is_particle(system: System, owner: str | None, point: str) -> bool:
     part = None if owner is None else system.scope.model.bodies.get(owner)
     if part is None or part.shape is None or not part.shape.is_point:
         return False
-    return point.endswith((".center", ".origin")) and not is_zero(mass_properties(system.scope, str(owner)).m)
+    return point.endswith((".center", ".origin")) and not is_zero(system.scope.mass_properties(str(owner)).m)
 
 
 def _in_frame(system: System, particle: str, body: str, readable: Readable) -> tuple[Step, ...]:
     """m a_r = F - m a_t - m a_C in the axes of the body; F: applied forces and reactions."""
     parts = composition_of(system.motion, f"{particle}.origin", body)
-    m, letters = mass_properties(system.scope, particle).m, axes(system)
+    m, letters = system.scope.mass_properties(particle).m, axes(system)
     ground = {
         "applied": applied_force(system, particle),
         "-m*a_O": times(-m, parts.carrier.a),
@@ -421,8 +420,8 @@ def _in_frame(system: System, particle: str, body: str, readable: Readable) -> t
 def applied_force(system: System, body: str) -> Vector:
     """The sum of the forces applied to a body, drives and springs of its joint included, ground axes."""
     motion, loads = system.motion, system.loads
-    found = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
-    found += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]
+    found = [motion.body_wrench(load) for load in (*loads.placed, *loads.weights)]
+    found += [pair for effort in loads.efforts for pair in effort.wrenches(motion)]
     total: Vector = ZERO
     for each in found:
         if each is not None and each[0] == body:

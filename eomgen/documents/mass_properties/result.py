@@ -42,7 +42,6 @@ from eomgen.documents.statements import Law, Prose, Quantity, Statement, Step, p
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import mass_properties
 from eomgen.mechanics.mass_properties import flat_bodies, in_ground, numbers_in, shapeless
 from eomgen.mechanics.start import start_state
 from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest, numeric_parameters
@@ -377,7 +376,7 @@ def inertia_scene(
     for body, rows in axes.items():
         if body not in system.motion.index or body not in moments or min(moments[body]) < 0 or not any(moments[body]):
             continue
-        mass = mass_properties(system.scope, body)
+        mass = system.scope.mass_properties(body)
         m, *com = numbers_in((mass.m, *mass.com), system.scope, known) or (0.0, 0.0, 0.0, 0.0)
         if m <= 0:
             continue

@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics import Motion, made_of, mass_properties
+from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.mass_properties import Principal, numbers_in, principal_of, short_form
 from eomgen.model import MassProperties, about, about_axis, matrix_times, polar, second_moments
 from eomgen.symbolic.expression import (
@@ -393,8 +393,8 @@ def together(motion: Motion, bodies: Sequence[str], start: State) -> InertiaSum:
 def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:
     """The pieces of a body, or itself, seen from where `pose` leads."""
     if motion.scope.model.bodies[body].parts is None:
-        return (InertiaRow(body, 1, _seen(mass_properties(motion.scope, body), pose)),)
-    pieces = made_of(motion.scope, body).pieces
+        return (InertiaRow(body, 1, _seen(motion.scope.mass_properties(body), pose)),)
+    pieces = motion.scope.made_of(body).pieces
     begin = f"{of}, " if of else ""
     return tuple(
         InertiaRow(

@@ -37,7 +37,6 @@ from eomgen.mechanics.linearization import (
     small_motions_of,
     with_outputs,
 )
-from eomgen.mechanics.start import known_exactly
 from eomgen.mechanics.state import Entries
 from eomgen.model import (
     Model,
@@ -427,7 +426,7 @@ class Linearization(Result):
     def _values(self, A: Entries) -> list[list[float]] | None:
         if not self.valued:
             return None
-        flat = iter(numbers_of([x for row in A for x in row], known_exactly(self.small.reference.system.scope)))
+        flat = iter(numbers_of([x for row in A for x in row], self.small.reference.system.scope.known_exactly))
         return [[next(flat) for _ in row] for row in A]
 
     def _mode(self, mode: Mode) -> dict[str, Any]:

@@ -46,7 +46,6 @@ from eomgen.mechanics.linearization import (
     laplace_variable,
     with_outputs,
 )
-from eomgen.mechanics.start import known_exactly
 from eomgen.mechanics.state import Entries
 from eomgen.proof import PrintedModes
 from eomgen.symbolic.expression import Node, Scalar, depends_on, is_zero, over, symbols_of
@@ -360,7 +359,7 @@ def _or_numbers(modes: Modes, scalars: Sequence[Scalar]) -> list[Side]:
     """Formulas, or their values where they are too long to print."""
     reference = modes.small.reference
     long = [x for x in scalars if reference.valued and text_size(x) > LONG]
-    values = dict(zip(long, numbers_of(long, known_exactly(reference.system.scope)), strict=True))
+    values = dict(zip(long, numbers_of(long, reference.system.scope.known_exactly), strict=True))
     return [_number(values[x]) if x in values else _side(modes.written(x)) for x in scalars]
 
 

@@ -70,9 +70,6 @@ from eomgen.mechanics.constraints.closure import nearest_speeds as nearest_speed
 # e . e - 1 of every quaternion
 from eomgen.mechanics.constraints.closure import norms_of as norms_of
 
-# A float as a number of 50 digits
-from eomgen.mechanics.constraints.closure import of_50_digits as of_50_digits
-
 # The symbols whose squares add up to 1, over their norm
 from eomgen.mechanics.constraints.closure import on_unit_norms as on_unit_norms
 

@@ -21,13 +21,12 @@ from eomgen.mechanics.constraints.closure import (
     is_guess,
     is_typed,
     nearest_places,
-    of_50_digits,
     still_values,
 )
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.constraints.rows import Constraints, Row
-from eomgen.mechanics.kinematics import Located, places_of, start_values, with_unit_quaternions
+from eomgen.mechanics.kinematics import Located, places_of
 from eomgen.mechanics.state import Numbers
 from eomgen.model import Model, contacts_of, exact_parameters
 from eomgen.symbolic.expression import (
@@ -49,6 +48,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     lengths_of,
+    of_50_digits,
     of_one_length,
     tolerances,
 )
@@ -65,7 +65,7 @@ def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
     scope, rows = constraints.motion.scope, gaps_of(constraints)
     if not rows:
         return {}
-    declared = with_unit_quaternions(scope, start_values(scope)) | {scope.symbols.t: 0}
+    declared = scope.with_unit_quaternions(scope.start_values()) | {scope.symbols.t: 0}
     drawn = any(name not in exact_parameters(scope.model) for name in scope.symbols.parameters)
     states = [_assembled(constraints, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
     moved = [q for q in scope.symbols.q if any(_differs(declared[q], q, state) for state in states)]

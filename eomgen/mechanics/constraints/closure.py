@@ -20,7 +20,16 @@ from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.state import Numbers
 from eomgen.model import Model, exact_parameters, first_guesses, start_values
 from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian, sqrt
-from eomgen.symbolic.numeric import Newton, NoValue, balanced, evaluate, fifty_digits, lengths_of, tolerances
+from eomgen.symbolic.numeric import (
+    Newton,
+    NoValue,
+    balanced,
+    evaluate,
+    fifty_digits,
+    lengths_of,
+    of_50_digits,
+    tolerances,
+)
 
 CLOSING = Newton(enough=tolerances.CLOSED_AT_50, stalls=tolerances.SUMMED, damped=True, again=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
@@ -121,11 +130,6 @@ def on_unit_norms(unit_quaternions: Sequence[Sequence[Node]], state: State) -> S
         (norm,) = evaluate((sqrt(sum((x * x for x in symbols), start=0)),), state, fifty_digits())
         found |= {x: state[x] / norm for x in symbols}
     return found
-
-
-def of_50_digits(value: float) -> Any:
-    """A float as a number of 50 digits."""
-    return fifty_digits().number(1) * value
 
 
 def _open(constraints: Constraints, known: Mapping[str, Any]) -> EomgenError:

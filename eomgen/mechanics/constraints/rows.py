@@ -20,15 +20,11 @@ from eomgen.mechanics.kinematics import (
     ContactModes,
     Motion,
     SystemScene,
-    body_wrench,
     friction_factor,
-    in_ground_axes,
     motion_of,
     rows_in_mode,
     scope_of,
     shorter_row,
-    slide_of,
-    start_values,
 )
 from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, exact_parameters, unbuilt_constraints
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
@@ -320,7 +316,7 @@ def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
         return
     for _ in range(3):
         state = {p: digits.number(Fraction(known[name]) * (1 + _aside(rng))) for name, p in symbols.parameters.items()}
-        starts = tuple(start_values(scope).values())
+        starts = tuple(scope.start_values().values())
         state |= {
             q: x + digits.number(_aside(rng)) for q, x in zip(symbols.q, evaluate(starts, state, digits), strict=True)
         }
@@ -339,7 +335,7 @@ def _is_met(motion: Motion, gap: Scalar) -> bool:
 
 
 def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
-    return tuple(found for push in pushes if (found := body_wrench(motion, push)) is not None)
+    return tuple(found for push in pushes if (found := motion.body_wrench(push)) is not None)
 
 
 def _in_balance(seen: Motion, carrier: str, wrenches: Wrenches) -> Wrenches:
@@ -375,7 +371,7 @@ def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
 
 def slide_power(motion: Motion, push: PointForce) -> Scalar:
     """Power of a push on a point that moves in its body: F . R r'."""
-    return dot(in_ground_axes(motion, push.force, push.axes), slide_of(motion, push.place))
+    return dot(motion.in_ground_axes(push.force, push.axes), motion.slide(push.place))
 
 
 def holds_identically(scalar: Scalar) -> bool:

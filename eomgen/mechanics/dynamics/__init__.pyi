@@ -55,18 +55,6 @@ from eomgen.mechanics.dynamics.formulations import reported_of_nodes as reported
 
 # The model with the balance of every massless node as a constraint, from which its coordinate follows
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced as with_nodes_balanced
-
-# C with C u = c, by Christoffel's symbols of M
-from eomgen.mechanics.dynamics.matrices import coriolis_of as coriolis_of
-
-# g(q): minus the generalized forces of the uniform fields on every mass
-from eomgen.mechanics.dynamics.matrices import gravity_of as gravity_of
-
-# J_P of v_P = J_P u + what moves as given, ground axes: 2 rows in the plane, 3 in space
-from eomgen.mechanics.dynamics.matrices import jacobian_of_point as jacobian_of_point
-
-# Coordinates, speeds and inputs are functions of time of their names, theta' is theta_dot; parameters are real
-from eomgen.mechanics.dynamics.matrices import sympy_system as sympy_system
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE as EVERYWHERE
 from eomgen.mechanics.dynamics.pieces import NOWHERE as NOWHERE
 from eomgen.mechanics.dynamics.pieces import SMOOTH as SMOOTH
@@ -89,47 +77,11 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion as EquationsOfMot
 # Motion, loads and constraints from which every formulation assembles the equations; none of them uses another
 from eomgen.mechanics.dynamics.system import System as System
 
-# Names of the forces and joints whose generalized forces have a property: "the force 'd' and the joint of 'x'"
-from eomgen.mechanics.dynamics.system import acting as acting
-
-# Q of what a joint's drive and damper do: drive ds/dq
-from eomgen.mechanics.dynamics.system import drive_row as drive_row
-
-# Q of a joint's drive, spring and damper: drive ds/dq - dV/dq
-from eomgen.mechanics.dynamics.system import effort_row as effort_row
-
-# Q of one named force
-from eomgen.mechanics.dynamics.system import force_row as force_row
-
 # Motion, loads and constraints of a model in which dependent coordinates are as free as others
 from eomgen.mechanics.dynamics.system import free_system_of as free_system_of
 
-# -N^T dV/dq
-from eomgen.mechanics.dynamics.system import from_potential as from_potential
-
-# Q_k of everything applied: -dV/dq_k where there is a potential, else the virtual work per unit of q_k
-from eomgen.mechanics.dynamics.system import generalized_forces as generalized_forces
-
-# Q of the joints' efforts on the joint variables: D^T effort
-from eomgen.mechanics.dynamics.system import joint_forces as joint_forces
-
-# Q of one load by virtual work
-from eomgen.mechanics.dynamics.system import load_row as load_row
-
-# N^T applied to a row over the coordinates
-from eomgen.mechanics.dynamics.system import per_speed as per_speed
-
-# Q of loads that no twist contains: generalized forces, energies of coordinates, forces on sliding points
-from eomgen.mechanics.dynamics.system import placeless_forces as placeless_forces
-
-# Q_nc: the part of Q that comes from no potential, by virtual work
-from eomgen.mechanics.dynamics.system import powered_forces as powered_forces
-
 # The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared
 from eomgen.mechanics.dynamics.system import reduced_system as reduced_system
-
-# The sum of rows, entry by entry
-from eomgen.mechanics.dynamics.system import summed as summed
 
 # Motion, loads and constraints of a model, dependent coordinates eliminated
 from eomgen.mechanics.dynamics.system import system_of as system_of

@@ -9,15 +9,14 @@ import numpy as np
 
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, joint_forces, placeless_forces
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.kinematics import (
     GROUND,
     Branch,
+    Inertia,
     Loads,
     Motion,
     applied_wrenches,
-    armature_bias,
-    armature_mass,
     branches_of,
     inertia_wrench,
     rate_matrix,
@@ -165,7 +164,7 @@ def is_articulated(motion: Motion, branches: tuple[Branch, ...]) -> bool:
     """Every speed belongs to one joint alone, and no rotor couples two of them."""
     size = len(motion.scope.symbols.u)
     owned = [k for branch in branches for k in branch.columns]
-    coupled = any(i != j for i, j, _ in armature_mass(motion))
+    coupled = any(i != j for i, j, _ in Inertia(motion).added_mass)
     return sorted(owned) == list(range(size)) and size > 0 and not coupled
 
 
@@ -182,10 +181,10 @@ def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, .
     """a of the tree under its loads, constraint rows left out."""
     motion = loads.motion
     size = len(motion.scope.symbols.u)
-    direct = zip(joint_forces(loads), placeless_forces(loads), armature_bias(motion, size), strict=True)
+    direct = zip(loads.joint_forces, loads.placeless_forces, Inertia(motion).added_bias, strict=True)
     effort = [a + b - rotor for a, b, rotor in direct]
     rotors: list[Scalar] = [0] * size
-    for k, _, value in armature_mass(motion):
+    for k, _, value in Inertia(motion).added_mass:
         rotors[k] = rotors[k] + value
     base = (*ZERO, *times(-1, loads.fields))
     biases, p = _velocity_terms(branches)

@@ -12,26 +12,16 @@ from eomgen.mechanics.dynamics.system import (
     System,
     assembled,
     free_system_of,
-    generalized_forces,
-    joint_forces,
-    per_speed,
-    placeless_forces,
 )
 from eomgen.mechanics.kinematics import (
     Branch,
+    Inertia,
     Loads,
     Motion,
     applied_wrenches,
-    armature_bias,
-    armature_mass,
     bias_forces,
-    body_wrench,
     branches_of,
     composite_mass_matrix,
-    joint_wrenches,
-    kinetic_energy,
-    mass_properties,
-    weights,
 )
 from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
 from eomgen.symbolic.expression import (
@@ -73,9 +63,9 @@ def assembled_by_energies(system: System) -> EquationsOfMotion:
     """The equations of motion from the energies; constraint rows by multipliers."""
     if system.free is not None:
         return _reduced(system, system.free)
-    T = kinetic_energy(system.motion)
+    T = Inertia(system.motion).kinetic_energy
     M, c = inertia_by_energies(system.motion, T)
-    return assembled(system, M=M, c=c, Q=generalized_forces(system.loads), T=T)
+    return assembled(system, M=M, c=c, Q=system.loads.generalized_forces, T=T)
 
 
 def _reduced(system: System, free: System) -> EquationsOfMotion:
@@ -118,11 +108,11 @@ def energies_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
 def _along(system: System, a: ScalarRow) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """The same for given accelerations of a system whose speeds are rates."""
     scope, u = system.scope, system.scope.symbols.u
-    T = kinetic_energy(system.motion)
+    T = Inertia(system.motion).kinetic_energy
     momenta = gradient(T, u)
-    held = per_speed(system.motion, gradient(T, scope.symbols.q))
+    held = system.motion.scope.per_speed(gradient(T, scope.symbols.q))
     c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
-    return tangent(momenta, dict(zip(u, a, strict=True))), c, generalized_forces(system.loads)
+    return tangent(momenta, dict(zip(u, a, strict=True))), c, system.loads.generalized_forces
 
 
 def free_rates(system: System, free: System) -> ScalarRow:
@@ -136,7 +126,7 @@ def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...
     scope = motion.scope
     momenta = gradient(T, scope.symbols.u)
     M = jacobian(momenta, scope.symbols.u)
-    held = per_speed(motion, gradient(T, scope.symbols.q))
+    held = motion.scope.per_speed(gradient(T, scope.symbols.q))
     c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
     return M, c
 
@@ -150,7 +140,7 @@ def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...
 def assembled_by_wrenches(system: System) -> EquationsOfMotion:
     """The equations of motion from wrenches and twists; constraint rows by multipliers."""
     M, c = inertia_by_twists(system.motion)
-    return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
+    return assembled(system, M=M, c=c, Q=force_side(system.loads), T=Inertia(system.motion).kinetic_energy)
 
 
 def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
@@ -161,19 +151,19 @@ def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     pushed = tangent(twists, dict(zip(u, a, strict=True)))
     inertia, bias = [], []
     for i, link in enumerate(motion.links):
-        mass = mass_properties(motion.scope, link.name)
+        mass = motion.scope.mass_properties(link.name)
         body = SpatialInertia.about_center(mass.m, mass.com, mass.I)
         inertia.append(body.momentum(_twist(pushed[6 * i : 6 * i + 6])))
         bias.append(_bias(body, link.twist, _twist(motion.alpha[i])))
     Ma = list(_projected(twists, inertia, u))
-    for i, j, value in armature_mass(motion):
+    for i, j, value in Inertia(motion).added_mass:
         Ma[i] = Ma[i] + value * a[j]
-    rotors = armature_bias(motion, len(u))
+    rotors = Inertia(motion).added_bias
     c = tuple(x + y for x, y in zip(_projected(twists, bias, u), rotors, strict=True))
     applied = applied_to_bodies(system.loads)
     none = Wrench(ZERO, ZERO)
     Q = _projected(twists, [applied.get(link.name, none) for link in motion.links], u)
-    return tuple(Ma), c, tuple(x + y for x, y in zip(Q, placeless_forces(system.loads), strict=True))
+    return tuple(Ma), c, tuple(x + y for x, y in zip(Q, system.loads.placeless_forces, strict=True))
 
 
 def _projected(twists: ScalarRow, wrenches: Iterable[Wrench], u: Sequence[Node]) -> ScalarRow:
@@ -187,7 +177,7 @@ def inertia_by_twists(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]
     M: list[list[Scalar]] = [[0] * size for _ in range(size)]
     c: list[Scalar] = [0] * size
     for i, link in enumerate(motion.links):
-        mass = mass_properties(motion.scope, link.name)
+        mass = motion.scope.mass_properties(link.name)
         inertia = SpatialInertia.about_center(mass.m, mass.com, mass.I)
         columns = [column for column in zip(*motion.B[i], strict=True)]
         touched = [k for k, column in enumerate(columns) if not all(is_zero(x) for x in column)]
@@ -216,16 +206,16 @@ def _twist(entries: Sequence[Scalar]) -> Twist:
 
 
 def _with_armatures(motion: Motion, M: list[list[Scalar]], c: list[Scalar]) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
-    for i, j, value in armature_mass(motion):
+    for i, j, value in Inertia(motion).added_mass:
         M[i][j] = M[i][j] + value
-    added = armature_bias(motion, len(c))
+    added = Inertia(motion).added_bias
     return tuple(tuple(row) for row in M), tuple(a + b for a, b in zip(c, added, strict=True))
 
 
 def force_side(loads: Loads) -> ScalarRow:
     """Q = sum B^T W of every wrench, and what acts at no place."""
     motion = loads.motion
-    Q = list(placeless_forces(loads))
+    Q = list(loads.placeless_forces)
     for body, wrench in applied_to_bodies(loads).items():
         rows = motion.B[motion.index[body]]
         for k in range(len(Q)):
@@ -236,8 +226,8 @@ def force_side(loads: Loads) -> ScalarRow:
 def applied_to_bodies(loads: Loads) -> dict[str, Wrench]:
     """Applied wrench on each body, efforts of joints included: at its origin, in its axes."""
     motion = loads.motion
-    wrenches = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
-    wrenches += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]
+    wrenches = [motion.body_wrench(load) for load in (*loads.placed, *loads.weights)]
+    wrenches += [pair for effort in loads.efforts for pair in effort.wrenches(motion)]
     total: dict[str, Wrench] = {}
     for found in wrenches:
         if found is not None:
@@ -258,8 +248,8 @@ def assembled_by_recursion(system: System) -> EquationsOfMotion:
         system,
         M=mass(motion, branches),
         c=inertia_terms(motion, branches),
-        Q=generalized_forces(system.loads),
-        T=kinetic_energy(motion),
+        Q=system.loads.generalized_forces,
+        T=Inertia(motion).kinetic_energy,
         forcing=forcing(system.loads, branches),
     )
 
@@ -268,7 +258,7 @@ def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> ScalarRow:
     """c: what inertia takes at a = 0, armatures included."""
     size = len(motion.scope.symbols.u)
     bias = bias_forces(branches, size, base_acceleration=ZERO, applied={})
-    return tuple(a + b for a, b in zip(bias, armature_bias(motion, size), strict=True))
+    return tuple(a + b for a, b in zip(bias, Inertia(motion).added_bias, strict=True))
 
 
 def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
@@ -281,15 +271,15 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
         base_acceleration=times(-1, loads.fields),
         applied=applied_wrenches(loads, branches),
     )
-    direct = [a + b for a, b in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
-    armature = armature_bias(motion, size)
+    direct = [a + b for a, b in zip(loads.joint_forces, loads.placeless_forces, strict=True)]
+    armature = Inertia(motion).added_bias
     return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))
 
 
 def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[ScalarRow, ...]:
     """M by composite bodies, armatures included."""
     M = composite_mass_matrix(branches, len(motion.scope.symbols.u))
-    for i, j, value in armature_mass(motion):
+    for i, j, value in Inertia(motion).added_mass:
         M[i][j] = M[i][j] + value
     return tuple(tuple(row) for row in M)
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import begun_state, closed, generic_state, movable, of_50_digits, on_unit_norms
+from eomgen.mechanics.constraints import begun_state, closed, generic_state, movable, on_unit_norms
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, generalized_forces
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import readable
 from eomgen.symbolic.expression import (
@@ -40,6 +40,7 @@ from eomgen.symbolic.numeric import (
     compared_sides,
     evaluate,
     fifty_digits,
+    of_50_digits,
     piecewise_nodes,
     switches_of,
     tolerances,
@@ -426,7 +427,7 @@ SMOOTH = "tanh(w/eps) in place of sign(w) runs, and creeps where dry friction st
 def signs_of_rates(system: System) -> tuple[Scalar, ...]:
     """Arguments of sign(...) in the forces that depend on speeds."""
     if signs_of_rates not in system.found:
-        forces = generalized_forces(system.loads)
+        forces = system.loads.generalized_forces
         given = [node.args[0] for node in order(forces) if node.op == "sign"]
         system.found[signs_of_rates] = tuple(x for x in given if depends_on(x, system.symbols.u))
     found: tuple[Scalar, ...] = system.found[signs_of_rates]

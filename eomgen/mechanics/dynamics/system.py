@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
+from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
     Constraints,
@@ -19,41 +20,31 @@ from eomgen.mechanics.constraints import (
     rows_alike,
 )
 from eomgen.mechanics.kinematics import (
-    Applied,
     ContactModes,
-    JointEffort,
     Loads,
     Motion,
     Scope,
-    Solved,
-    in_body_axes,
-    in_ground_axes,
     loads_of,
     motion_of,
     scope_of,
     shorter,
-    slide_of,
-    spin_of,
-    weights,
-    with_declared_speeds,
 )
-from eomgen.model import Couple, GeneralizedForce, Load, Model, PointForce, UniformField
+from eomgen.model import Model, quaternions_of, rate_matrix_of
 from eomgen.symbolic.expression import (
-    ZERO,
     Node,
     Scalar,
     ScalarRow,
-    ScalarRows,
     Symbols,
-    Vector,
-    dot,
-    gradient,
+    combined,
+    depends_on,
     inner,
+    is_zero,
     jacobian,
     substituted,
-    vector_of,
+    symbols_of,
 )
 from eomgen.symbolic.numeric import transplanted
+from eomgen.symbolic.solve import cramer
 
 # -------- system ----------------------------------------------------------------------------------------------
 # Model -> System: motion, loads and constraints of one model, over one graph.
@@ -169,124 +160,6 @@ def reduced_system(free: System) -> System:
     return System(motion, loads_of(motion, free.loads.begun), constraints, free.modes, elimination, free, solved)
 
 
-# -------- work ------------------------------------------------------------------------------------------------
-# Loads -> generalized forces by virtual work on positions and by derivatives of the potential energy.
-
-
-def generalized_forces(loads: Loads) -> ScalarRow:
-    """Q_k of everything applied: -dV/dq_k where there is a potential, else the virtual work per unit of q_k."""
-    rows = [force_row(loads, force) for force in loads.applied] + [effort_row(loads.motion, e) for e in loads.efforts]
-    return summed(rows, len(loads.motion.scope.symbols.u))
-
-
-def powered_forces(loads: Loads) -> ScalarRow:
-    """Q_nc: the part of Q that comes from no potential, by virtual work."""
-    motion = loads.motion
-    rows = [force_row(loads, force) for force in loads.applied if force.potential is None]
-    rows += [drive_row(motion, effort) for effort in loads.efforts]
-    return summed(rows, len(motion.scope.symbols.u))
-
-
-def acting(loads: Loads, holds: Callable[[ScalarRow], bool]) -> str:
-    """Names of the forces and joints whose generalized forces have a property: "the force 'd' and the joint of 'x'"."""
-    found = [f"the force '{force.name}'" for force in loads.applied if holds(force_row(loads, force))]
-    found += [f"the joint of '{effort.body}'" for effort in loads.efforts if holds(effort_row(loads.motion, effort))]
-    return " and ".join(dict.fromkeys(found))
-
-
-def summed(rows: list[ScalarRow], size: int) -> ScalarRow:
-    """The sum of rows, entry by entry."""
-    sums: list[Scalar] = [0] * size
-    for row in rows:
-        sums = [a + b for a, b in zip(sums, row, strict=True)]
-    return tuple(sums)
-
-
-def force_row(loads: Loads, force: Applied) -> ScalarRow:
-    """Q of one named force."""
-    if force.potential is not None:
-        return from_potential(loads.motion, force.potential)
-    size = len(loads.motion.scope.symbols.u)
-    return summed([load_row(loads, load) for load in force.loads], size)
-
-
-def effort_row(motion: Motion, effort: JointEffort) -> ScalarRow:
-    """Q of a joint's drive, spring and damper: drive ds/dq - dV/dq."""
-    elastic = from_potential(motion, effort.potential)
-    return tuple(d + e for d, e in zip(drive_row(motion, effort), elastic, strict=True))
-
-
-def drive_row(motion: Motion, effort: JointEffort) -> ScalarRow:
-    """Q of what a joint's drive and damper do: drive ds/dq."""
-    s = motion.link(effort.body).s[effort.variable]
-    return tuple(effort.drive * d for d in per_speed(motion, gradient(s, motion.scope.symbols.q)))
-
-
-def from_potential(motion: Motion, V: Scalar) -> ScalarRow:
-    """-N^T dV/dq."""
-    return tuple(-x for x in per_speed(motion, gradient(V, motion.scope.symbols.q)))
-
-
-def per_speed(motion: Motion, row: ScalarRow) -> ScalarRow:
-    """N^T applied to a row over the coordinates."""
-    N = motion.scope.N
-    size = len(motion.scope.symbols.u)
-    return tuple(sum((N[i][k] * x for i, x in enumerate(row)), start=0) for k in range(size))
-
-
-def load_row(loads: Loads, load: Load) -> ScalarRow:
-    """Q of one load by virtual work."""
-    motion = loads.motion
-    symbols = motion.scope.symbols
-    if isinstance(load, GeneralizedForce):
-        row = tuple(load.value if q.name == load.coordinate else 0 for q in symbols.q)
-        return per_speed(motion, row)
-    if isinstance(load, UniformField):
-        return summed([load_row(loads, weight) for weight in weights(loads)], len(symbols.u))
-    if isinstance(load, Couple):
-        spin = jacobian(spin_of(motion, motion.link(load.body)), symbols.u)
-        couple = in_body_axes(motion, load.body, load.couple, load.axes)
-        return _weighted(couple, spin, len(symbols.u))
-    position = jacobian(motion.position(load.place), symbols.q)
-    force = in_ground_axes(motion, load.force, load.axes)
-    return per_speed(motion, _weighted(force, position, len(symbols.q)))
-
-
-def _weighted(force: Vector, rows: ScalarRows, size: int) -> ScalarRow:
-    """force . d(position)/dq_k for each k."""
-    return tuple(dot(force, vector_of(row[k] for row in rows)) for k in range(size))
-
-
-def placeless_forces(loads: Loads) -> ScalarRow:
-    """Q of loads that no twist contains: generalized forces, energies of coordinates, forces on sliding points."""
-    size = len(loads.motion.scope.symbols.u)
-    rows = [load_row(loads, load) for load in loads.generalized]
-    energies = [force.potential for force in loads.applied if force.placeless]
-    rows += [from_potential(loads.motion, V) for V in energies if V is not None]
-    rows += [_sliding_row(loads.motion, load) for load in loads.placed if isinstance(load, PointForce)]
-    return summed(rows, size)
-
-
-def _sliding_row(motion: Motion, force: PointForce) -> ScalarRow:
-    """Q of a force whose point moves in its body: F . d(R r')/du."""
-    u = motion.scope.symbols.u
-    slide = slide_of(motion, force.place)
-    if slide == ZERO:
-        return (0,) * len(u)
-    return _weighted(in_ground_axes(motion, force.force, force.axes), jacobian(slide, u), len(u))
-
-
-def joint_forces(loads: Loads) -> ScalarRow:
-    """Q of the joints' efforts on the joint variables: D^T effort."""
-    motion = loads.motion
-    size = len(motion.scope.symbols.u)
-    rows = []
-    for effort in loads.efforts:
-        rate = motion.link(effort.body).s_rate[effort.variable]
-        rows.append(tuple(effort.effort * d for d in gradient(rate, motion.scope.symbols.u)))
-    return summed(rows, size)
-
-
 # -------- equations of motion ---------------------------------------------------------------------------------
 # What every formulation gives: the equations of motion of a system, as graph scalars.
 
@@ -385,3 +258,150 @@ def _alike(system: System) -> tuple[int, ...]:
         system.found[rows_alike] = rows_alike(system.constraints)
     found: tuple[int, ...] = system.found[rows_alike]
     return found
+
+
+# -------- declared speeds -------------------------------------------------------------------------------------
+# Scope -> Scope: generalized speeds that are not rates, w = Y(q, t) q' + y, in the place of the rates.
+#
+#     q' = N u + nu of the rates that are left,  w = Y u + y   ->   u = Y^-1 (w - y),   q' = (N Y^-1) w + (nu - N Y^-1
+#         y)
+#
+# A coordinate whose rate occurs in no declared speed has this rate as a speed. The four rates of a quaternion follow
+# from the angular velocity, e' = 1/2 e o (0, w), without any inverse. The speeds are the remaining rates, in the order
+# of the coordinates, then the declared ones in the order of the model.
+
+
+SpeedRows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Rates that declared speeds determine together; where the determinant vanishes they are not determined."""
+
+    rates: tuple[str, ...]
+    determinant: Scalar
+
+    def __str__(self) -> str:
+        return f"the declared speeds do not determine {', '.join(self.rates)}"
+
+
+def with_declared_speeds(
+    scope: Scope, *, vanishes: Callable[[Scalar], bool], shorter: Callable[[Scalar], Scalar]
+) -> tuple[Scope, tuple[Solved, ...]]:
+    """The scope over the declared speeds, and what must stay regular.
+
+    Args:
+        scope: over the rates, dependent coordinates eliminated.
+        vanishes: whether a scalar is zero at all states.
+        shorter: puts a coefficient of N into a shorter form.
+    Raises:
+        ModelError: not one speed for each degree of freedom; a speed that is not linear in the rates; speeds that
+            depend on one another.
+    """
+    u, graph = scope.symbols.u, scope.graph
+    declared = tuple(name for name, part in scope.model.speeds.items() if part.rate is not None)
+    turning = {node.name + "'" for four in scope.quaternions for node in four}
+    formulas = tuple(scope.names[name] for name in declared)
+    _refuse_turning(declared, formulas, [x for x in u if x.name in turning])
+    standing = set(symbols_of(formulas))
+    replaced = [x for x in u if x.name not in turning and x in standing]
+    _refuse_count(scope, declared, replaced)
+    kept = tuple(x for x in u if x.name not in turning and x not in replaced)
+    speeds = (*kept, *map(graph.symbol, scope.model.speeds))
+    rates = (*(graph.symbol(f"{x.name}'") for x in kept), *(graph.symbol(f"{name}'") for name in scope.model.speeds))
+    place = {x.name: k for k, x in enumerate(speeds)}
+    rows: SpeedRows = {x: (_unit(place[x.name], len(speeds)), 0) for x in kept}
+    solved, blocks = _rates_solved(scope, declared, replaced, place, vanishes, shorter)
+    rows |= solved
+    rows |= _quaternion_rates(scope, place)
+    symbols = replace(scope.symbols, u=speeds, a=rates)
+    return _over(scope, replace(scope, symbols=symbols), u, rows), blocks
+
+
+def _unit(k: int, size: int) -> tuple[int, ...]:
+    return tuple(int(j == k) for j in range(size))
+
+
+# -- the rates ---------------------------------------------------------------------------------------
+
+
+def _rates_solved(
+    scope: Scope,
+    declared: Sequence[str],
+    replaced: Sequence[Node],
+    place: dict[str, int],
+    vanishes: Callable[[Scalar], bool],
+    shorter: Callable[[Scalar], Scalar],
+) -> tuple[SpeedRows, tuple[Solved, ...]]:
+    """u = Y^-1 (w - y) of the rates that stand in declared speeds, by determinants."""
+    formulas = tuple(scope.names[name] for name in declared)
+    Y = jacobian(formulas, replaced)
+    y = substituted(formulas, dict.fromkeys(replaced, 0))
+    for name, row in zip(declared, Y, strict=True):
+        if any(depends_on(x, replaced) for x in row):
+            what = f"speed '{name}' is not linear in the rates"
+            raise ModelError(what, f"speeds.{name}.rate", "give a combination of rates")
+    system = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in Y]
+    right = [[*_unit(place[name], len(place)), -bias] for name, bias in zip(declared, y, strict=True)]
+    try:
+        X, blocks = cramer.solution_by_minors(system, right, vanishes=vanishes, shorter=shorter)
+        singular = any(vanishes(cramer.determinant(block.matrix)) for block in blocks)
+    except (DerivationError, ZeroDivisionError, StopIteration):
+        singular = True
+    if singular:
+        names = ", ".join(x.name for x in replaced)
+        what = f"the declared speeds do not determine the rates {names}: they depend on one another"
+        raise ModelError(what, "speeds", "declare independent combinations of the rates")
+    found = tuple(
+        Solved(tuple(replaced[j].name for j in block.unknowns), cramer.determinant(block.matrix)) for block in blocks
+    )
+    return {x: (tuple(row[:-1]), row[-1]) for x, row in zip(replaced, X, strict=True)}, found
+
+
+def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
+    """e' = 1/2 e o (0, w), one row for each of its rates."""
+    rows: SpeedRows = {}
+    for four, each in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
+        for e, factors in zip(four, rate_matrix_of(four), strict=True):
+            row: list[Scalar] = [0] * len(place)
+            for name, factor in zip(each.speeds, factors, strict=True):
+                row[place[name]] = factor
+            rows[scope.graph.symbol(f"{e.name}'")] = (tuple(row), 0)
+    return rows
+
+
+def _over(old: Scope, new: Scope, u: Sequence[Node], rows: SpeedRows) -> Scope:
+    """q' = N u + nu with u = rows . w + bias put in, and the meaning of every name."""
+    N = tuple(combined(row, [rows[x][0] for x in u]) for row in old.N)
+    nu = tuple(bias + inner(row, [rows[x][1] for x in u]) for row, bias in zip(old.N, old.nu, strict=True))
+    new = replace(new, N=N, nu=nu)
+    rates = {f"{q.name}'": rate for q, rate in zip(new.symbols.q, new.rates, strict=True)}
+    second = new.with_accelerations(tuple(rates.values()))
+    names = {**old.names, **rates, **{f"{name}'": x for name, x in zip(rates, second, strict=True)}}
+    return replace(new, names=names | {x.name: x for x in (*new.symbols.u, *new.symbols.a)})
+
+
+# -- what cannot be ----------------------------------------------------------------------------------
+
+
+def _refuse_turning(declared: Sequence[str], formulas: Sequence[Scalar], turning: Sequence[Node]) -> None:
+    for name, formula in zip(declared, formulas, strict=True):
+        if depends_on(formula, turning):
+            what = f"the rate of a quaternion stands in the speed '{name}'"
+            raise ModelError(what, f"speeds.{name}.rate", "the speeds of the joint's `omega` stand for these rates")
+
+
+def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node]) -> None:
+    if len(declared) == len(replaced):
+        return
+    rates = f"{len(replaced)} rate{'s' * (len(replaced) != 1)}"
+    what = f"{len(declared)} speed{' is' if len(declared) == 1 else 's are'} declared for {rates}"
+    named = ", ".join(x.name for x in replaced) or "none"
+    if len(declared) < len(replaced):
+        fix = (
+            "declare one speed for each rate that stands in them, or leave out those that keep their rate; "
+            "a coordinate that constraints determine may be `dependent`"
+        )
+    else:
+        fix = "declare one for each degree of freedom: leave out those that follow from the others"
+    raise ModelError(f"{what} ({named})", "speeds", fix)

@@ -11,14 +11,14 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import generic_state, of_50_digits, scattered_state
+from eomgen.mechanics.constraints import generic_state, scattered_state
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
-from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, from_potential
-from eomgen.mechanics.kinematics import BodyLink, mass_properties
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.state import Doubles
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, of_one_length, tolerances
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, of_50_digits, of_one_length, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 # -------- wellposed -------------------------------------------------------------------------------------------
@@ -39,7 +39,7 @@ def where_conservative(equations: EquationsOfMotion) -> Extent:
     by_itself = (*equations.nu, *equations.sigma)
     if any(not is_zero(x) for x in by_itself) or depends_on(equations.V, (t,)) or depends_on(equations.T, (t,)):
         return NOWHERE
-    elastic = from_potential(equations.system.motion, equations.V)
+    elastic = equations.system.motion.scope.from_potential(equations.V)
     if not elastic:
         return EVERYWHERE
     n = len(elastic)
@@ -139,7 +139,7 @@ def _is_full(system: System) -> bool:
 
 def _is_lean(system: System, link: BodyLink) -> bool:
     """True if the mass or a diagonal entry of the inertia of a body is 0: motions without kinetic energy."""
-    mass = mass_properties(system.scope, link.name)
+    mass = system.scope.mass_properties(link.name)
     axes = (2,) if system.scope.model.space == "plane" else range(3)
     return is_zero(mass.m) or any(is_zero(mass.I[k][k]) for k in axes)
 

@@ -13,8 +13,8 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import constraints_of, degrees_of_freedom, dependent_coordinates
-from eomgen.mechanics.dynamics import System, acting, generalized_forces, powered_forces, reduced_system, system_of
-from eomgen.mechanics.kinematics import Scope, loads_of, motion_of, start_values
+from eomgen.mechanics.dynamics import System, reduced_system, system_of
+from eomgen.mechanics.kinematics import Scope, loads_of, motion_of
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table, altered, exact_parameters, quaternions_of, rough_contacts
 from eomgen.symbolic.exact import readable_all, simplest
@@ -209,10 +209,10 @@ def static_equations(system: System) -> StaticEquations:
     rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.constraints.J]
     standing = standing_system(free)  # a damper at a seat that moves with t has no force at rest
     loads = (standing.free or standing).loads
-    forces = generalized_forces(loads)
+    forces = loads.generalized_forces
     _refuse_signs_of_rates(forces, free)
     Q = _at_rest(forces, given, free)
-    unbalanced = substituted(powered_forces(loads), given)
+    unbalanced = substituted(loads.powered_forces, given)
     phi = _relations(system, given, q)
     sigma = _left_at_rest(free, given, q)
     Q, unbalanced, phi, sigma = (
@@ -252,14 +252,14 @@ def with_norms(statics: StaticEquations) -> StaticEquations:
 
 def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
     """Values of speeds, time, inputs and driven coordinates at rest, at t = 0."""
-    return free.standing(start_values(free.scope, driven))
+    return free.standing(free.scope.start_values(driven))
 
 
 def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
     """Relations between positions from the constraints; constants that only the start fixes are taken from it."""
     from eomgen.mechanics.integrals import position_equations
 
-    found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
+    found = substituted(tuple(position_equations(system, system.scope.start_values())), given)
     return tuple(x for x in found if depends_on(x, q))
 
 
@@ -286,7 +286,7 @@ def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node])
 def has_degrees_of_freedom(system: System) -> bool:
     """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
     unknowns = system.symbols.unknowns.values()
-    forces = generalized_forces(system.loads)
+    forces = system.loads.generalized_forces
     return degrees_of_freedom(system.constraints) > 0 and not depends_on_any(forces, unknowns)
 
 
@@ -294,7 +294,7 @@ def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
     """(the system with its driven coordinates at rest where they start, the names of those that the model moves)."""
     scope = system.scope
     bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))
-    starts = {q.name: x for q, x in start_values(scope).items()}
+    starts = {q.name: x for q, x in scope.start_values().items()}
     table = dict(scope.model.coordinates)
     moved = [name for name, part in table.items() if part.driven and not vanishes(bias[name])]
     if not moved:
@@ -341,7 +341,7 @@ def _at_rest(forces: ScalarRow, given: State, free: System) -> ScalarRow:
                 return True
             return False
 
-        what = f"{acting(free.loads, has_none) or 'a force'} has no value where nothing moves: {error.what}"
+        what = f"{free.loads.acting(has_none) or 'a force'} has no value where nothing moves: {error.what}"
         fix = "write it so that it has one at rest: w/sqrt(w^2 + eps^2) in place of w/abs(w)"
         raise DerivationError(what, fix=fix) from error
 

@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.kinematics import Located, Motion, places_of, start_value
+from eomgen.mechanics.kinematics import Located, Motion, places_of
 from eomgen.model import first_guesses, in_own_unit, start_values
 from eomgen.symbolic.exact import readable, readable_all, simplest
 from eomgen.symbolic.expression import (
@@ -446,7 +446,7 @@ class ClosedForms:
             candidates: list[Scalar] = [0 if quarters == 0 else Fraction(quarters, 2) * q.graph.pi]
             if q in turning:
                 candidates = [sign * x for x in _round_components(q.graph) for sign in (1, -1)]
-            candidates += [start_value(scope, q)] * starts
+            candidates += [scope.start_value(q)] * starts
             near = [x for x in candidates if abs(located.value(x) - number) <= tolerances.COMPUTED * (1 + abs(number))]
             if near:
                 found[q] = near[0]
@@ -555,7 +555,7 @@ class Guess:
         near = scope.model.coordinates[q.name].near
         if q.name in self.requested:
             return Fraction(self.requested[q.name])
-        return start_value(scope, q) if near is None else scope.value(near)
+        return scope.start_value(q) if near is None else scope.value(near)
 
     @cached_property
     def _numbers(self) -> dict[str, float]:

@@ -11,7 +11,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions, reactions_of
-from eomgen.mechanics.start import values_of_parameters, values_where_at_rest
+from eomgen.mechanics.start import values_where_at_rest
 from eomgen.symbolic.exact import readable_all, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import Work, digits_at
@@ -151,7 +151,7 @@ def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
     readable_right = readable_all(right, Work.VALUE)
     own, shaken = (
         general_solution(LinearSystem(rows, readable_right, len(sought), digits_at(values)))
-        for values in (values_of_parameters(statics.system.scope, Random(3), shaken=each) for each in (False, True))
+        for values in (statics.system.scope.values_of_parameters(Random(3), shaken=each) for each in (False, True))
     )
     return shaken if len(shaken.free) == len(own.free) else own  # m1 - m2 is 0 at m1 = m2 alone
 

@@ -20,8 +20,8 @@ from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
 from eomgen.mechanics.free_bodies import Indeterminate, reactions_of
-from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion, locks_of, start_values, with_unit_quaternions
-from eomgen.mechanics.start import known_exactly, shown_numbers, values_of_parameters
+from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion
+from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.state import Doubles
 from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRows, State, depends_on_any, jacobian, symbols_of
@@ -65,7 +65,7 @@ class Equilibrium:
         system = self.statics.system
         state: dict[Node, Scalar] = {system.symbols.t: 0, **dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)}
         state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
-        values = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+        values = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
         return pulling_contacts(system, state, values)
 
     @cached_property
@@ -206,7 +206,7 @@ class _Search:
         """Static equations without the coordinates on which none depends."""
         found, scope = self.whole.without(self.whole.indifferent), self.system.scope
         idle = unheld(found) if self._slides else ()
-        return found.holding(with_unit_quaternions(scope, start_values(scope, idle))) if idle else found
+        return found.holding(scope.with_unit_quaternions(scope.start_values(idle))) if idle else found
 
     @property
     def _indifferent(self) -> tuple[Node, ...]:
@@ -236,7 +236,7 @@ class _Search:
     @cached_property
     def values(self) -> dict[Node, Any]:
         """Values of the parameters with 50 digits; a trial value for those that have none."""
-        return values_of_parameters(self.system.scope, Random(3))
+        return self.system.scope.values_of_parameters(Random(3))
 
     @cached_property
     def floats(self) -> dict[Node, float]:
@@ -246,7 +246,7 @@ class _Search:
     def _fixed(self) -> dict[Node, Scalar]:
         """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
         scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
-        fixed = with_unit_quaternions(scope, start_values(scope, (q for q in scope.symbols.q if q not in free)))
+        fixed = scope.with_unit_quaternions(scope.start_values(q for q in scope.symbols.q if q not in free))
         return fixed | {q: self._guess.exact(q) for q in self._chosen.coordinates}
 
     @cached_property
@@ -320,7 +320,7 @@ class _Search:
         own = fixed | self._determined(z)
         if self.valued:  # what is known in closed form has all its digits
             known = [q for q in own if q in exact]
-            sure = shown_numbers([exact[q] for q in known], known_exactly(self.system.scope))
+            sure = shown_numbers([exact[q] for q in known], self.system.scope.known_exactly)
             own |= {q: x for q, x in zip(known, sure, strict=True) if x is not None and math.isfinite(x)}
         return Equilibrium(self.statics, exact, own if self.valued else {}, stability)
 
@@ -360,7 +360,7 @@ def is_balanced_in_locked(statics: StaticEquations, place: State) -> bool:
     state = dict(place) | dict(zip((node for node, _ in given), _numbers([x for _, x in given], place), strict=True))
     return all(
         _is_free(statics, motion, lock, state)
-        for lock in locks_of(motion)
+        for lock in motion.locks
         if abs(_numbers([lock.determinant], state)[0]) < tolerances.DEGENERATE
     )
 
@@ -436,7 +436,7 @@ def passed_contacts(system: System, numbers: Mapping[Node, float]) -> tuple[str,
     """
     open_ = [name for name, mode in system.modes.items() if not mode.closed]
     gaps = {name: rows_of_constraint(system.motion, name)[0].gap for name in open_}
-    known = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+    known = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
     known |= {system.symbols.t: 0.0, **numbers}
     sought = {name: gap for name, gap in gaps.items() if gap is not None and known.keys() >= {*symbols_of((gap,))}}
     values = evaluate(tuple(sought.values()), known, FLOAT)

@@ -14,7 +14,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import rank_of_constraints
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.symbolic.exact import readable, sign_of_terms, simplest
 from eomgen.symbolic.expression import Node, Scalar, gradient, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import (
@@ -227,7 +226,7 @@ class _Place:
         others = [k for k in range(n) if k not in along]
         J = [substituted(row, self.exact) for row in self.statics.J]
         Z: list[list[Scalar]] = [[int(k == a) for a in along] for k in range(n)]
-        values = self.values or values_of_parameters(self.statics.system.scope, Random(3))
+        values = self.values or self.statics.system.scope.values_of_parameters(Random(3))
         for column, a in enumerate(along):
             rows = [{j: row[k] for j, k in enumerate(others)} for row in J]
             solution = general_solution(LinearSystem(rows, [-row[a] for row in J], len(others), digits_at(values)))

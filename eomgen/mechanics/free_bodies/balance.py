@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import generic_state, holds_identically, slide_power
-from eomgen.mechanics.dynamics import System, generalized_forces
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.wrenches import (
     Axes,
     Component,
@@ -19,7 +19,7 @@ from eomgen.mechanics.free_bodies.wrenches import (
     placements_of,
     seen_by_carriers,
 )
-from eomgen.mechanics.kinematics import GROUND, BodyLink, kinetic_energy, weights
+from eomgen.mechanics.kinematics import GROUND, BodyLink, Inertia
 from eomgen.model import PointForce, driven_coordinates, driving_constraints, in_loads
 from eomgen.symbolic.exact import readable_all
 from eomgen.symbolic.expression import (
@@ -198,7 +198,7 @@ def _idle_rows(system: System) -> set[str]:
     if all(row.pushes for row in system.constraints.rows):
         return set()
     free = system.free or system
-    Q = generalized_forces(free.loads)
+    Q = free.loads.generalized_forces
     moved = [any(not is_zero(B[i][k]) for B in free.motion.B for i in range(6)) for k in range(len(Q))]
     alone = [k for k, force in enumerate(Q) if is_zero(force) and not moved[k]]
     left = {row.label: line for row, line in zip(free.constraints.closing, free.constraints.J, strict=True)}
@@ -219,7 +219,7 @@ def _idle_rows(system: System) -> set[str]:
 
 def balances_of_nodes(free: System) -> set[str]:
     """The labels of rows that say 0 = Q_k of coordinates that move no mass: nothing else acts along these, lam = 0."""
-    T, Q, constraints = kinetic_energy(free.motion), generalized_forces(free.loads), free.constraints
+    T, Q, constraints = Inertia(free.motion).kinetic_energy, free.loads.generalized_forces, free.constraints
     idle = [k for k, u in enumerate(free.symbols.u) if is_zero(derivative(T, u)) and not is_zero(Q[k])]
     rows: dict[int, str] = {}
     for row, line, sigma in zip(constraints.closing, constraints.J, constraints.sigma, strict=True) if idle else ():
@@ -306,7 +306,7 @@ def _center_accelerations(axes: Axes) -> list[Vector]:
 def _applied(system: System, axes: Axes) -> list[tuple[Scalar, ...]]:
     """(force, moment about the mass centre) of everything given, on every body."""
     totals: list[tuple[Scalar, ...]] = [(0,) * 6 for _ in axes.motion.links]
-    effects = [e for load in (*system.loads.placed, *weights(system.loads)) for e in effects_of_load(axes, load)]
+    effects = [e for load in (*system.loads.placed, *system.loads.weights) for e in effects_of_load(axes, load)]
     for effect in (*effects, *joint_effects(system)):
         totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
     return totals

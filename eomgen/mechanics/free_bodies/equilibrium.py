@@ -24,7 +24,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import DIRECTIONS, Balance
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, Component, Effect, joint_effects
-from eomgen.mechanics.kinematics import GROUND, in_ground_axes, mass_properties, weights
+from eomgen.mechanics.kinematics import GROUND
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import equal
 from eomgen.symbolic.expression import (
@@ -143,7 +143,7 @@ class _Wrenches:
     def _places(self) -> list[tuple[np.ndarray, np.ndarray]]:
         """(axes of its equations in the ground's, mass centre) of each body, in numbers."""
         scope, links = self.system.scope, self.system.motion.links
-        centers = tuple(link.pose.point(mass_properties(scope, link.name).com) for link in links)
+        centers = tuple(link.pose.point(scope.mass_properties(link.name).com) for link in links)
         p = self.numbers.array(centers).reshape(-1, 3)
         if self._plane:
             return [(np.eye(3), center) for center in p]
@@ -205,7 +205,7 @@ def _applied(wrenches: _Wrenches) -> np.ndarray:
     """Resultant of all that is given, the loads as they were given."""
     system, numbers = wrenches.system, wrenches.numbers
     vectors: list[Scalar] = []
-    for load in (*system.loads.placed, *weights(system.loads)):
+    for load in (*system.loads.placed, *system.loads.weights):
         vectors += _about_origin(system, load)
     given = numbers.array(tuple(vectors)).reshape(-1, 6).sum(axis=0)
     return np.asarray(given + wrenches.of_effects(joint_effects(system)).sum(axis=0))
@@ -216,8 +216,8 @@ def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:
     if _body(load) is None:
         return []
     if isinstance(load, Couple):
-        return [*ZERO, *in_ground_axes(system.motion, load.couple, load.axes)]
-    force = in_ground_axes(system.motion, load.force, load.axes)
+        return [*ZERO, *system.motion.in_ground_axes(load.couple, load.axes)]
+    force = system.motion.in_ground_axes(load.force, load.axes)
     return [*force, *cross(system.motion.position(load.place), force)]
 
 
@@ -234,7 +234,7 @@ def _momentum_rates(system: System) -> tuple[Scalar, ...]:
 
 def _momenta(system: System) -> Iterable[tuple[Vector, Vector]]:
     for link in system.motion.links:
-        mass = mass_properties(system.scope, link.name)
+        mass = system.scope.mass_properties(link.name)
         moved = system.scope.time_derivative(mass.com)
         velocity = plus(plus(link.twist.v, cross(link.twist.w, mass.com)), (moved[0], moved[1], moved[2]))
         p = times(mass.m, apply(link.pose.R, velocity))

@@ -31,20 +31,15 @@ from eomgen.mechanics.dynamics import (
     System,
     assembled_by_recursion,
     free_system_of,
-    joint_forces,
-    placeless_forces,
     system_of,
 )
 from eomgen.mechanics.free_bodies.friction import frictions, has_friction
 from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.kinematics import (
+    Inertia,
     applied_wrenches,
-    armature_bias,
-    armature_mass,
     bias_forces,
     branches_of,
-    joint_row,
-    let_go,
 )
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
@@ -148,10 +143,10 @@ def inverse_residual(system: System) -> ScalarRow:
         applied=applied_wrenches(loads, branches),
         a=a,
     )
-    rotors = armature_bias(motion, len(a))
-    for i, j, value in armature_mass(motion):
+    rotors = Inertia(motion).added_bias
+    for i, j, value in Inertia(motion).added_mass:
         rotors[i] = rotors[i] + value * a[j]
-    direct = zip(forces, rotors, joint_forces(loads), placeless_forces(loads), strict=True)
+    direct = zip(forces, rotors, loads.joint_forces, loads.placeless_forces, strict=True)
     return tuple(f + rotor - x - y for f, rotor, x, y in direct)
 
 
@@ -187,7 +182,7 @@ def _along(u: Node, system: System) -> str:
 
 
 def _column_of_joint(system: System, body: str) -> ScalarRow:
-    row = joint_row(system.motion, body, 0)
+    row = system.motion.joint_row(body, 0)
     return tuple(row.get(k, 0) for k in range(len(system.symbols.u)))
 
 
@@ -292,7 +287,7 @@ def with_drive_let_go(system: System, coordinate: str) -> System:
     if key not in system.found:
         model = altered(
             system.scope.model,
-            coordinates=Table({**system.scope.model.coordinates, coordinate: let_go(system.scope, coordinate)}),
+            coordinates=Table({**system.scope.model.coordinates, coordinate: system.scope.let_go(coordinate)}),
         )
         over_all = system.free is None and dependent_coordinates(system.scope)
         system.found[key] = (free_system_of if over_all else system_of)(model, system.modes, begun_as=system)

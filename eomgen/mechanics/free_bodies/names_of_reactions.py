@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, holds_identically, is_placed
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, efforts_of
-from eomgen.mechanics.kinematics import BodyLink, Motion, in_ground_axes
+from eomgen.mechanics.kinematics import BodyLink, Motion
 from eomgen.model import AXIS_NAMES, PointForce, ends_requested
 from eomgen.symbolic.expression import (
     ZERO,
@@ -190,7 +190,7 @@ def _less_inside(balance: Balance, component: Component) -> Scalar:
         body, r = push.place
         if q is not None and body is not None and any(depends_on(x, (q,)) for x in r):
             slide = apply(motion.link(body).pose.R, vector_of(derivative(x, q) for x in r))
-            total = total - dot(in_ground_axes(motion, push.force, push.axes), slide)
+            total = total - dot(motion.in_ground_axes(push.force, push.axes), slide)
     return total
 
 

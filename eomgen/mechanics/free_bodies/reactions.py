@@ -32,7 +32,7 @@ from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import SURE, Combination, combined_reaction, solution_of_balance
 from eomgen.mechanics.free_bodies.structure import refuse_loose, structure_of
 from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
-from eomgen.mechanics.kinematics import Motion, mass_properties
+from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
 from eomgen.model import called, declared_at, driven_coordinates, driving_constraints
@@ -548,7 +548,7 @@ def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
     columns = []
     for e in balance.equations:
         i = motion.index[e.body]
-        link, com = motion.links[i], mass_properties(motion.scope, e.body).com
+        link, com = motion.links[i], motion.scope.mass_properties(e.body).com
         B = np.array(numbers([x for row in motion.B[i] for x in row])).reshape(6, -1)
         r = np.array(numbers(com))
         R = np.array(numbers([x for row in link.pose.R for x in row])).reshape(3, 3) if plane else np.eye(3)

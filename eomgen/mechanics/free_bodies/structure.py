@@ -13,7 +13,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
 from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock, VelocityPlan, blocks_of
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
-from eomgen.mechanics.start import values_for, values_where_at_rest
+from eomgen.mechanics.start import values_where_at_rest
 from eomgen.model import BodyPoint, Constraint, declared_at
 from eomgen.symbolic.exact import readable_all
 from eomgen.symbolic.expression import (
@@ -255,7 +255,7 @@ class Structure:
 
     def _parameters(self, *, shaken: bool) -> State:
         """The model's own, or the first generic ones at which all entries have a value."""
-        return values_for(self.system.scope, [x for row in self.rows for x in row.values()], shaken=shaken)
+        return self.system.scope.values_for([x for row in self.rows for x in row.values()], shaken=shaken)
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
-from eomgen.mechanics.kinematics import VelocityField, in_ground_axes, rotation_center
+from eomgen.mechanics.kinematics import VelocityField
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node, trusses_of
 from eomgen.symbolic.exact import Legibly, readable_all
 from eomgen.symbolic.expression import (
@@ -147,7 +147,7 @@ class VelocityPlan:
         """The centre of rotation of a plane motion."""
         if self.vanishes(field.w):
             return PlanCenter(None, ZERO if self.vanishes(field.v) else self.simple.vector(field.v))
-        return PlanCenter(self.simple.vector(rotation_center(field)))
+        return PlanCenter(self.simple.vector(field.rotation_center()))
 
     # -- work ----------------------------------------------------------------------------------------
 
@@ -177,7 +177,7 @@ class VelocityPlan:
 
     def force(self, vector: Vector, axes: str | None = None) -> Vector:
         """A vector of a load in this configuration, ground axes."""
-        return vector_of(substituted(in_ground_axes(self.system.motion, vector, axes), self.at))
+        return vector_of(substituted(self.system.motion.in_ground_axes(vector, axes), self.at))
 
     def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
         """True if all scalars are 0, compared with the largest of `beside`."""

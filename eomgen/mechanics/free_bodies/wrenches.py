@@ -18,8 +18,6 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     Motion,
     friction_factor,
-    in_ground_axes,
-    mass_properties,
 )
 from eomgen.model import Couple, MassProperties, PointForce, driven_coordinates
 from eomgen.symbolic.expression import (
@@ -109,7 +107,7 @@ class Axes:
 
     @cached_property
     def masses(self) -> tuple[MassProperties, ...]:
-        return tuple(mass_properties(self.motion.scope, link.name) for link in self.motion.links)
+        return tuple(self.motion.scope.mass_properties(link.name) for link in self.motion.links)
 
     def arm(self, i: int, place: Vector) -> Vector:
         """Vector from the mass centre to a place given in body axes."""
@@ -200,7 +198,7 @@ def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]
     vector = (
         given
         if load.axes == body and not axes.plane
-        else axes.of_ground(link, in_ground_axes(axes.motion, given, load.axes))
+        else axes.of_ground(link, axes.motion.in_ground_axes(given, load.axes))
     )
     beyond = None if load.beyond is None else apply(transposed(link.pose.R), load.beyond)
     if isinstance(load, Couple):

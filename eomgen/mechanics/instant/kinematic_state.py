@@ -16,11 +16,6 @@ from eomgen.mechanics.kinematics import (
     BodyLink,
     Motion,
     VelocityField,
-    acceleration_pole,
-    field_of,
-    inflection_center,
-    least_speed,
-    rotation_center,
 )
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node
@@ -103,7 +98,7 @@ class KinematicState:
         """Velocity field of every body; nodes of trusses are points, not bodies."""
         motion = self.system.motion
         bodies = [link.name for link in motion.links if not is_node(link.name)]
-        return {name: field_of(motion, name).at(self.state) for name in bodies}
+        return {name: motion.field(name).at(self.state) for name in bodies}
 
     @property
     def turning(self) -> dict[str, VelocityField]:
@@ -275,7 +270,7 @@ def composition_of(motion: Motion, point: str, body: str) -> Composition:
     elif owner != body:
         local = place
     v = scope.rate_of(local)
-    return Composition(place, field_of(motion, body), R, (local, v, vector_of(scope.with_accelerations(v))))
+    return Composition(place, motion.field(body), R, (local, v, vector_of(scope.with_accelerations(v))))
 
 
 def body_axes(motion: Motion, body: str) -> Matrix:
@@ -352,17 +347,17 @@ class BodyMotion:
     @cached_property
     def center(self) -> Vector | None:
         """Instantaneous centre of rotation (the point without velocity) in the plane; None where there is none."""
-        return self._found(rotation_center)
+        return self._found(VelocityField.rotation_center)
 
     @cached_property
     def pole(self) -> Vector | None:
         """Acceleration pole (the point without acceleration) in the plane; None where there is none."""
-        return self._found(acceleration_pole)
+        return self._found(VelocityField.acceleration_pole)
 
     @cached_property
     def inflection(self) -> tuple[Vector, Scalar] | None:
         """Inflection circle in the plane, (centre, radius): its points move without curvature of their path there."""
-        middle = self._found(inflection_center)
+        middle = self._found(VelocityField.inflection_center)
         if middle is None or self.center is None:
             return None
         arm = self.readable.vector(minus(middle, self.center))
@@ -375,7 +370,7 @@ class BodyMotion:
             return None
         (first, start), (last, end) = self.ends
         try:
-            least = least_speed(self.field, start, end, self.readable.scalar)
+            least = self.field.least_speed(start, end, self.readable.scalar)
         except DerivationError:  # both ends are one place
             return None
         return first, last, self.readable.scalar(least)
@@ -400,7 +395,7 @@ def body_motions(
     return tuple(
         BodyMotion(
             body,
-            readable.field(field_of(system.motion, body)),
+            readable.field(system.motion.field(body)),
             readable,
             _ends(system, readable, body),
             plane,

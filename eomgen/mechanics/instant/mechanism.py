@@ -15,7 +15,6 @@ from eomgen.mechanics.constraints import holds_identically, is_particle
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Component, components_of
 from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
-from eomgen.mechanics.kinematics import field_of
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node, leaves_of
 from eomgen.symbolic.exact import Legibly
@@ -90,7 +89,7 @@ class Mechanism:
         motion = self.system.motion
         bodies = [link for link in motion.links if not is_node(link.name)]
         return {
-            link.name: self._simple.vector(homogeneous_center(field_of(motion, link.name).at(self.moving)))
+            link.name: self._simple.vector(homogeneous_center(motion.field(link.name).at(self.moving)))
             for link in bodies
         }
 

@@ -12,9 +12,9 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import degrees_of_freedom, generic_state, of_50_digits
+from eomgen.mechanics.constraints import degrees_of_freedom, generic_state
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import VelocityField, axis_point, field_of, rotation_center
+from eomgen.mechanics.kinematics import VelocityField
 from eomgen.mechanics.state import Numbers
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
@@ -39,7 +39,7 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, of_50_digits, tolerances
 from eomgen.symbolic.solve import vanishes
 
 # -------- motion kind -----------------------------------------------------------------------------------------
@@ -107,7 +107,7 @@ class Kinds:
         Raises:
             DerivationError: the constraints do not close, or the motion is singular near the start.
         """
-        field, vanish = field_of(self.system.motion, body), self.possible.vanish
+        field, vanish = self.system.motion.field(body), self.possible.vanish
         if vanish(*field.w):
             if vanish(*field.v):
                 return Kind(REST)
@@ -122,7 +122,7 @@ class Kinds:
         vanish, possible = self.possible.vanish, self.possible
         axis = self._direction(field.w)
         planar = vanish(dot(field.w, field.v))
-        center = axis_point(field)
+        center = field.axis_point()
         if not vanish(*cross(possible.rate_of(center), field.w)):
             return Kind(PLANE if planar else GENERAL, axis=axis)
         if planar:
@@ -219,7 +219,7 @@ def finite_center(field: VelocityField, whose: str) -> Vector:
         DerivationError: it is at infinity: a translation; or everywhere: a rest.
     """
     if not vanishes(field.w[2]):
-        return rotation_center(field)
+        return field.rotation_center()
     if all(vanishes(x) for x in field.v):
         raise DerivationError(
             f"{whose} is at rest: every point is a centre of rotation", fix="choose a state in which the body turns"
@@ -513,7 +513,7 @@ def centrodes_of(kinds: Kinds, body: str) -> Centrodes | None:
     if system.scope.model.space != "plane" or kinds.of(body).name != PLANE or parameters(kinds) != 1:
         return None
     try:
-        center = rotation_center(field_of(system.motion, body))
+        center = system.motion.field(body).rotation_center()
         unit = dict.fromkeys(system.symbols.u, 1)  # one speed, which cancels
         (x, y, z) = substituted(center, unit)
     except DerivationError:

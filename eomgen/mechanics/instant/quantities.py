@@ -8,27 +8,16 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import System, free_rates, generalized_forces
+from eomgen.mechanics.dynamics import System, free_rates
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions, drive, multiplier, reactions_of, refuse_placeless
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
     Applied,
+    Inertia,
     JointEffort,
     SystemScene,
     VelocityField,
-    acceleration_pole,
-    armature_energy,
-    body_energies,
-    field_of,
-    in_body_axes,
-    in_ground_axes,
-    joint_wrenches,
-    kinetic_energy,
-    least_speed,
-    made_of,
-    mass_properties,
-    velocity_of,
 )
 from eomgen.mechanics.mass_properties import angular_momentum, flat_bodies, principal_moments, shapeless, tensor_about
 from eomgen.mechanics.statics import SectionForces, section_forces
@@ -199,7 +188,7 @@ class Quantities:
 
     def _field(self, body: str) -> VelocityField:
         """The field of a body at the given state."""
-        field = field_of(self.system.motion, body)
+        field = self.system.motion.field(body)
         return VelocityField(*self.here(field.p, field.v, field.a, field.w, field.e))
 
     def rotation_center(self, body: str, other: str = GROUND) -> Vector:
@@ -217,17 +206,17 @@ class Quantities:
         Raises:
             DerivationError: there is none.
         """
-        return acceleration_pole(self._field(body))
+        return self._field(body).acceleration_pole()
 
     def least_speed(self, body: str, start: Vector, end: Vector) -> Scalar:
         """The least speed of the points of a body between two places."""
-        return least_speed(self._field(body), start, end, self._short)
+        return self._field(body).least_speed(start, end, self._short)
 
     # -- masses and energies -------------------------------------------------------------------------
 
     def mass(self, body: str) -> MassProperties:
         """Mass, mass centre and inertia about it, body axes."""
-        return mass_properties(self.system.scope, body)
+        return self.system.scope.mass_properties(body)
 
     def parts(self, body: str) -> int | None:
         """Number of parts of which a body is made; None where it is not made of parts."""
@@ -236,7 +225,7 @@ class Quantities:
 
     def mass_of_part(self, body: str, number: int) -> Scalar:
         """The mass of a part, counted from 1; of a hole positive [kg]."""
-        found: Scalar = made_of(self.system.scope, body).pieces[number - 1].mass.m
+        found: Scalar = self.system.scope.made_of(body).pieces[number - 1].mass.m
         return found
 
     def without_inertia(self, bodies: Sequence[str]) -> tuple[str, ...]:
@@ -290,12 +279,12 @@ class Quantities:
     def generalized_force(self, coordinate: str) -> Scalar:
         """Q_k of everything applied."""
         system, k = self._speed(coordinate, "generalized_force")
-        return self._carried(system, generalized_forces(system.loads)[k])
+        return self._carried(system, system.loads.generalized_forces[k])
 
     def momentum(self, coordinate: str) -> Scalar:
         """p_k = dT/dq_k', or dT/du_k of a declared speed."""
         system, k = self._speed(coordinate, "momentum")
-        return self._carried(system, derivative(kinetic_energy(system.motion), system.symbols.u[k]))
+        return self._carried(system, derivative(Inertia(system.motion).kinetic_energy, system.symbols.u[k]))
 
     # -- the balance of the bodies -------------------------------------------------------------------
 
@@ -387,9 +376,9 @@ def energy_of_motion(system: System, body: str | None = None) -> Scalar:
     """T = m v.v / 2 + w.I w / 2 of the whole, or of one body with the rotors of its joint [J]."""
     motion = system.motion
     if body is None:
-        return kinetic_energy(motion)
-    energy = body_energies(motion)[motion.index[body]]
-    return energy.translation + energy.rotation + armature_energy(motion, motion.link(body))
+        return Inertia(motion).kinetic_energy
+    energy = Inertia(motion).bodies[motion.index[body]]
+    return energy.translation + energy.rotation + Inertia(motion).rotor_energy(motion.link(body))
 
 
 def energy_of_force(system: System, name: str | None = None) -> Scalar:
@@ -432,7 +421,7 @@ def _share(system: System, force: Applied, body: str) -> Scalar:
 
 def _effort_share(system: System, effort: JointEffort, body: str) -> Scalar:
     """The joint's spring, where it stands between the body and the ground."""
-    sharing = [name for name, _ in joint_wrenches(system.motion, effort)]
+    sharing = [name for name, _ in effort.wrenches(system.motion)]
     if body not in sharing or type(effort.potential) is int:
         return 0
     if sharing != [body]:
@@ -489,7 +478,7 @@ def _body_power(system: System, body: str) -> Scalar:
             if _acts_on(load, body):
                 total = total + _load_power(system, load)
     for effort in system.loads.efforts:
-        for name, wrench in joint_wrenches(system.motion, effort):
+        for name, wrench in effort.wrenches(system.motion):
             if name == body:
                 total = total + system.motion.link(body).twist.power(wrench)
     return total
@@ -509,7 +498,7 @@ def _load_power(system: System, load: Load) -> Scalar:
         coordinates = [q.name for q in system.symbols.q]
         return load.value * system.scope.rates[coordinates.index(load.coordinate)]
     if isinstance(load, Couple):
-        couple = in_body_axes(motion, load.body, load.couple, load.axes)
+        couple = motion.in_body_axes(load.body, load.couple, load.axes)
         return dot(couple, motion.link(load.body).twist.w)
     assert isinstance(load, PointForce), "fields are weights by now"
-    return dot(in_ground_axes(motion, load.force, load.axes), velocity_of(motion, load.place))
+    return dot(motion.in_ground_axes(load.force, load.axes), motion.velocity(load.place))

@@ -21,7 +21,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import fixed_by_position, holds_identically
 from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.start import start_state, values_for, values_of_parameters, values_where_at_rest
+from eomgen.mechanics.start import start_state, values_where_at_rest
 from eomgen.model import Model, WrittenEquation, altered, exact_parameters, freed, is_node
 from eomgen.symbolic.exact import collected_in, legible, readable_all
 from eomgen.symbolic.expression import (
@@ -471,7 +471,7 @@ def open_gaps(system: System, places: Mapping[Node, Scalar]) -> None:
 
 
 def _at_own_values(system: System, x: Scalar) -> float:
-    return float(evaluate((x,), values_of_parameters(system.scope, Random(1)), fifty_digits())[0])
+    return float(evaluate((x,), system.scope.values_of_parameters(Random(1)), fifty_digits())[0])
 
 
 # -- their solution ----------------------------------------------------------------------------------
@@ -493,7 +493,7 @@ def solution_of(
     """
     lines = [*constraints, *given]
     scalars = [x for line in lines for x in (*line.entries.values(), line.right)]
-    own, shaken = (values_for(system.scope, scalars, near, shaken=shaken) for shaken in (False, True))
+    own, shaken = (system.scope.values_for(scalars, near, shaken=shaken) for shaken in (False, True))
     matrix = _matrix(lines, unknowns, own)
     _refuse_contradiction(lines, matrix, len(constraints))
     rank = _rank(matrix)

@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import hold_identically, of_50_digits, on_unit_norms, scattered_state
+from eomgen.mechanics.constraints import hold_identically, on_unit_norms, scattered_state
 from eomgen.mechanics.dynamics import (
     EVERYWHERE,
     NOWHERE,
@@ -19,7 +19,7 @@ from eomgen.mechanics.dynamics import (
     division_of,
     where_conservative,
 )
-from eomgen.mechanics.kinematics import GROUND, integral_from_zero, mass_properties, velocity_of
+from eomgen.mechanics.kinematics import GROUND, integral_from_zero
 from eomgen.mechanics.mass_properties import angular_momentum, shapeless
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce
 from eomgen.symbolic.exact import equal_at_random_states, exact_state, readable, real_values
@@ -55,6 +55,7 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     follows,
+    of_50_digits,
     tolerances,
 )
 from eomgen.symbolic.print import text_size
@@ -354,7 +355,7 @@ def momenta_of_the_whole(equations: EquationsOfMotion, known: Sequence[Scalar]) 
     in_space = system.scope.model.space == "space"
     if not bodies or many or (in_space and shapeless(system.motion, bodies)):
         return ()
-    heavy = [body for body in bodies if not is_zero(mass_properties(system.scope, body).m)]
+    heavy = [body for body in bodies if not is_zero(system.scope.mass_properties(body).m)]
     P = _momentum(system, heavy)
     constant = stay_constant(equations, P) if heavy else (False,) * 3
     places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
@@ -379,7 +380,7 @@ def _constant_moments(equations: EquationsOfMotion, bodies: Sequence[str], about
 
 
 def _has_inertia(system: System, body: str) -> bool:
-    mass = mass_properties(system.scope, body)
+    mass = system.scope.mass_properties(body)
     return not is_zero(mass.m) or not all(is_zero(x) for row in mass.I for x in row)
 
 
@@ -402,8 +403,8 @@ def _momentum(system: System, bodies: Sequence[str]) -> Vector:
     """sum m v_C, ground axes."""
     total: Vector = ZERO
     for body in bodies:
-        mass = mass_properties(system.scope, body)
-        total = plus(total, times(mass.m, velocity_of(system.motion, (body, mass.com))))
+        mass = system.scope.mass_properties(body)
+        total = plus(total, times(mass.m, system.motion.velocity((body, mass.com))))
     return total
 
 
@@ -412,7 +413,7 @@ def _mass_center(system: System, bodies: Sequence[str]) -> Vector:
     whole: Scalar = 0
     total: Vector = ZERO
     for body in bodies:
-        mass = mass_properties(system.scope, body)
+        mass = system.scope.mass_properties(body)
         whole, total = whole + mass.m, plus(total, times(mass.m, system.motion.position((body, mass.com))))
     return vector_of(over(x, whole) for x in total)
 
@@ -431,7 +432,7 @@ def _seats(system: System) -> dict[str, Vector]:
 
 def _square(system: System, point: Vector, body: str) -> Scalar:
     """L.L of one body, in its own axes."""
-    link, mass = system.motion.link(body), mass_properties(system.scope, body)
+    link, mass = system.motion.link(body), system.scope.mass_properties(body)
     arm = minus(mass.com, apply(transposed(link.pose.R), minus(point, link.pose.p)))
     v = plus(link.twist.v, cross(link.twist.w, mass.com))
     own = plus(apply(mass.I, link.twist.w), times(mass.m, cross(arm, v)))

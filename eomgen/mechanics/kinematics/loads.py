@@ -6,7 +6,7 @@ Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import field
 from functools import cached_property
 
@@ -20,17 +20,19 @@ from eomgen.symbolic.expression import (
     Fraction,
     Node,
     Scalar,
+    ScalarRow,
+    ScalarRows,
     Vector,
     Wrench,
-    apply,
-    cross,
     depends_on,
     dot,
+    gradient,
     is_zero,
+    jacobian,
     over,
     plus,
     times,
-    transposed,
+    vector_of,
 )
 
 
@@ -70,6 +72,25 @@ class JointEffort:
     drive: Scalar
     potential: Scalar
     effort: Scalar
+
+    def wrenches(self, motion: Motion) -> list[tuple[str, Wrench]]:
+        """The effort of a joint as wrenches at the origins of child and parent, each in its own axes.
+
+        The wrench is dual to the joint's column: it does the work effort * s' on the relative motion.
+        """
+        link = motion.link(self.body)
+        w, v = link.S[self.variable]
+        square = dot(w, w) if not all(is_zero(x) for x in w) else dot(v, v)
+        rotary = not all(is_zero(x) for x in w)
+        direction = w if rotary else v
+        magnitude = self.effort if type(square) is int and square == 1 else over(self.effort, square)
+        at_joint = Wrench(times(magnitude, direction), ZERO) if rotary else Wrench(ZERO, times(magnitude, direction))
+        rows = [(link.name, at_joint.moved(link.point))]
+        if link.parent >= 0:
+            local = link.before.then(link.relative)
+            on_parent = Wrench(times(-1, at_joint.tau), times(-1, at_joint.f)).turned(local.R)
+            rows.append((motion.links[link.parent].name, on_parent.moved(local.p)))
+        return rows
 
 
 @dataclass(frozen=True)
@@ -114,6 +135,99 @@ class Loads:
     @property
     def _all(self) -> tuple[Load, ...]:
         return tuple(load for force in self.applied for load in force.loads)
+
+    @property
+    def weights(self) -> tuple[PointForce, ...]:
+        """The uniform fields as forces m g at the mass centres."""
+        g = self.fields
+        if all(is_zero(x) for x in g):
+            return ()
+        return tuple(PointForce(place, times(m, g)) for place, m in SystemScene(self.motion).masses(None))
+
+    # -- generalized forces, by virtual work on positions and by derivatives of the potential energy -------
+
+    @property
+    def generalized_forces(self) -> ScalarRow:
+        """Q_k of everything applied: -dV/dq_k where there is a potential, else the virtual work per unit of q_k."""
+        rows = [self.force_row(force) for force in self.applied] + [self.effort_row(e) for e in self.efforts]
+        return _summed(rows, len(self.motion.scope.symbols.u))
+
+    @property
+    def powered_forces(self) -> ScalarRow:
+        """Q_nc: the part of Q that comes from no potential, by virtual work."""
+        motion = self.motion
+        rows = [self.force_row(force) for force in self.applied if force.potential is None]
+        rows += [self.drive_row(effort) for effort in self.efforts]
+        return _summed(rows, len(motion.scope.symbols.u))
+
+    def acting(self, holds: Callable[[ScalarRow], bool]) -> str:
+        """Names of the forces and joints whose rows of Q have a property: "the force 'd' and the joint of 'x'"."""
+        found = [f"the force '{force.name}'" for force in self.applied if holds(self.force_row(force))]
+        found += [f"the joint of '{effort.body}'" for effort in self.efforts if holds(self.effort_row(effort))]
+        return " and ".join(dict.fromkeys(found))
+
+    def force_row(self, force: Applied) -> ScalarRow:
+        """Q of one named force."""
+        if force.potential is not None:
+            return self.motion.scope.from_potential(force.potential)
+        size = len(self.motion.scope.symbols.u)
+        return _summed([self.load_row(load) for load in force.loads], size)
+
+    def effort_row(self, effort: JointEffort) -> ScalarRow:
+        """Q of a joint's drive, spring and damper: drive ds/dq - dV/dq."""
+        elastic = self.motion.scope.from_potential(effort.potential)
+        return tuple(d + e for d, e in zip(self.drive_row(effort), elastic, strict=True))
+
+    def drive_row(self, effort: JointEffort) -> ScalarRow:
+        """Q of what a joint's drive and damper do: drive ds/dq."""
+        s = self.motion.link(effort.body).s[effort.variable]
+        return tuple(effort.drive * d for d in self.motion.scope.per_speed(gradient(s, self.motion.scope.symbols.q)))
+
+    def load_row(self, load: Load) -> ScalarRow:
+        """Q of one load by virtual work."""
+        motion = self.motion
+        symbols = motion.scope.symbols
+        if isinstance(load, GeneralizedForce):
+            row = tuple(load.value if q.name == load.coordinate else 0 for q in symbols.q)
+            return motion.scope.per_speed(row)
+        if isinstance(load, UniformField):
+            return _summed([self.load_row(weight) for weight in self.weights], len(symbols.u))
+        if isinstance(load, Couple):
+            spin = jacobian(motion.spin(motion.link(load.body)), symbols.u)
+            couple = motion.in_body_axes(load.body, load.couple, load.axes)
+            return _weighted(couple, spin, len(symbols.u))
+        position = jacobian(motion.position(load.place), symbols.q)
+        force = motion.in_ground_axes(load.force, load.axes)
+        return motion.scope.per_speed(_weighted(force, position, len(symbols.q)))
+
+    @property
+    def placeless_forces(self) -> ScalarRow:
+        """Q of what no twist contains: generalized forces, energies of coordinates, forces on sliding points."""
+        size = len(self.motion.scope.symbols.u)
+        rows = [self.load_row(load) for load in self.generalized]
+        energies = [force.potential for force in self.applied if force.placeless]
+        rows += [self.motion.scope.from_potential(V) for V in energies if V is not None]
+        rows += [self._sliding_row(load) for load in self.placed if isinstance(load, PointForce)]
+        return _summed(rows, size)
+
+    def _sliding_row(self, force: PointForce) -> ScalarRow:
+        """Q of a force whose point moves in its body: F . d(R r')/du."""
+        u = self.motion.scope.symbols.u
+        slide = self.motion.slide(force.place)
+        if slide == ZERO:
+            return (0,) * len(u)
+        return _weighted(self.motion.in_ground_axes(force.force, force.axes), jacobian(slide, u), len(u))
+
+    @property
+    def joint_forces(self) -> ScalarRow:
+        """Q of the joints' efforts on the joint variables: D^T effort."""
+        motion = self.motion
+        size = len(motion.scope.symbols.u)
+        rows = []
+        for effort in self.efforts:
+            rate = motion.link(effort.body).s_rate[effort.variable]
+            rows.append(tuple(effort.effort * d for d in gradient(rate, motion.scope.symbols.u)))
+        return _summed(rows, size)
 
 
 def loads_of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Loads:
@@ -187,52 +301,14 @@ def _joint_efforts(motion: Motion, link: BodyLink) -> list[JointEffort]:
     return rows
 
 
-def joint_wrenches(motion: Motion, effort: JointEffort) -> list[tuple[str, Wrench]]:
-    """The effort of a joint as wrenches at the origins of child and parent, each in its own axes.
-
-    The wrench is dual to the joint's column: it does the work effort * s' on the relative motion.
-    """
-    link = motion.link(effort.body)
-    w, v = link.S[effort.variable]
-    square = dot(w, w) if not all(is_zero(x) for x in w) else dot(v, v)
-    rotary = not all(is_zero(x) for x in w)
-    direction = w if rotary else v
-    magnitude = effort.effort if type(square) is int and square == 1 else over(effort.effort, square)
-    at_joint = Wrench(times(magnitude, direction), ZERO) if rotary else Wrench(ZERO, times(magnitude, direction))
-    rows = [(link.name, at_joint.moved(link.point))]
-    if link.parent >= 0:
-        local = link.before.then(link.relative)
-        on_parent = Wrench(times(-1, at_joint.tau), times(-1, at_joint.f)).turned(local.R)
-        rows.append((motion.links[link.parent].name, on_parent.moved(local.p)))
-    return rows
+def _summed(rows: list[ScalarRow], size: int) -> ScalarRow:
+    """The sum of rows, entry by entry."""
+    sums: list[Scalar] = [0] * size
+    for row in rows:
+        sums = [a + b for a, b in zip(sums, row, strict=True)]
+    return tuple(sums)
 
 
-def body_wrench(motion: Motion, load: PointForce | Couple) -> tuple[str, Wrench] | None:
-    """A load as a wrench at its body's origin in body axes (None: it acts on the ground)."""
-    if isinstance(load, Couple):
-        return load.body, Wrench(in_body_axes(motion, load.body, load.couple, load.axes), ZERO)
-    body, r = load.place
-    if body is None:
-        return None
-    f = in_body_axes(motion, body, load.force, load.axes)
-    return body, Wrench(cross(r, f), f)
-
-
-def in_body_axes(motion: Motion, body: str, vector: Vector, axes: str | None) -> Vector:
-    """A vector given in the axes of the ground (None) or of a body, in the axes of `body`."""
-    if axes == body:
-        return vector
-    return apply(transposed(motion.link(body).pose.R), in_ground_axes(motion, vector, axes))
-
-
-def in_ground_axes(motion: Motion, vector: Vector, axes: str | None) -> Vector:
-    """A vector given in the axes of a body, in the ground's."""
-    return vector if axes is None else apply(motion.link(axes).pose.R, vector)
-
-
-def weights(loads: Loads) -> tuple[PointForce, ...]:
-    """The uniform fields as forces m g at the mass centres."""
-    g = loads.fields
-    if all(is_zero(x) for x in g):
-        return ()
-    return tuple(PointForce(place, times(m, g)) for place, m in SystemScene(loads.motion).masses(None))
+def _weighted(force: Vector, rows: ScalarRows, size: int) -> ScalarRow:
+    """force . d(position)/dq_k for each k."""
+    return tuple(dot(force, vector_of(row[k] for row in rows)) for k in range(size))

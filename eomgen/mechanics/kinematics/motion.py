@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -10,8 +10,7 @@ from typing import Any
 from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope, shorter
-from eomgen.model import Composite, MassProperties, PlacedPiece, Z, composite_of, oriented
-from eomgen.symbolic.exact import readable_all
+from eomgen.model import Couple, PointForce, Z, oriented
 from eomgen.symbolic.expression import (
     ZERO,
     Fraction,
@@ -21,11 +20,13 @@ from eomgen.symbolic.expression import (
     Scalar,
     Twist,
     Vector,
+    Wrench,
     apply,
     collected,
     cos,
     cross,
     depends_on,
+    derivative,
     dot,
     function,
     jacobian,
@@ -43,7 +44,6 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import Work
 from eomgen.symbolic.solve import vanishes
 
 # -------- kinematics ------------------------------------------------------------------------------------------
@@ -96,6 +96,17 @@ class BodyLink:
     def local(self) -> Pose:
         """Pose of the child's axes and of the joint point, in the parent."""
         return self.before.then(self.relative)
+
+    @property
+    def orientation(self) -> tuple[Scalar, ...]:
+        """Orientation of a body: its angle in the plane, the entries of its rotation matrix in space."""
+        return (self.angle,) if self.angle is not None else tuple(x for row in self.pose.R for x in row)
+
+    def spin(self, rates: list[Scalar]) -> Vector:
+        """Angular velocity in body axes from the rates of the orientation [rad/s]."""
+        if self.angle is not None:
+            return (0, 0, rates[0])
+        return spin_between(self.pose.R, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
 
 
 @dataclass(frozen=True)
@@ -178,6 +189,77 @@ class Motion:
         rates = self.scope.time_derivative(tuple(twists))
         return tuple(tuple(rates[6 * i : 6 * i + 6]) for i in range(len(self.links)))
 
+    def field(self, body: str) -> VelocityField:
+        """The field of a body of the model; of the ground it is zero."""
+        if body not in self.index:
+            return VelocityField()
+        link, scope = self.link(body), self.scope
+        v = scope.rate_of(link.pose.p)
+        w = link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
+        rates = scope.with_accelerations((*v, *w))
+        return VelocityField(link.pose.p, v, vector_of(rates[:3]), w, vector_of(rates[3:]))
+
+    def velocity(self, place: tuple[str | None, Vector]) -> Vector:
+        """Velocity of a place of a body in ground axes, from the twist: R (v + w x r + r') [m/s]."""
+        body, r = place
+        if body is None:
+            return ZERO
+        link = self.link(body)
+        carried = apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
+        return plus(carried, self.slide(place)) if self.moves(r) else carried
+
+    def slide(self, place: tuple[str | None, Vector]) -> Vector:
+        """Velocity of a place against its own body, ground axes: R r', 0 where it is fixed in the body [m/s]."""
+        body, r = place
+        if body is None or not self.moves(r):
+            return ZERO
+        return apply(self.link(body).pose.R, self.scope.rate_of(r))
+
+    @property
+    def locks(self) -> tuple[Lock, ...]:
+        """Gimbal locks of the bodies that turn by three angles, at least one of them free to change."""
+        found = []
+        for link in self.links:
+            sequence = getattr(link.joint, "orientation", None)
+            if sequence is None or sequence == "quaternion":
+                continue
+            angles = link.s[-3:]
+            if any(depends_on(rate, self.scope.symbols.u) for rate in link.s_rate[-3:]):
+                found.append(Lock(link.name, sin(angles[1]) if sequence[0] == sequence[2] else cos(angles[1])))
+        return tuple(found)
+
+    # -- vectors and wrenches ----------------------------------------------------------------------
+
+    def in_ground_axes(self, vector: Vector, axes: str | None) -> Vector:
+        """A vector given in the axes of a body, in the ground's."""
+        return vector if axes is None else apply(self.link(axes).pose.R, vector)
+
+    def in_body_axes(self, body: str, vector: Vector, axes: str | None) -> Vector:
+        """A vector given in the axes of the ground (None) or of a body, in the axes of `body`."""
+        if axes == body:
+            return vector
+        return apply(transposed(self.link(body).pose.R), self.in_ground_axes(vector, axes))
+
+    def body_wrench(self, load: PointForce | Couple) -> tuple[str, Wrench] | None:
+        """A load as a wrench at its body's origin in body axes (None: it acts on the ground)."""
+        if isinstance(load, Couple):
+            return load.body, Wrench(self.in_body_axes(load.body, load.couple, load.axes), ZERO)
+        body, r = load.place
+        if body is None:
+            return None
+        f = self.in_body_axes(body, load.force, load.axes)
+        return body, Wrench(cross(r, f), f)
+
+    def spin(self, link: BodyLink) -> Vector:
+        """Angular velocity of one body in body axes, from the derivative of its pose [rad/s]."""
+        return link.spin(list(self.scope.time_derivative(link.orientation)))
+
+    def joint_row(self, body: str, variable: int) -> dict[int, Scalar]:
+        """Row of D: how the joint's rate depends on each speed."""
+        rate = self.link(body).s_rate[variable]
+        speeds = {u: k for k, u in enumerate(self.scope.symbols.u)}
+        return {speeds[s]: derivative(rate, s) for s in symbols_of((rate,)) if s in speeds}
+
 
 def motion_of(scope: Scope) -> Motion:
     """Poses and twists of every body of the model.
@@ -223,7 +305,7 @@ def body_points(scope: Scope, body: str) -> dict[str, Vector]:
     part = scope.model.bodies[body]
     points: dict[str, Vector] = {"origin": ZERO}
     if part.parts is not None:
-        points["center"] = made_of(scope, body).whole.com
+        points["center"] = scope.made_of(body).whole.com
     elif part.center is not None or part.mass is not None:
         points["center"] = scope.vector(part.center)
     if part.shape is not None:
@@ -324,36 +406,13 @@ def _seat(scope: Scope, joint: Any) -> Vector:
     if on is not None and "." in on:
         body, point = on.split(".", 1)
         return body_points(scope, body)[point]
-    return ground_place(scope, joint.at) if joint.seated else ZERO
-
-
-def ground_place(scope: Scope, at: Any) -> Vector:
-    """A place on the ground: coordinates, or the name of a ground point [m]."""
-    return scope.vector(scope.model.points[at] if isinstance(at, str) else at)
+    return scope.ground_place(joint.at) if joint.seated else ZERO
 
 
 def spin_between(R: Matrix, R_rate: Matrix) -> Vector:
     """Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'."""
     W = product(transposed(R), R_rate)
     return (W[2][1], W[0][2], W[1][0])
-
-
-def velocity_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
-    """Velocity of a place of a body in ground axes, from the twist: R (v + w x r + r') [m/s]."""
-    body, r = place
-    if body is None:
-        return ZERO
-    link = motion.link(body)
-    carried = apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
-    return plus(carried, slide_of(motion, place)) if motion.moves(r) else carried
-
-
-def slide_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
-    """Velocity of a place against its own body, ground axes: R r', 0 where it is fixed in the body [m/s]."""
-    body, r = place
-    if body is None or not motion.moves(r):
-        return ZERO
-    return apply(motion.link(body).pose.R, motion.scope.rate_of(r))
 
 
 # -------- gimbal ----------------------------------------------------------------------------------------------
@@ -372,49 +431,6 @@ class Lock:
 
     def __str__(self) -> str:
         return f"the three angles of '{self.body}' do not determine how it turns"
-
-
-def locks_of(motion: Motion) -> tuple[Lock, ...]:
-    """Gimbal locks of the bodies that turn by three angles, at least one of them free to change."""
-    found = []
-    for link in motion.links:
-        sequence = getattr(link.joint, "orientation", None)
-        if sequence is None or sequence == "quaternion":
-            continue
-        angles = link.s[-3:]
-        if any(depends_on(rate, motion.scope.symbols.u) for rate in link.s_rate[-3:]):
-            found.append(Lock(link.name, sin(angles[1]) if sequence[0] == sequence[2] else cos(angles[1])))
-    return tuple(found)
-
-
-# -------- composition -----------------------------------------------------------------------------------------
-# Scope -> Composite: the mass properties of a body made of parts, short.
-
-
-def made_of(scope: Scope, body: str) -> Composite:
-    """The pieces of a body and the whole of them, each formula in readable form; made once for a scope."""
-    if body not in scope.composites:
-        scope.composites[body] = _put_together(scope, body)
-    return scope.composites[body]
-
-
-def _put_together(scope: Scope, body: str) -> Composite:
-    part = scope.model.bodies[body]
-    composite = composite_of(part.parts or (), part.mass, scope.value)
-    everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
-    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, scope.positive)
-    whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))
-    pieces = tuple(PlacedPiece(p.piece, mass) for p, mass in zip(composite.pieces, masses, strict=True))
-    return Composite(pieces, whole)
-
-
-def _flat(mass: MassProperties) -> list[Scalar]:
-    return [mass.m, *mass.com, *(x for row in mass.I for x in row)]
-
-
-def _unflat(entries: Sequence[Scalar]) -> MassProperties:
-    m, *others = entries
-    return MassProperties(m, vector_of(others[:3]), matrix_of((others[3:6], others[6:9], others[9:12])))
 
 
 # -------- field -----------------------------------------------------------------------------------------------
@@ -471,96 +487,82 @@ class VelocityField:
         """The field of velocities that another body sees, in ground axes: v - v_other, omega - omega_other."""
         return replace(self, v=minus(self.v, other.velocity(self.p)), w=minus(self.w, other.w))
 
+    # -- points and lines --------------------------------------------------------------------------
 
-def field_of(motion: Motion, body: str) -> VelocityField:
-    """The field of a body of the model; of the ground it is zero."""
-    if body not in motion.index:
-        return VelocityField()
-    link, scope = motion.link(body), motion.scope
-    v = scope.rate_of(link.pose.p)
-    w = link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
-    rates = scope.with_accelerations((*v, *w))
-    return VelocityField(link.pose.p, v, vector_of(rates[:3]), w, vector_of(rates[3:]))
+    def rotation_center(self) -> Vector:
+        """Instantaneous centre of rotation in the plane, the point without velocity: p_O + omega x v_O / omega^2.
+
+        Raises:
+            DerivationError: omega = 0 in every motion: the body translates or is at rest.
+        """
+        if vanishes(self.w[2]):
+            state = "rests" if all(vanishes(x) for x in self.v) else "translates"
+            raise DerivationError(
+                f"the body {state}: it has no centre of rotation at a finite place",
+                fix="choose a state in which the body turns",
+            )
+        return plus(self.p, times(over(1, self.w[2]), cross(UP, self.v)))
+
+    def acceleration_pole(self) -> Vector:
+        """Acceleration pole in the plane, the point without acceleration.
+
+        p_O + (omega^2 a_O + epsilon x a_O)/(omega^4 + epsilon^2)
+
+        Raises:
+            DerivationError: omega = epsilon = 0: all points have the same acceleration.
+        """
+        w, e = self.w[2], self.e[2]
+        if vanishes(w) and vanishes(e):
+            raise DerivationError(
+                "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
+                fix="choose a state in which the body turns",
+            )
+        arm = plus(times(w * w, self.a), cross(self.e, self.a))
+        return plus(self.p, times(over(1, w * w * w * w + e * e), arm))
+
+    def axis_point(self) -> Vector:
+        """Point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega, in space."""
+        return plus(self.p, times(over(1, dot(self.w, self.w)), cross(self.w, self.v)))
+
+    def least_speed(self, start: Vector, end: Vector, short: Callable[[Scalar], Scalar]) -> Scalar:
+        """The least speed of the points between two points of the body.
+
+        Along the segment only the component of v along h = omega x (end - start) changes, linearly from a to b:
+            v^2 = v_0^2 + max(0, min(a, b), min(-a, -b))^2
+        with v_0 the part of v across h. In the plane h is across the segment, and v_0 is the component along it:
+        nothing is divided by omega.
+
+        Args:
+            start, end: the places of the two points.
+            short: puts a scalar into readable form.
+        Raises:
+            DerivationError: they are the same.
+        """
+        along = minus(end, start)
+        if all(vanishes(x) for x in along):
+            raise DerivationError(
+                "the two points are the same: they have no segment between them", fix="name two points that are apart"
+            )
+        v_start, v_end = self.velocity(start), self.velocity(end)
+        planar = vanishes(self.w[0]) and vanishes(self.w[1]) and vanishes(along[2]) and vanishes(self.v[2])
+        h = cross(UP, along) if planar else cross(self.w, along)
+        if all(vanishes(x) for x in h):
+            return sqrt(dot(v_start, v_start))
+        square, a, b = short(dot(h, h)), short(dot(v_start, h)), short(dot(v_end, h))
+        rest = short(dot(v_start, v_start) - over(a * a, square))
+        if vanishes(a) or vanishes(b):
+            return sqrt(rest)
+        either = (function("max", 0, function("min", x, y)) for x, y in ((a, b), (-a, -b)))
+        nearest = short(function("max", *either))
+        return sqrt(rest + over(nearest * nearest, square))
+
+    def inflection_center(self) -> Vector:
+        """The centre of the circle through the centre of rotation on which the points are whose path is straight there.
+
+        In the plane, with r from the centre of rotation, whose acceleration is a_P:  r^2 = r . a_P / omega^2.
+        """
+        pole = self.rotation_center()
+        return plus(pole, times(over(Fraction(1, 2), self.w[2] * self.w[2]), self.acceleration(pole)))
 
 
 # -- points and lines of a field -------------------------------------------------------------------
-
-
-def rotation_center(field: VelocityField) -> Vector:
-    """Instantaneous centre of rotation in the plane, the body's point without velocity: p_O + omega x v_O / omega^2.
-
-    Raises:
-        DerivationError: omega = 0 in every motion: the body translates or is at rest.
-    """
-    if vanishes(field.w[2]):
-        state = "rests" if all(vanishes(x) for x in field.v) else "translates"
-        raise DerivationError(
-            f"the body {state}: it has no centre of rotation at a finite place",
-            fix="choose a state in which the body turns",
-        )
-    return plus(field.p, times(over(1, field.w[2]), cross(UP, field.v)))
-
-
-def acceleration_pole(field: VelocityField) -> Vector:
-    """Acceleration pole in the plane, the point without acceleration.
-
-    p_O + (omega^2 a_O + epsilon x a_O)/(omega^4 + epsilon^2)
-
-    Raises:
-        DerivationError: omega = epsilon = 0: all points have the same acceleration.
-    """
-    w, e = field.w[2], field.e[2]
-    if vanishes(w) and vanishes(e):
-        raise DerivationError(
-            "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
-            fix="choose a state in which the body turns",
-        )
-    arm = plus(times(w * w, field.a), cross(field.e, field.a))
-    return plus(field.p, times(over(1, w * w * w * w + e * e), arm))
-
-
-def axis_point(field: VelocityField) -> Vector:
-    """Point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega, in space."""
-    return plus(field.p, times(over(1, dot(field.w, field.w)), cross(field.w, field.v)))
-
-
-def least_speed(field: VelocityField, start: Vector, end: Vector, short: Callable[[Scalar], Scalar]) -> Scalar:
-    """The least speed of the points between two points of the body.
-
-    Along the segment only the component of v along h = omega x (end - start) changes, linearly from a to b:
-        v^2 = v_0^2 + max(0, min(a, b), min(-a, -b))^2
-    with v_0 the part of v across h. In the plane h is across the segment, and v_0 is the component along it: nothing
-    is divided by omega.
-
-    Args:
-        start, end: the places of the two points.
-        short: puts a scalar into readable form.
-    Raises:
-        DerivationError: they are the same.
-    """
-    along = minus(end, start)
-    if all(vanishes(x) for x in along):
-        raise DerivationError(
-            "the two points are the same: they have no segment between them", fix="name two points that are apart"
-        )
-    v_start, v_end = field.velocity(start), field.velocity(end)
-    planar = vanishes(field.w[0]) and vanishes(field.w[1]) and vanishes(along[2]) and vanishes(field.v[2])
-    h = cross(UP, along) if planar else cross(field.w, along)
-    if all(vanishes(x) for x in h):
-        return sqrt(dot(v_start, v_start))
-    square, a, b = short(dot(h, h)), short(dot(v_start, h)), short(dot(v_end, h))
-    rest = short(dot(v_start, v_start) - over(a * a, square))
-    if vanishes(a) or vanishes(b):
-        return sqrt(rest)
-    either = (function("max", 0, function("min", x, y)) for x, y in ((a, b), (-a, -b)))
-    nearest = short(function("max", *either))
-    return sqrt(rest + over(nearest * nearest, square))
-
-
-def inflection_center(field: VelocityField) -> Vector:
-    """The centre of the circle through the centre of rotation on which the points are whose path is straight there.
-
-    In the plane, with r from the centre of rotation, whose acceleration is a_P:  r^2 = r . a_P / omega^2.
-    """
-    pole = rotation_center(field)
-    return plus(pole, times(over(Fraction(1, 2), field.w[2] * field.w[2]), field.acceleration(pole)))

@@ -6,42 +6,32 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import Any
 
-from eomgen.errors import DerivationError, ExpressionError, ModelError
+from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.motion import GROUND, Motion, ground_place
-from eomgen.mechanics.kinematics.symbols import Scope, parameters_of_zero, primitive
+from eomgen.mechanics.kinematics.motion import GROUND, Motion
+from eomgen.mechanics.kinematics.symbols import parameters_of_zero, primitive
 from eomgen.model import (
     BodyPoint,
     ConstraintRow,
-    Coordinate,
     Resistance,
-    altered,
     exact_parameters,
-    no_orientation,
-    quaternions_of,
 )
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (
     Call,
     Expression,
-    Fraction,
     Matrix,
     Node,
     Scalar,
     Vector,
-    as_expression,
     depends_on,
     function,
     gradient,
     is_zero,
-    over,
-    sqrt,
     substituted,
     symbols_of,
 )
 from eomgen.symbolic.numeric import FLOAT, Work, evaluate
-from eomgen.symbolic.print import to_text
 
 # -------- system scene ----------------------------------------------------------------------------------------
 # Motion -> SystemScene: what force laws and constraints ask of a system; where coordinates start.
@@ -83,7 +73,7 @@ class SystemScene:
         return self.motion.scope.vector(expressions)
 
     def ground_place(self, at: Sequence[Expression] | str) -> Vector:
-        return ground_place(self.motion.scope, at)
+        return self.motion.scope.ground_place(at)
 
     @property
     def plane(self) -> bool:
@@ -174,7 +164,7 @@ class SystemScene:
         names = [link.name for link in self.motion.links] if bodies is None else bodies
         rows = []
         for name in names:
-            body = mass_properties(self.motion.scope, name)
+            body = self.motion.scope.mass_properties(name)
             if not is_zero(body.m):
                 rows.append(((name, body.com), body.m))
         return tuple(rows)
@@ -182,7 +172,7 @@ class SystemScene:
     def start(self, scalar: Scalar) -> Scalar:
         """The scalar where the coordinates start and t = 0."""
         scope = self.motion.scope
-        at = {**with_unit_quaternions(scope, start_values(scope)), **self.begun}
+        at = {**scope.with_unit_quaternions(scope.start_values()), **self.begun}
         return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
 
     def own_place(self, body: str, point: str | None) -> BodyPoint:
@@ -226,54 +216,6 @@ class SystemScene:
         if not set(symbols_of((at_start,))) <= values.keys():
             return None
         return float(evaluate((at_start,), {node: float(x) for node, x in values.items()}, FLOAT)[0])
-
-
-def start_values(scope: Scope, among: Iterable[Node] | None = None) -> dict[Node, Scalar]:
-    """Start values of coordinates, as expressions of the parameters; of all of them for None."""
-    return {q: start_value(scope, q) for q in (scope.symbols.q if among is None else among)}
-
-
-def start_value(scope: Scope, q: Node) -> Scalar:
-    """Start value of a coordinate, as an expression of the parameters."""
-    coordinate = scope.model.coordinates[q.name]
-    if coordinate.motion is not None:
-        return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
-    return scope.value(coordinate.near if coordinate.start is None else coordinate.start)
-
-
-def let_go(scope: Scope, name: str) -> Coordinate:
-    """A driven coordinate without what drives it: one like others, which starts where it is driven from."""
-    part = scope.model.coordinates[name]
-    (q,) = (x for x in scope.symbols.q if x.name == name)
-    start = part.start if part.motion is None else _written(scope, start_value(scope, q))
-    return altered(part, motion=None, rate=None, acceleration=None, start=start)
-
-
-def _written(scope: Scope, scalar: Scalar) -> Expression:
-    """A scalar of the parameters as a formula; as a number where it is one of samples, which have no formula."""
-    try:
-        return as_expression(to_text(scalar))
-    except ExpressionError:
-        known = exact_parameters(scope.model)
-        values = {node: float(known[name]) for name, node in scope.symbols.parameters.items() if name in known}
-        return as_expression(Fraction(evaluate((scalar,), values, FLOAT)[0]))
-
-
-def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
-    """Start values with every quaternion over its norm that stands in them as a whole.
-
-    Raises:
-        ModelError: one is 0.
-    """
-    found = dict(start)
-    for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
-        if not start.keys() >= {*four}:
-            continue
-        norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
-        if is_zero(norm):
-            raise no_orientation(part.body)
-        found |= {e: over(start[e], norm) for e in four}
-    return found
 
 
 # -------- contact modes ---------------------------------------------------------------------------------------

@@ -2,56 +2,69 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping, Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
 from math import isfinite
+from random import Random
+from typing import Any
 
-from eomgen.errors import DerivationError, EomgenError, ModelError
+from eomgen.errors import DerivationError, EomgenError, ExpressionError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.model import (
     Composite,
     Coordinate,
+    MassProperties,
     Model,
+    PlacedPiece,
+    altered,
+    composite_of,
+    constant_parameters,
     exact_parameters,
+    in_order,
     in_parts,
     leaves_of,
+    no_orientation,
     quaternions_of,
-    rate_matrix_of,
     spin_of_quaternion,
-    start_values,
 )
-from eomgen.symbolic.exact import cancelled, readable
+from eomgen.model import (
+    start_values as declared_starts,
+)
+from eomgen.symbolic.exact import cancelled, readable, readable_all
 from eomgen.symbolic.expression import (
+    ZERO,
     Expression,
     Fraction,
     Graph,
+    Matrix,
     Node,
     Sampled,
     Scalar,
+    ScalarRow,
     Symbols,
     Vector,
-    combined,
+    as_expression,
     depends_on,
     derivative,
     function,
+    gradient,
     holds_op,
-    inner,
     is_zero,
-    jacobian,
+    matrix_of,
     operations,
     order,
     over,
+    sqrt,
     substituted,
     symbols_of,
     tangent,
     through_samples,
     vector_of,
 )
-from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import length_of, text_size
-from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, fifty_digits, of_50_digits
+from eomgen.symbolic.print import length_of, text_size, to_text
 
 # -------- scope -----------------------------------------------------------------------------------------------
 # Model -> Scope: the symbols of one derivation, and the scalars for which the names of expressions stand.
@@ -61,6 +74,7 @@ from eomgen.symbolic.solve import cramer
 # the place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
 
 
+TRIES = 20  # of values at random of what has none
 LONGEST_LAW = 3  # marks of a constant rate or acceleration that is put in where it stands: 2 n
 
 
@@ -165,6 +179,152 @@ class Scope:
         flow = {**self.flow, **dict(zip(self.symbols.u, self.symbols.a, strict=True))}
         return tangent(outputs, flow)
 
+    # -- at the start ------------------------------------------------------------------------------
+
+    def start_values(self, among: Iterable[Node] | None = None) -> dict[Node, Scalar]:
+        """Start values of coordinates, as expressions of the parameters; of all of them for None."""
+        return {q: self.start_value(q) for q in (self.symbols.q if among is None else among)}
+
+    def start_value(self, q: Node) -> Scalar:
+        """Start value of a coordinate, as an expression of the parameters."""
+        coordinate = self.model.coordinates[q.name]
+        if coordinate.motion is not None:
+            return substituted((self.value(coordinate.motion),), {self.symbols.t: 0})[0]
+        return self.value(coordinate.near if coordinate.start is None else coordinate.start)
+
+    def with_unit_quaternions(self, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
+        """Start values with every quaternion over its norm that stands in them as a whole.
+
+        Raises:
+            ModelError: one is 0.
+        """
+        found = dict(start)
+        for four, part in zip(self.quaternions, quaternions_of(self.model), strict=True):
+            if not start.keys() >= {*four}:
+                continue
+            norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
+            if is_zero(norm):
+                raise no_orientation(part.body)
+            found |= {e: over(start[e], norm) for e in four}
+        return found
+
+    def let_go(self, name: str) -> Coordinate:
+        """A driven coordinate without what drives it: one like others, which starts where it is driven from."""
+        part = self.model.coordinates[name]
+        (q,) = (x for x in self.symbols.q if x.name == name)
+        start = part.start if part.motion is None else _written(self, self.start_value(q))
+        return altered(part, motion=None, rate=None, acceleration=None, start=start)
+
+    def ground_place(self, at: Any) -> Vector:
+        """A place on the ground: coordinates, or the name of a ground point [m]."""
+        return self.vector(self.model.points[at] if isinstance(at, str) else at)
+
+    # -- values of parameters ----------------------------------------------------------------------
+
+    @property
+    def known_parameters(self) -> dict[Node, float]:
+        """The parameters that have values."""
+        return {self.symbols.parameters[name]: float(x) for name, x in exact_parameters(self.model).items()}
+
+    @property
+    def known_exactly(self) -> dict[Node, Scalar]:
+        """The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6."""
+        return {self.symbols.parameters[name]: x for name, x in constant_parameters(self.model, self.graph).items()}
+
+    def values_of_parameters(self, rng: Random | None, *, shaken: bool = False) -> dict[Node, Any]:
+        """Values of the parameters with 50 digits: the model's own, else random ones; without `rng` those with a value.
+
+        Args:
+            shaken: all near the model's own and none of them special.
+        """
+        model, arithmetic = self.model, fifty_digits()
+        known = exact_parameters(model)
+        names, values = self.symbols.parameters, dict[Node, Any]()
+        given = {name: part.value for name, part in model.parameters.items() if part is not None}
+        for name in in_order(given)[0]:
+            if name in known:
+                values[names[name]] = evaluate((self.value(given[name]),), values, arithmetic)[0]
+        if rng is None:
+            return values
+        for node in names.values():
+            value = values.get(node)
+            if value is None:
+                values[node] = of_50_digits(rng.uniform(0.7, 1.3))
+            elif shaken:
+                values[node] = value * rng.uniform(0.8, 1.2) if value else of_50_digits(rng.uniform(0.05, 0.2))
+        return values
+
+    def values_for(
+        self, scalars: Iterable[Scalar], near: Mapping[Node, float] | None = None, *, shaken: bool = False
+    ) -> dict[Node, Any]:
+        """Values, with 50 digits, at which all scalars have one: of the parameters, and of what else stands in them.
+
+        Args:
+            near: where symbols of the configuration are.
+            shaken: as of `values_of_parameters`.
+        Raises:
+            DerivationError: they have none.
+        """
+        wanted, arithmetic = tuple(scalars), fifty_digits()
+        for seed in range(1, TRIES):
+            rng = Random(seed)
+            values = self.values_of_parameters(rng, shaken=shaken)
+            values |= {node: arithmetic.number(Fraction(x)) for node, x in (near or {}).items()}
+            values |= {x: of_50_digits(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
+            try:
+                evaluate(wanted, values, arithmetic)
+            except (NoValue, ZeroDivisionError):
+                continue
+            return values
+        raise DerivationError(
+            "the configuration has no value at these parameters",
+            fix="give parameters at which lengths and roots are real",
+        )
+
+    def parameter_seeds(self, name: str) -> dict[Node, Scalar]:
+        """Derivatives of the parameters by one of them: its own, and those of parameters that depend on it."""
+        given = {other: part.value for other, part in self.model.parameters.items() if part is not None}
+        found: dict[Node, Scalar] = {self.symbols.parameters[name]: 1}
+        for other in in_order(given)[0]:
+            value = given[other]
+            if other != name and value is not None:
+                (rate,) = tangent((self.value(value),), found)
+                found |= {self.symbols.parameters[other]: rate} if rate != 0 else {}
+        return found
+
+    # -- bodies ------------------------------------------------------------------------------------
+
+    def mass_properties(self, body: str) -> MassProperties:
+        """Mass properties of one body; a body without mass has zeros.
+
+        Raises:
+            ModelError: a body that can turn has a mass and no inertia.
+        """
+        part = self.model.bodies[body]
+        if part.parts is not None:
+            return self.made_of(body).whole
+        if part.shape is not None:
+            return part.shape.mass_properties(self.value)
+        m = self.value(part.mass)
+        return MassProperties(m, self.vector(part.center), _inertia(self, body, part.inertia))
+
+    def made_of(self, body: str) -> Composite:
+        """The pieces of a body and the whole of them, each formula in readable form; made once for a scope."""
+        if body not in self.composites:
+            self.composites[body] = _put_together(self, body)
+        return self.composites[body]
+
+    # -- generalized forces ------------------------------------------------------------------------
+
+    def per_speed(self, row: ScalarRow) -> ScalarRow:
+        """N^T applied to a row over the coordinates."""
+        size = len(self.symbols.u)
+        return tuple(sum((self.N[i][k] * x for i, x in enumerate(row)), start=0) for k in range(size))
+
+    def from_potential(self, V: Scalar) -> ScalarRow:
+        """-N^T dV/dq."""
+        return tuple(-x for x in self.per_speed(gradient(V, self.symbols.q)))
+
 
 def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
     """The symbols of a model, its kinematic equations, and the meaning of its names.
@@ -219,7 +379,7 @@ def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
     known = exact_parameters(model)
     found = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     with suppress(EomgenError, OverflowError):
-        q, rates = start_values(model)
+        q, rates = declared_starts(model)
         found |= {node: q[node.name] for node in symbols.q if node.name in q}
         found |= {node: rates[node.name] for node in symbols.u if node.name in rates}
     return {node: value for node, value in found.items() if isfinite(value)}
@@ -412,148 +572,50 @@ def shorter_row(x: Scalar) -> Scalar:
     return short if 2 * operations((short,)).total <= operations((x,)).total else x
 
 
-# -------- declared speeds -------------------------------------------------------------------------------------
-# Scope -> Scope: generalized speeds that are not rates, w = Y(q, t) q' + y, in the place of the rates.
-#
-#     q' = N u + nu of the rates that are left,  w = Y u + y   ->   u = Y^-1 (w - y),   q' = (N Y^-1) w + (nu - N Y^-1
-#         y)
-#
-# A coordinate whose rate occurs in no declared speed has this rate as a speed. The four rates of a quaternion follow
-# from the angular velocity, e' = 1/2 e o (0, w), without any inverse. The speeds are the remaining rates, in the order
-# of the coordinates, then the declared ones in the order of the model.
-
-
-SpeedRows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
-
-
-@dataclass(frozen=True)
-class Solved:
-    """Rates that declared speeds determine together; where the determinant vanishes they are not determined."""
-
-    rates: tuple[str, ...]
-    determinant: Scalar
-
-    def __str__(self) -> str:
-        return f"the declared speeds do not determine {', '.join(self.rates)}"
-
-
-def with_declared_speeds(
-    scope: Scope, *, vanishes: Callable[[Scalar], bool], shorter: Callable[[Scalar], Scalar]
-) -> tuple[Scope, tuple[Solved, ...]]:
-    """The scope over the declared speeds, and what must stay regular.
-
-    Args:
-        scope: over the rates, dependent coordinates eliminated.
-        vanishes: whether a scalar is zero at all states.
-        shorter: puts a coefficient of N into a shorter form.
-    Raises:
-        ModelError: not one speed for each degree of freedom; a speed that is not linear in the rates; speeds that
-            depend on one another.
-    """
-    u, graph = scope.symbols.u, scope.graph
-    declared = tuple(name for name, part in scope.model.speeds.items() if part.rate is not None)
-    turning = {node.name + "'" for four in scope.quaternions for node in four}
-    formulas = tuple(scope.names[name] for name in declared)
-    _refuse_turning(declared, formulas, [x for x in u if x.name in turning])
-    standing = set(symbols_of(formulas))
-    replaced = [x for x in u if x.name not in turning and x in standing]
-    _refuse_count(scope, declared, replaced)
-    kept = tuple(x for x in u if x.name not in turning and x not in replaced)
-    speeds = (*kept, *map(graph.symbol, scope.model.speeds))
-    rates = (*(graph.symbol(f"{x.name}'") for x in kept), *(graph.symbol(f"{name}'") for name in scope.model.speeds))
-    place = {x.name: k for k, x in enumerate(speeds)}
-    rows: SpeedRows = {x: (_unit(place[x.name], len(speeds)), 0) for x in kept}
-    solved, blocks = _rates_solved(scope, declared, replaced, place, vanishes, shorter)
-    rows |= solved
-    rows |= _quaternion_rates(scope, place)
-    symbols = replace(scope.symbols, u=speeds, a=rates)
-    return _over(scope, replace(scope, symbols=symbols), u, rows), blocks
-
-
-def _unit(k: int, size: int) -> tuple[int, ...]:
-    return tuple(int(j == k) for j in range(size))
-
-
-# -- the rates ---------------------------------------------------------------------------------------
-
-
-def _rates_solved(
-    scope: Scope,
-    declared: Sequence[str],
-    replaced: Sequence[Node],
-    place: dict[str, int],
-    vanishes: Callable[[Scalar], bool],
-    shorter: Callable[[Scalar], Scalar],
-) -> tuple[SpeedRows, tuple[Solved, ...]]:
-    """u = Y^-1 (w - y) of the rates that stand in declared speeds, by determinants."""
-    formulas = tuple(scope.names[name] for name in declared)
-    Y = jacobian(formulas, replaced)
-    y = substituted(formulas, dict.fromkeys(replaced, 0))
-    for name, row in zip(declared, Y, strict=True):
-        if any(depends_on(x, replaced) for x in row):
-            what = f"speed '{name}' is not linear in the rates"
-            raise ModelError(what, f"speeds.{name}.rate", "give a combination of rates")
-    system = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in Y]
-    right = [[*_unit(place[name], len(place)), -bias] for name, bias in zip(declared, y, strict=True)]
+def _written(scope: Scope, scalar: Scalar) -> Expression:
+    """A scalar of the parameters as a formula; as a number where it is one of samples, which have no formula."""
     try:
-        X, blocks = cramer.solution_by_minors(system, right, vanishes=vanishes, shorter=shorter)
-        singular = any(vanishes(cramer.determinant(block.matrix)) for block in blocks)
-    except (DerivationError, ZeroDivisionError, StopIteration):
-        singular = True
-    if singular:
-        names = ", ".join(x.name for x in replaced)
-        what = f"the declared speeds do not determine the rates {names}: they depend on one another"
-        raise ModelError(what, "speeds", "declare independent combinations of the rates")
-    found = tuple(
-        Solved(tuple(replaced[j].name for j in block.unknowns), cramer.determinant(block.matrix)) for block in blocks
-    )
-    return {x: (tuple(row[:-1]), row[-1]) for x, row in zip(replaced, X, strict=True)}, found
+        return as_expression(to_text(scalar))
+    except ExpressionError:
+        known = exact_parameters(scope.model)
+        values = {node: float(known[name]) for name, node in scope.symbols.parameters.items() if name in known}
+        return as_expression(Fraction(evaluate((scalar,), values, FLOAT)[0]))
 
 
-def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
-    """e' = 1/2 e o (0, w), one row for each of its rates."""
-    rows: SpeedRows = {}
-    for four, each in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
-        for e, factors in zip(four, rate_matrix_of(four), strict=True):
-            row: list[Scalar] = [0] * len(place)
-            for name, factor in zip(each.speeds, factors, strict=True):
-                row[place[name]] = factor
-            rows[scope.graph.symbol(f"{e.name}'")] = (tuple(row), 0)
-    return rows
+# -------- mass properties -------------------------------------------------------------------------------------
+# Scope -> the mass properties of a body: as they are given, or of its parts together, short.
 
 
-def _over(old: Scope, new: Scope, u: Sequence[Node], rows: SpeedRows) -> Scope:
-    """q' = N u + nu with u = rows . w + bias put in, and the meaning of every name."""
-    N = tuple(combined(row, [rows[x][0] for x in u]) for row in old.N)
-    nu = tuple(bias + inner(row, [rows[x][1] for x in u]) for row, bias in zip(old.N, old.nu, strict=True))
-    new = replace(new, N=N, nu=nu)
-    rates = {f"{q.name}'": rate for q, rate in zip(new.symbols.q, new.rates, strict=True)}
-    second = new.with_accelerations(tuple(rates.values()))
-    names = {**old.names, **rates, **{f"{name}'": x for name, x in zip(rates, second, strict=True)}}
-    return replace(new, names=names | {x.name: x for x in (*new.symbols.u, *new.symbols.a)})
-
-
-# -- what cannot be ----------------------------------------------------------------------------------
-
-
-def _refuse_turning(declared: Sequence[str], formulas: Sequence[Scalar], turning: Sequence[Node]) -> None:
-    for name, formula in zip(declared, formulas, strict=True):
-        if depends_on(formula, turning):
-            what = f"the rate of a quaternion stands in the speed '{name}'"
-            raise ModelError(what, f"speeds.{name}.rate", "the speeds of the joint's `omega` stand for these rates")
-
-
-def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node]) -> None:
-    if len(declared) == len(replaced):
-        return
-    rates = f"{len(replaced)} rate{'s' * (len(replaced) != 1)}"
-    what = f"{len(declared)} speed{' is' if len(declared) == 1 else 's are'} declared for {rates}"
-    named = ", ".join(x.name for x in replaced) or "none"
-    if len(declared) < len(replaced):
-        fix = (
-            "declare one speed for each rate that stands in them, or leave out those that keep their rate; "
-            "a coordinate that constraints determine may be `dependent`"
+def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) -> Matrix:
+    if inertia is None:
+        return (ZERO, ZERO, ZERO)
+    values = [scope.value(e) for e in inertia]
+    if len(values) == 1:
+        return (ZERO, ZERO, (0, 0, values[0]))
+    if len(values) not in (3, 6):
+        raise ModelError(
+            f"the inertia of body '{body}' has {len(values)} values",
+            f"bodies.{body}.inertia",
+            fix="give 1, 3 or 6 of them",
         )
-    else:
-        fix = "declare one for each degree of freedom: leave out those that follow from the others"
-    raise ModelError(f"{what} ({named})", "speeds", fix)
+    xx, yy, zz, xy, yz, xz = (*values, 0, 0, 0)[:6] if len(values) == 3 else values
+    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+
+
+def _put_together(scope: Scope, body: str) -> Composite:
+    part = scope.model.bodies[body]
+    composite = composite_of(part.parts or (), part.mass, scope.value)
+    everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
+    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, scope.positive)
+    whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))
+    pieces = tuple(PlacedPiece(p.piece, mass) for p, mass in zip(composite.pieces, masses, strict=True))
+    return Composite(pieces, whole)
+
+
+def _flat(mass: MassProperties) -> list[Scalar]:
+    return [mass.m, *mass.com, *(x for row in mass.I for x in row)]
+
+
+def _unflat(entries: Sequence[Scalar]) -> MassProperties:
+    m, *others = entries
+    return MassProperties(m, vector_of(others[:3]), matrix_of((others[3:6], others[6:9], others[9:12])))

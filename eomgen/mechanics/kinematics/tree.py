@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.inertia import mass_properties
-from eomgen.mechanics.kinematics.loads import Loads, body_wrench, in_ground_axes
+from eomgen.mechanics.kinematics.loads import Loads
 from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, shortened_twist
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.expression import (
@@ -199,7 +198,7 @@ def _regrouped(motion: Motion, offsets: list[Vector], plane: bool) -> list[Momen
 
 
 def _own_moments(motion: Motion, link: BodyLink, plane: bool) -> Moments:
-    body = mass_properties(motion.scope, link.name)
+    body = motion.scope.mass_properties(link.name)
     half_trace = Fraction(1, 2) * (body.I[0][0] + body.I[1][1] + body.I[2][2])
     J = matrix_of(((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
     if plane:
@@ -413,7 +412,7 @@ def applied_wrenches(loads: Loads, branches: tuple[Branch, ...]) -> dict[int, Wr
     index = motion.index
     total: dict[int, Wrench] = {}
     for load in loads.placed:
-        found = _ground_wrench(loads, load) if _plane(motion) else body_wrench(motion, load)
+        found = _ground_wrench(loads, load) if _plane(motion) else motion.body_wrench(load)
         if found is None:
             continue
         body, wrench = found
@@ -432,9 +431,9 @@ def _ground_wrench(loads: Loads, load: PointForce | Couple) -> tuple[str, Wrench
     """A load about its body's origin in ground axes."""
     motion = loads.motion
     if not isinstance(load, PointForce):
-        return load.body, Wrench(in_ground_axes(motion, load.couple, load.axes), ZERO)
+        return load.body, Wrench(motion.in_ground_axes(load.couple, load.axes), ZERO)
     body, r = load.place
     if body is None:
         return None
-    f = in_ground_axes(motion, load.force, load.axes)
+    f = motion.in_ground_axes(load.force, load.axes)
     return body, Wrench(cross(apply(motion.link(body).pose.R, r), f), f)

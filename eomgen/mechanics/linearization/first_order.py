@@ -14,7 +14,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, refuse_massless
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.mechanics.integrals import position_equations
-from eomgen.mechanics.kinematics import start_values
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import Doubles, Numbers, Split
 from eomgen.symbolic.expression import (
@@ -133,7 +132,7 @@ def first_order_of(system: System) -> FirstOrder:
         ModelError: a free coordinate moves no mass.
     """
     scope = system.scope
-    relations = [x for x in position_equations(system, start_values(scope)) if depends_on(x, scope.symbols.q)]
+    relations = [x for x in position_equations(system, scope.start_values()) if depends_on(x, scope.symbols.q)]
     relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
     equations = equations_of_motion(system)
     refuse_massless(equations)

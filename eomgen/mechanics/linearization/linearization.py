@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import fork_at, refuse_undetermined
-from eomgen.mechanics.dynamics import System, acting, valueless
+from eomgen.mechanics.dynamics import System, valueless
 from eomgen.mechanics.equilibrium import standing_system, states_beside
 from eomgen.mechanics.free_bodies import frictions
 from eomgen.mechanics.kinematics import Located, places_of
@@ -500,7 +500,7 @@ def refuse_corners(
         }
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
             rough = [f"the friction of '{name}'" for name, factor, _ in frictions(first.system) if _cornered((factor,))]
-            named = [*filter(None, [acting(first.system.loads, _cornered)]), *dict.fromkeys(rough)]
+            named = [*filter(None, [first.system.loads.acting(_cornered)]), *dict.fromkeys(rough)]
             raise DerivationError(
                 f"{' and '.join(named) or 'the forces'}: a corner or a jump at the place of reference",
                 "linearize",
@@ -534,7 +534,7 @@ def steady_coordinates(
     t = first.system.symbols.t
     culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
     if culprit is t:
-        named = acting(first.system.loads, lambda row: depends_on_any(row, (t,)))
+        named = first.system.loads.acting(lambda row: depends_on_any(row, (t,)))
         driven = [f"'{name}'" for name, part in coordinates.items() if part.driven]
         timed = [row.constraint for row in first.system.constraints.rows if depends_on_any((row.velocity,), (t,))]
         by = " and ".join((*driven, *(f"'{name}'" for name in dict.fromkeys(timed)), *([named] if named else ())))

@@ -25,7 +25,6 @@ from eomgen.mechanics.linearization.polynomial import (
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.mechanics.state import Entries, Numbers
 from eomgen.symbolic.exact import book_form, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero
@@ -153,7 +152,7 @@ class Modes:
         reference, rng = self.small.reference, Random(5)
         if len(inner) < len(modes):
             return False
-        known = values_of_parameters(reference.system.scope, None)
+        known = reference.system.scope.values_of_parameters(None)
         for _ in range(TRIES):
             tried = {x: known.get(x, fifty_digits().number(Fraction(rng.randint(2, 80), 20))) for x in reference.trial}
             try:

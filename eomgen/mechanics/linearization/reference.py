@@ -14,8 +14,8 @@ from eomgen.mechanics.constraints import Row, fixed_by_position
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_equilibrium, over_rates, static_equations
 from eomgen.mechanics.integrals import position_equations
-from eomgen.mechanics.kinematics import Located, places_of, start_values
-from eomgen.mechanics.start import refuse_lost, start_state, values_of_parameters
+from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.mechanics.start import refuse_lost, start_state
 from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
@@ -103,7 +103,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
     """
     system = equations.system
     symbols, coordinates = system.symbols, system.scope.model.coordinates
-    start = start_values(system.scope)
+    start = system.scope.start_values()
     driven = [q for q in symbols.q if coordinates[q.name].driven]
     given = system.standing({q: start[q] for q in driven})
     forcing = substituted(equations.forcing, given)
@@ -134,7 +134,7 @@ def _place(place: Equilibrium) -> ReferenceMotion:
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
     found = {q: place.exact[q] for q in symbols.q if q in place.exact}
     exact = (_short(found) if place.numbers else found) | still
-    trial = values_of_parameters(system.scope, Random(3))
+    trial = system.scope.values_of_parameters(Random(3))
     numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
     for q in symbols.q:
         numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(1) * place.numbers[q]
@@ -150,12 +150,12 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
         DerivationError: a constraint that does not hold there.
     """
     symbols, scope, model = system.symbols, system.scope, system.scope.model
-    trial = values_of_parameters(scope, Random(3))
+    trial = scope.values_of_parameters(Random(3))
     parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
     state = start_state(system, parameters, given)
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
     sought = fixed_by_position(system.constraints)
-    exact = {symbols.t: 0} | start_values(scope, (q for q in symbols.q if q not in sought))
+    exact = {symbols.t: 0} | scope.start_values(q for q in symbols.q if q not in sought)
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
         exact[u] = 0 if at_rest else scope.value(speed)

@@ -16,29 +16,14 @@ from eomgen.mechanics.start.exact import ExactStart as ExactStart
 from eomgen.mechanics.start.exact import ScalarValues as ScalarValues
 from eomgen.mechanics.start.exact import Seeds as Seeds
 
-# The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6
-from eomgen.mechanics.start.exact import known_exactly as known_exactly
-
-# The parameters that have values
-from eomgen.mechanics.start.exact import known_parameters as known_parameters
-
 # t, q and u at the start, a number where there is no closed form; None where it is not known
 from eomgen.mechanics.start.exact import known_start as known_start
-
-# Derivatives of the parameters with respect to one of them: its own, and those of parameters that depend on it
-from eomgen.mechanics.start.exact import parameter_seeds as parameter_seeds
 
 # The scalars as numbers, None where something in one has no value; nan where it has none itself
 from eomgen.mechanics.start.exact import shown_numbers as shown_numbers
 
 # Derivatives of coordinates and speeds at the start with respect to parameters, or to the start of one of them
 from eomgen.mechanics.start.exact import start_seeds as start_seeds
-
-# Values, with 50 digits, at which all scalars have one: of the parameters, and of what else stands in them
-from eomgen.mechanics.start.exact import values_for as values_for
-
-# Values of the parameters with 50 digits: the model's own, else random ones; without `rng` those with a value
-from eomgen.mechanics.start.exact import values_of_parameters as values_of_parameters
 
 # Values of t, q, u, a at rest at the start: exact scalars of the parameters
 from eomgen.mechanics.start.exact import values_where_at_rest as values_where_at_rest

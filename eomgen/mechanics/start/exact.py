@@ -12,12 +12,12 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import SEEDS, fixed_by_position, gaps_of, hold_identically, is_guess, of_50_digits
+from eomgen.mechanics.constraints import SEEDS, fixed_by_position, gaps_of, hold_identically, is_guess
 from eomgen.mechanics.dynamics import System, mass
-from eomgen.mechanics.kinematics import Located, Scope, branches_of, places_of, start_values, with_unit_quaternions
+from eomgen.mechanics.kinematics import Located, Scope, branches_of, places_of
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
 from eomgen.mechanics.state import Doubles, Numbers, Split
-from eomgen.model import constant_parameters, exact_parameters, in_order
+from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
     Fraction,
@@ -32,7 +32,17 @@ from eomgen.symbolic.expression import (
     symbols_of,
     tangent,
 )
-from eomgen.symbolic.numeric import NoValue, Work, digits_at, evaluate, fifty_digits, number_of, numbers_of, tolerances
+from eomgen.symbolic.numeric import (
+    NoValue,
+    Work,
+    digits_at,
+    evaluate,
+    fifty_digits,
+    number_of,
+    numbers_of,
+    of_50_digits,
+    tolerances,
+)
 from eomgen.symbolic.solve import LinearSystem, general_solution, unique_solution
 
 # -------- exact start -----------------------------------------------------------------------------------------
@@ -148,8 +158,8 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
         at_rest: all speeds are 0, whatever the model says.
     """
     scope, sought = system.scope, set(fixed_by_position(system.constraints))
-    given = {scope.symbols.t: 0} | start_values(scope, (q for q in scope.symbols.q if q not in sought))
-    start = with_unit_quaternions(scope, given)
+    given = {scope.symbols.t: 0} | scope.start_values(q for q in scope.symbols.q if q not in sought)
+    start = scope.with_unit_quaternions(given)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(system)
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))
 
@@ -220,7 +230,7 @@ class _Sought:
 
     @cached_property
     def _parameters(self) -> dict[Node, Scalar]:
-        return known_exactly(self.system.scope)
+        return self.system.scope.known_exactly
 
     def _places(self, known: Mapping[Node, Scalar], unknown: Sequence[Node]) -> dict[Node, Scalar]:
         """The coordinates that the constraints place, or move; none where these are fewer than all coordinates."""
@@ -314,18 +324,6 @@ Seeds = Mapping[Node, Scalar]
 """how symbols change: their derivatives, by what is changed"""
 
 
-def parameter_seeds(scope: Scope, name: str) -> dict[Node, Scalar]:
-    """Derivatives of the parameters with respect to one of them: its own, and those of parameters that depend on it."""
-    given = {other: part.value for other, part in scope.model.parameters.items() if part is not None}
-    found: dict[Node, Scalar] = {scope.symbols.parameters[name]: 1}
-    for other in in_order(given)[0]:
-        value = given[other]
-        if other != name and value is not None:
-            (rate,) = tangent((scope.value(value),), found)
-            found |= {scope.symbols.parameters[other]: rate} if rate != 0 else {}
-    return found
-
-
 def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: str = "") -> dict[Node, Fraction]:
     """Derivatives of coordinates and speeds at the start with respect to parameters, or to the start of one of them.
 
@@ -341,7 +339,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     def at(scalars: Sequence[Scalar], along: Seeds) -> list[float]:
         return Numbers(numbers).of(tangent(tuple(scalars), along))
 
-    begun = with_unit_quaternions(scope, start_values(scope))
+    begun = scope.with_unit_quaternions(scope.start_values())
     dq = dict(zip(symbols.q, map(Fraction, at([begun[q] for q in symbols.q], seeds)), strict=True))
     dq |= {q: Fraction(1) for q in symbols.q if q.name == own}
     rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
@@ -405,7 +403,6 @@ def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapp
 # System -> its configuration at rest: coordinates at the start, exact; speeds, accelerations and time 0.
 
 
-TRIES = 20
 DIGITS = 12  # of a speed that a start was given by its constraints
 
 
@@ -419,7 +416,7 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
     """
     symbols, scope = system.symbols, system.scope
     sought = fixed_by_position(system.constraints)
-    given = with_unit_quaternions(scope, start_values(scope, (q for q in symbols.q if q not in sought)))
+    given = scope.with_unit_quaternions(scope.start_values(q for q in symbols.q if q not in sought))
     state = system.standing({**given, **(places or {})})
     left = [q for q in sought if q not in state]
     return state | (_closed_in(system, state, left) if left else {})
@@ -427,7 +424,7 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
 
 def _closed_in(system: System, state: State, sought: list[Node]) -> State:
     """The dependent coordinates that the constraints place, in closed form."""
-    numbers: dict[Node, float] = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+    numbers: dict[Node, float] = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
     numbers |= {
         node: value
         for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
@@ -454,7 +451,7 @@ def speeds_near(system: System, places: State, numbers: Mapping[Node, float]) ->
     rows = substituted(tuple(row.velocity for row in system.constraints.closing), places | {system.symbols.t: 0})
     still = substituted(rows, dict.fromkeys(u, 0))
     lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in jacobian(rows, u)]
-    values = digits_at(values_of_parameters(system.scope, Random(3)))
+    values = digits_at(system.scope.values_of_parameters(Random(3)))
     solution = general_solution(LinearSystem(lines, [-x for x in still], len(u), values))
     known = {j: Fraction(f"{numbers[u[j]]:.{DIGITS}g}") for j in solution.free}
     found: dict[Node, Scalar] = {u[j]: x for j, x in known.items()}
@@ -463,71 +460,10 @@ def speeds_near(system: System, places: State, numbers: Mapping[Node, float]) ->
     return found
 
 
-def values_of_parameters(scope: Scope, rng: Random | None, *, shaken: bool = False) -> dict[Node, Any]:
-    """Values of the parameters with 50 digits: the model's own, else random ones; without `rng` those with a value.
-
-    Args:
-        shaken: all near the model's own and none of them special.
-    """
-    model, arithmetic = scope.model, fifty_digits()
-    known = exact_parameters(model)
-    names, values = scope.symbols.parameters, dict[Node, Any]()
-    given = {name: part.value for name, part in model.parameters.items() if part is not None}
-    for name in in_order(given)[0]:
-        if name in known:
-            values[names[name]] = evaluate((scope.value(given[name]),), values, arithmetic)[0]
-    if rng is None:
-        return values
-    for node in names.values():
-        value = values.get(node)
-        if value is None:
-            values[node] = of_50_digits(rng.uniform(0.7, 1.3))
-        elif shaken:
-            values[node] = value * rng.uniform(0.8, 1.2) if value else of_50_digits(rng.uniform(0.05, 0.2))
-    return values
-
-
-def values_for(
-    scope: Scope, scalars: Iterable[Scalar], near: Mapping[Node, float] | None = None, *, shaken: bool = False
-) -> dict[Node, Any]:
-    """Values, with 50 digits, at which all scalars have one: of the parameters, and of what else stands in them.
-
-    Args:
-        near: where symbols of the configuration are.
-        shaken: as of `values_of_parameters`.
-    Raises:
-        DerivationError: they have none.
-    """
-    wanted, arithmetic = tuple(scalars), fifty_digits()
-    for seed in range(1, TRIES):
-        rng = Random(seed)
-        values = values_of_parameters(scope, rng, shaken=shaken)
-        values |= {node: arithmetic.number(Fraction(x)) for node, x in (near or {}).items()}
-        values |= {x: of_50_digits(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
-        try:
-            evaluate(wanted, values, arithmetic)
-        except (NoValue, ZeroDivisionError):
-            continue
-        return values
-    raise DerivationError(
-        "the configuration has no value at these parameters", fix="give parameters at which lengths and roots are real"
-    )
-
-
 # -------- numeric value ---------------------------------------------------------------------------------------
 # Scope -> ScalarValues: values of scalars at the model's parameters, with 50 digits, and a test if they vanish there.
 #
 # Parameters without a value, and symbols that were left free, have random values.
-
-
-def known_parameters(scope: Scope) -> dict[Node, float]:
-    """The parameters that have values."""
-    return {scope.symbols.parameters[name]: float(x) for name, x in exact_parameters(scope.model).items()}
-
-
-def known_exactly(scope: Scope) -> dict[Node, Scalar]:
-    """The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6."""
-    return {scope.symbols.parameters[name]: x for name, x in constant_parameters(scope.model, scope.graph).items()}
 
 
 def shown_numbers(scalars: Sequence[Scalar | None], values: Mapping[Node, Scalar | float]) -> list[float | None]:
@@ -571,8 +507,8 @@ class ScalarValues:
 
     @cached_property
     def _values(self) -> dict[Node, Any]:
-        return values_of_parameters(self.scope, Random(1))
+        return self.scope.values_of_parameters(Random(1))
 
     @cached_property
     def _known(self) -> dict[Node, Scalar]:
-        return known_exactly(self.scope)
+        return self.scope.known_exactly

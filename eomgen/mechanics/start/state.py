@@ -27,7 +27,6 @@ from eomgen.mechanics.constraints import (
     movable,
     nearest_speeds,
     norms_of,
-    of_50_digits,
     open_at,
     open_by,
     speeds_along,
@@ -50,7 +49,16 @@ from eomgen.model import (
     start_values,
 )
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, minus, substituted, symbols_of
-from eomgen.symbolic.numeric import FLOAT, NoValue, all_roots, evaluate, fifty_digits, least_left, tolerances
+from eomgen.symbolic.numeric import (
+    FLOAT,
+    NoValue,
+    all_roots,
+    evaluate,
+    fifty_digits,
+    least_left,
+    of_50_digits,
+    tolerances,
+)
 
 # -------- initial state ---------------------------------------------------------------------------------------
 # System -> the state at the start: dependent coordinates where the constraints put them, and the constraints found to

@@ -10,7 +10,7 @@ from random import Random
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass, recalled
-from eomgen.mechanics.constraints import of_50_digits, rows_of_constraint
+from eomgen.mechanics.constraints import rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
 from eomgen.mechanics.free_bodies import Reactions, equations_of_motion, frictions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
@@ -18,7 +18,7 @@ from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
 from eomgen.model import Contact, Model, contacts_of, exact_parameters, rough_contacts
 from eomgen.symbolic.expression import Scalar, State, function, sqrt, symbols_of
-from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
 
 # -------- contacts at start -----------------------------------------------------------------------------------
 # Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.

@@ -20,7 +20,6 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, effects_of_load, joint_effects
-from eomgen.mechanics.kinematics import field_of, mass_properties
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.expression import (
@@ -396,11 +395,11 @@ class MemberLoads:
     def _of_mass(self) -> list[MemberLoad]:
         """m/L (g - a) along a rod; a linear function of the place."""
         system = self._system
-        mass = mass_properties(system.scope, self.body)
+        mass = system.scope.mass_properties(self.body)
         if is_zero(mass.m):
             return []
         ends = self._ends_of_rod()
-        field, motion = field_of(system.motion, self.body), system.motion
+        field, motion = system.motion.field(self.body), system.motion
         if ends is None:
             inertia = field.acceleration(motion.position((self.body, mass.com)))
             if self._is_zero((*minus(self._weight(), inertia), field.e[2])):
@@ -426,7 +425,7 @@ class MemberLoads:
         """The acceleration fields that act on the body's mass, ground axes."""
         system = self._system
         total = system.loads.fields
-        m = mass_properties(system.scope, self.body).m
+        m = system.scope.mass_properties(self.body).m
         for force in system.loads.applied:
             if system.scope.model.forces[force.name].by_mass:
                 for load in force.loads:

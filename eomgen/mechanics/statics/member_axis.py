@@ -15,7 +15,6 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.start import values_of_parameters
 from eomgen.symbolic.exact import readable, readable_all, sign_of_terms, simplest
 from eomgen.symbolic.expression import (
     ZERO,
@@ -88,7 +87,7 @@ class Sizes:
 def sizes_of(motion: Motion, at: Mapping[Node, Scalar] | None = None) -> Sizes:
     """Sizes at the model's values."""
     scope = motion.scope
-    return Sizes(scope.graph, scope.positive, values_of_parameters(scope, None), at or {})
+    return Sizes(scope.graph, scope.positive, scope.values_of_parameters(None), at or {})
 
 
 @dataclass(frozen=True)

@@ -73,6 +73,9 @@ from eomgen.symbolic.numeric.evaluation import fifty_digits as fifty_digits
 # Numbers of many digits as floats
 from eomgen.symbolic.numeric.evaluation import floats_of as floats_of
 
+# A float as a number of 50 digits
+from eomgen.symbolic.numeric.evaluation import of_50_digits as of_50_digits
+
 # x of as many rows [A | b] as unknowns, with 50 digits; None where they are few, or A is nearly singular
 from eomgen.symbolic.numeric.evaluation import solved_quickly as solved_quickly
 

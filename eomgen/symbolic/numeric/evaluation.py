@@ -360,6 +360,11 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed, partial_of(by_balls, mp))
 
 
+def of_50_digits(value: float) -> Any:
+    """A float as a number of 50 digits."""
+    return fifty_digits().number(1) * value
+
+
 def _read_again(partial: bool, kept: Any) -> Any:
     """A number with 50 digits out of a pickle."""
     from mpmath.libmp import from_pickable
