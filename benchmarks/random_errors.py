@@ -6,7 +6,7 @@ Each error is put into the function in a fork of one process (`error_runs.py`), 
 function, shorter ones first in the lot, are made again:
 
     product     the verb says so: exit code other than 0
-    tests       by --tests: one of README's quick tests that call the function fails (`error_tests.py`)
+    tests       by --tests: one of README's tests of its subject fails (`error_tests.py`)
     harmless    every number, formula and word that is printed or written is right all the same (`error_outputs.py`)
     no effect   what is printed, and what is written into files, is the same
     open        exit code 0, and something that is printed or written differs: read it, by -v or --log
@@ -155,7 +155,9 @@ def main() -> int:
     parser.add_argument("--rooms", default="", help="these alone, separated by commas")
     parser.add_argument("--kind", choices=("all", "numbers", "read"), default="all", help="rooms of this kind")
     parser.add_argument("--evenly", choices=("yes", "no"), default="yes", help="from every room as many")
-    parser.add_argument("--tests", action="store_true", help="run the quick tests on what the product did not see")
+    parser.add_argument(
+        "--tests", action="store_true", help="run the tests of its subject on what the product did not see"
+    )
     parser.add_argument("--of", default="", help="the runs alone in which one of these words stands")
     parser.add_argument("--runs", type=int, help="so many of the runs alone, drawn by the seed")
     parser.add_argument("--kept", type=Path, help="a folder for what runs and tests do without an error")
