@@ -2,7 +2,7 @@
 
 Y pi + y0 = M a + c - Q without inputs              exactly
 Y pi = Y_base K pi                                  of any pi, at states that keep the constraints, along their motions
-factor as printed, read back = its number
+formula as printed, read back = sum of its numbers times any pi
 W^T (b - W beta) = 0                                of the samples: the residual is orthogonal to every column
 Z^T (M a - forcing) = W pi - b                      of some samples, pi the model's, Z the motions that the constraints
 allow
@@ -11,6 +11,7 @@ allow
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import islice
@@ -138,12 +139,15 @@ def _rank(W: np.ndarray) -> int:
 
 
 def _misread(found: LinearForces, group: Group) -> str:
-    scope = found.system.scope
-    read = tuple(scope.value(parse(text)) for text in group.terms.values())
-    values = evaluate(read, scope.values_of_parameters(None), fifty_digits())
-    for (parameter, text), value in zip(group.terms.items(), values, strict=True):
-        if abs(value - group.numbers[parameter]) > tolerances.COMPUTED * (1 + abs(value)):
-            return f"{text} of {parameter} is {float(value):.10g}, not {group.numbers[parameter]:.10g}"
+    """The formula as it is printed, with numbers for its parameters, against the group's numbers."""
+    scope, rng = found.system.scope, Random(group.name)
+    pi = {name: Fraction(rng.randrange(100, 1000), 100) for name in group.terms}
+    named = "|".join(map(re.escape, sorted(pi, key=len, reverse=True))) or "(?!)"
+    text = re.sub(rf"(?<!\w)({named})", lambda name: f"({pi[name[1]]})", group.formula)
+    (read,) = evaluate((scope.value(parse(text or "0")),), scope.values_of_parameters(None), fifty_digits())
+    terms = [group.numbers[name] * float(value) for name, value in pi.items()]
+    if abs(read - sum(terms)) > tolerances.COMPUTED * (1 + sum(map(abs, terms))):
+        return f"{group.formula} is {float(read):.10g}, not {sum(terms):.10g}, for parameters by lot"
     return ""
 
 
