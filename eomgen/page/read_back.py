@@ -81,6 +81,9 @@ def _wanted(report: Report, form: str) -> Iterator[Wanted]:
     """Elements that the file of a report has to hold, in order."""
     head = report.head
     yield Wanted("heading", (head.title,))
+    if form == ".html" and report.certificate is not None and report.certificate.ok:
+        held = sum(check.ok is True for check in report.certificate.checks)
+        yield Wanted("words", (f"✓ proven by {held} checks",))
     about = [Wanted("words", (head.about,))] if head.about else []
     source = [Wanted("words", (f"Source: {head.source}.",))] if head.source else []
     wrong = [Wanted("words", (head.wrong,))] if head.wrong else []
