@@ -250,7 +250,8 @@ def _again(options: argparse.Namespace) -> Iterator[Drawn]:
             mine = [x for x in places(row["file"], set()) if x.lines == (row["old"], row["new"])]
             if not mine:
                 print(f"gone      {row['file']}: {row['old']}", flush=True)
-            yield from ((place, [row["run"]]) for place in mine[:1])
+            nearest = sorted(mine, key=lambda x: abs(x.line - row["line"]))
+            yield from ((place, [row["run"]]) for place in nearest[:1])
 
 
 def _requested(file: str, options: argparse.Namespace) -> bool:
