@@ -114,7 +114,7 @@ def simulate_command(
     The run continues through every change of contact: opening, closing, sliding, sticking. Reactions and outputs are
     columns. Constraints are stabilized; their errors and that of the energy are reported.
     """
-    from eomgen.simulation import RATES, Stepping
+    from eomgen.simulation import Stepping
     from eomgen.verbs import simulate_document as simulated
 
     if baumgarte and stabilize != "baumgarte":
@@ -123,7 +123,7 @@ def simulate_command(
     refuse_idle(view=(options["plot"] is not None, OF_PLOT), units=(in_table, OF_TABLE))
     if project_every and stabilize != "projection":
         raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
-    rates = baumgarte or RATES
+    rates = baumgarte or Stepping().rates
     options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
     with reading(model) as source:
         document = requested_document(simulated, source, options, follow, output=output)

@@ -191,12 +191,10 @@ def simulate(
 
 def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning to the caller."""
-    from eomgen.simulation import OnDemand
-
     passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])
     for problem in (*left_tables(model, float(found.t[-1]) if len(found.t) else 0.0), *passed):
         warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
-    missing = found.reported if isinstance(found.reactions, OnDemand) else found.remark  # which waits as they do
+    missing = found.known_remark
     if missing and (found.reactions or found.outputs):
         warnings.warn(f"{model.name}: {missing}", RuntimeWarning, stacklevel=3)
     return found

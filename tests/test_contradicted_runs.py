@@ -10,7 +10,7 @@ import pytest
 import eomgen
 from eomgen.frozen import with_fields
 from eomgen.questions import batch_of_runs as many_runs
-from eomgen.simulation.solvers import accuracy_of
+from eomgen.simulation.solvers import Accuracy
 
 pytestmark = pytest.mark.slow
 
@@ -85,5 +85,5 @@ def test_motions_part_where_their_distance_grows_step_by_step():
     assert run.accuracy.parts and "neighbouring motions part" in str(run.accuracy)
     other = with_fields(run, x=run.x.copy())
     other.x[500:] = 0.0
-    jumped = accuracy_of(run, other, 1.0)
+    jumped = Accuracy.of(run, other, 1.0)
     assert jumped.until is not None and not jumped.parts and "a finer run goes another way" in str(jumped)

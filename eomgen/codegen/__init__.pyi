@@ -1,12 +1,6 @@
 """Door of the room: what other rooms may import from `eomgen.codegen`."""
 
-# Runs of a program, in the lanes of vectors
-# Runs of a program, in the lanes of vectors
-from eomgen.codegen.batching import STATUS as STATUS
 from eomgen.codegen.batching import Batch as Batch
-
-# Results of runs: states, runs x instants x n; of each run its STATUS, the instant that it reached, its steps
-from eomgen.codegen.batching import FoundRuns as FoundRuns
 
 # Options that are the same for all runs
 from eomgen.codegen.batching import Requested as Requested
@@ -138,9 +132,6 @@ from eomgen.codegen.taylor import ALONE as ALONE
 
 # The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least
 from eomgen.codegen.taylor import order_for as order_for
-
-# First part of a program without a power series here, by its name in models; "" where all have one
-from eomgen.codegen.taylor import without_series as without_series
 
 # The right-hand side of a model, and what is written of further functions beside it
 from eomgen.codegen.written_files import Emitter as Emitter

@@ -48,13 +48,19 @@ class Requested:
 
 
 @dataclass(frozen=True)
-class FoundRuns:
+class BatchedRuns:
     """Results of runs: states, runs x instants x n; of each run its STATUS, the instant that it reached, its steps."""
 
     x: np.ndarray
     status: np.ndarray
     reached: np.ndarray
     steps: np.ndarray
+
+    @property
+    def words(self) -> np.ndarray:
+        """The STATUS of each run, in words."""
+        found: np.ndarray = np.array(STATUS, dtype=object)[self.status]
+        return found
 
 
 def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
@@ -147,7 +153,7 @@ class Batch:
 
     def runs(
         self, x0: np.ndarray, p: np.ndarray, requested: Requested, *, threads: int, check: Callable[[], None]
-    ) -> FoundRuns:
+    ) -> BatchedRuns:
         """The runs from x0 (runs x n) with parameters p (runs x parameters).
 
         Args:
@@ -156,7 +162,7 @@ class Batch:
         """
         x0, p = np.ascontiguousarray(x0, dtype=float), np.ascontiguousarray(p, dtype=float)
         runs, n = x0.shape
-        found = FoundRuns(
+        found = BatchedRuns(
             np.full((runs, len(requested.instants), n), np.nan),
             np.zeros(runs, dtype=np.int32),
             np.full(runs, requested.span[0]),
@@ -171,7 +177,7 @@ class Batch:
         x0: np.ndarray,
         p: np.ndarray,
         requested: Requested,
-        found: FoundRuns,
+        found: BatchedRuns,
         piece: tuple[int, int],
         stop: threading.Event,
     ) -> None:

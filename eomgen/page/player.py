@@ -35,7 +35,7 @@ from eomgen.proof import (
     unpacked,
 )
 from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
-from eomgen.simulation import Configuration, PhaseModel, Trajectory
+from eomgen.simulation import PhaseModel, Trajectory
 from eomgen.study import Study
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 from eomgen.version import __version__
@@ -92,7 +92,7 @@ class PlayedRun:
     @property
     def changes(self) -> bool:
         """True if contacts change in it, or could."""
-        return self.phase.configuration != Configuration()
+        return self.phase.changes
 
     @cached_property
     def study(self) -> Study:

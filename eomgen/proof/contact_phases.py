@@ -14,7 +14,7 @@ N and F are the columns of reactions. An impact is plastic and without friction,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any
@@ -34,7 +34,7 @@ from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
-from eomgen.simulation import Phase, PhaseModel, ReactionColumns, Values, slack_name, sliding_velocity
+from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
 from eomgen.symbolic.expression import Scalar, State, apply
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
 
@@ -166,7 +166,7 @@ def _misplaced(phase: Phase, apart: System) -> str:
     return ""
 
 
-def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
+def _state(system: System, values: Mapping[str, float], p: np.ndarray, t: float) -> State:
     """State of the run with 50 digits; quaternions of doubles are normalized, as their norm is off by 1e-16."""
     symbols = system.symbols
     known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
@@ -243,20 +243,20 @@ class _Bodies:
         return ""
 
     @property
-    def _end(self) -> Values:
+    def _end(self) -> Mapping[str, float]:
         return self._values(self.before, -1)
 
     @property
-    def _begin(self) -> Values:
+    def _begin(self) -> Mapping[str, float]:
         return self._values(self.after, 0)
 
-    def _values(self, phase: Phase, row: int) -> Values:
+    def _values(self, phase: Phase, row: int) -> Mapping[str, float]:
         assert phase.track is not None
         t, x = phase.track
-        found: Values = phase.model.values(float(t[row]), x[row])
+        found: Mapping[str, float] = phase.model.values(float(t[row]), x[row])
         return found
 
-    def _state(self, values: Values) -> np.ndarray:
+    def _state(self, values: Mapping[str, float]) -> np.ndarray:
         symbols = self.system.symbols
         return np.array([values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)])
 
@@ -268,7 +268,7 @@ class _Bodies:
         """True if a contact is closed before or after, or its gap is 0."""
         if any(name not in phase.model.configuration.open for phase in (self.before, self.after)):
             return True
-        gap = self._end.get(slack_name(name), 0.0)
+        gap = self._end.get(PhaseModel.slack_name(name), 0.0)
         if rows[0].gap is not None:
             gap = float(self._numbers((rows[0].gap,), self._state(self._end)[None])[0, 0])
         return abs(gap) <= tolerances.OPEN_GAP

@@ -12,7 +12,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.integrals import ClosedInstant
 from eomgen.mechanics.kinematics import Located, places_of
 from eomgen.model import exact_parameters, numeric_parameters
-from eomgen.simulation import FirstTime, values_of
+from eomgen.simulation import FirstTime
 from eomgen.study import Study
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, substituted
 from eomgen.symbolic.numeric import FLOAT, evaluate, transplanted
@@ -161,7 +161,8 @@ def _search(phase: Study, condition: Scalar, start: Mapping[Node, Scalar]) -> _S
 
 
 def _values(phase: Study) -> State:
-    return values_of(phase.system.symbols.parameters, exact_parameters(phase.model))
+    parameters, known = phase.system.symbols.parameters, exact_parameters(phase.model)
+    return {node: float(known[name]) for name, node in parameters.items() if name in known}
 
 
 @dataclass(frozen=True)

@@ -1,14 +1,12 @@
 """Simulator, values of many runs -> Runs: in lanes of vectors or in marches where the model allows it, else one by one.
 
-Lanes are for models x' = f(t, x, p) without constraints, contacts that change and dependent quaternions, whose start
-follows from numbers. Marches are for models with constraints that hold throughout. A run that is stiff, comes near a
-singular position, or has equations or a start of its own is run alone.
+A run that is stiff, comes near a singular position, or has equations or a start of its own is run alone.
 """
 
 from __future__ import annotations
 
 import contextvars
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -16,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import STATUS, Batch, FoundRuns, Requested, in_c, order_for, parameter_vector, without_series
-from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
+from eomgen.codegen import parameter_vector
+from eomgen.errors import EomgenError, ExpressionError, UsageError
 from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.start import start_of_motion
 from eomgen.model import (
@@ -37,24 +35,17 @@ from eomgen.model import (
 from eomgen.proof import Promise
 from eomgen.questions.simulator import SAMPLES, KnownEquations, Runs, Simulator
 from eomgen.simulation import (
-    AUTO,
-    BATCHED,
-    TAYLOR,
-    Configuration,
-    ManyStarts,
+    FoundRuns,
+    ManyRuns,
     PhaseModel,
     breakpoints_of,
-    drift_of,
-    ended_words,
     has_phases,
     instants_of,
-    marched,
     one_phase,
-    reached_words,
     refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression
-from eomgen.symbolic.numeric import check_patience, doing, tolerances
+from eomgen.symbolic.numeric import check_patience, doing
 
 OfRuns = Mapping[str, Any]
 """Values by name: arrays, one number a run, or what all runs share."""
@@ -119,7 +110,7 @@ def many_runs(
         message = np.where(why != "", why, message)
         x[why != ""] = np.nan
     given = {**plan.parameters, **plan.start}
-    drifts = _drifts(plan, phase) if phase.conservative and not has_phases(plan.model) else None
+    drifts = _runs_of(plan, phase, threads).drifts if phase.conservative and not has_phases(plan.model) else None
     return Runs(plan.instants, x, names, status, message, steps, given, equations.certify, drifts)
 
 
@@ -193,32 +184,29 @@ def _known(simulator: Simulator) -> tuple[Any, PhaseModel]:
 
 def _in_lanes(plan: _Plan, threads: int) -> Reported | None:
     """All runs in lanes; None where the model, the method or the machine does not allow it."""
-    simulator, how = plan.simulator, plan.simulator.how
-    steps = how.method in (AUTO, "DOP853", TAYLOR) and how.stabilization in ("projection", "none")
-    if simulator.is_constrained or simulator.keeps_start or not steps or simulator.target == "numpy":
+    simulator = plan.simulator
+    if simulator.is_constrained or simulator.keeps_start or simulator.target == "numpy":
+        return None
+    if not simulator.how.is_in_lanes:
         return None
     equations, phase = _known(simulator)
-    step, program = how.of_one_step(), phase.functions.rhs.program
-    series = how.method == TAYLOR and not without_series(program)
-    try:
-        batch = Batch(program, BATCHED, order_for(step.rtol) if series else None)
-    except (RunFailed, ToolMissing):
-        if simulator.target == "c":
-            raise
-        return None
-    p = _parameters(plan)
-    requested = Requested(
-        (0.0, plan.time), plan.instants, step.rtol, step.atol, step.most_steps,
-        breakpoints_of(plan.model), tuple(phase.functions.rhs.unit_quaternions),
-    )  # fmt: skip
-    found = batch.runs(_starts(plan, phase, equations), p, requested, threads=threads, check=check_patience)
-    status, message = np.array(STATUS, dtype=object)[found.status], _messages(found)
-    again = np.flatnonzero(status == "stiff")
-    if len(again):
-        reported = _one_by_one(plan, again.tolist(), threads)
-        _, status[again], message[again], found.x[again], found.steps[again] = reported
-    names = phase.coordinates + phase.shown
-    return names, status.astype(str), message, found.x, found.steps.astype(int)
+    runs, required = _runs_of(plan, phase, threads), simulator.target == "c"
+    found = runs.in_lanes(lambda: _starts(plan, phase, equations), required=required)
+    return None if found is None else _completed(plan, found, threads)
+
+
+def _runs_of(plan: _Plan, phase: PhaseModel, threads: int) -> ManyRuns:
+    how = with_fields(plan.simulator.how.of_one_step(), breakpoints=breakpoints_of(plan.model))
+    return ManyRuns(phase, how, plan.instants, plan.time, partial(_parameters, plan), threads)
+
+
+def _completed(plan: _Plan, found: FoundRuns, threads: int) -> Reported:
+    """The runs, with those that are run alone."""
+    x, status, message, steps = found.x, found.status, found.message, found.steps
+    if len(found.alone):
+        reported = _one_by_one(plan, found.alone.tolist(), threads)
+        _, status[found.alone], message[found.alone], x[found.alone], steps[found.alone] = reported
+    return found.names, status.astype(str), message, x, steps.astype(int)
 
 
 # -- in marches ----------------------------------------------------------------------------------------
@@ -226,34 +214,14 @@ def _in_lanes(plan: _Plan, threads: int) -> Reported | None:
 
 def _in_marches(plan: _Plan, threads: int) -> Reported | None:
     """All runs in marches, those that are not finished so one by one; None where model or method does not allow it."""
-    simulator, how = plan.simulator, plan.simulator.how
-    allowed = how.method in (AUTO, "DOP853") and how.stabilization in ("projection", "none") and how.every is None
-    if not allowed or has_phases(plan.model) or simulator.target == "numpy" or not (base := _base(plan)):
+    simulator = plan.simulator
+    if not simulator.how.is_in_marches or has_phases(plan.model) or simulator.target == "numpy":
         return None
-    phase, p = base.models.of(Configuration()), _parameters(plan)
-    columns = [*phase.coordinates, *phase.speeds]
-    names = phase.coordinates + phase.shown
-    if phase.functions.rhs.target != "c" or not {*names} <= {*columns} or not len(phase.speeds):
+    base = _base(plan)
+    if base is None:
         return None
-    x0, places, known = ManyStarts(phase).at(p, plan.start)
-    known &= base.derived.holds(p, places) & base.derived.is_regular(p, x0)
-    known &= np.max(np.abs(x0), axis=1) < tolerances.COMPUTED / np.finfo(float).eps
-    which, step = np.flatnonzero(known), with_fields(how.of_one_step(), breakpoints=breakpoints_of(plan.model))
-    found = None
-    if len(which):
-        starts = x0[which], p[which]
-        march = partial(marched, phase, starts, step, plan.instants, plan.time, threads=threads, check=check_patience)
-        found = in_c(march, "runs are made one by one")
-    if found is None:
-        return None
-    x, steps = np.full((plan.runs, len(plan.instants), len(names)), np.nan), np.zeros(plan.runs, dtype=int)
-    x[which], steps[which] = found.x[:, :, [columns.index(name) for name in names]], found.steps
-    status, message = np.full(plan.runs, "finished", object), np.full(plan.runs, reached_words(plan.time), object)
-    again = np.setdiff1d(np.arange(plan.runs), which[found.is_done])
-    if len(again):
-        reported = _one_by_one(plan, again.tolist(), threads)
-        _, status[again], message[again], x[again], steps[again] = reported
-    return names, status.astype(str), message, x, steps
+    found = _runs_of(plan, base.models.only, threads).in_marches(base.derived, plan.start)
+    return None if found is None else _completed(plan, found, threads)
 
 
 def _base(plan: _Plan) -> KnownEquations | None:
@@ -264,14 +232,6 @@ def _base(plan: _Plan) -> KnownEquations | None:
         return None
     base = next(iter(plan.simulator.bases), None)
     return None if base is None or (base.follows_start and plan.start) else base
-
-
-def _messages(found: FoundRuns) -> np.ndarray:
-    words = [
-        ended_words(STATUS[s], float(t), int(n))
-        for s, t, n in zip(found.status, found.reached, found.steps, strict=True)
-    ]
-    return np.array(words, dtype=object)
 
 
 def _parameters(plan: _Plan) -> np.ndarray:
@@ -347,16 +307,6 @@ def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.nda
         for four in phase.functions.rhs.unit_quaternions:
             norms = np.sum(x[:, :, list(four)] ** 2, axis=2)
             judge("a quaternion's norm changes", np.max(np.abs(norms - 1), axis=1), (q.limit(1.0) for q in promises))
-    return found
-
-
-def _drifts(plan: _Plan, phase: PhaseModel) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
-    """Function (t, x) -> drift of the energy of each run, at the instants."""
-
-    def found(t: np.ndarray, x: np.ndarray) -> np.ndarray:
-        p, energies = _parameters(plan), phase.functions.energies
-        return np.array([drift_of(*energies.many(t, each, own).T) for each, own in zip(x, p, strict=True)])
-
     return found
 
 

@@ -28,7 +28,6 @@ from eomgen.simulation import (
     AUTO,
     PhaseRun,
     Trajectory,
-    by_the_law,
     has_phases,
     integrate,
     joined,
@@ -77,10 +76,10 @@ class MotionFromStart:
     @cached_property
     def _first(self) -> PhaseStart:
         """Start of the first phase."""
-        from eomgen.simulation import at_start
+        from eomgen.simulation import PhaseStart
 
         assert self.models is not None
-        return at_start(self.models, 0.0, None, self._start_rates)
+        return PhaseStart.of(self.models, 0.0, None, self._start_rates)
 
     @property
     def _start_rates(self) -> dict[str, float] | None:
@@ -97,7 +96,7 @@ class MotionFromStart:
             return study_at_rest(self.model)
         if self.models is None:
             return study_of(self.model)
-        return Study(self.models.of(by_the_law(self.model, self._first.configuration)).system)
+        return Study(self.models.of(self._first.configuration.by_the_law(self.model)).system)
 
     @property
     def failure(self) -> str:
@@ -242,7 +241,7 @@ class MotionFromStart:
         return {}
 
     def _run_to(self, condition: WrittenEquation) -> list[PhaseRun]:
-        from eomgen.simulation import Plan, through
+        from eomgen.simulation import Plan
 
         assert self.models is not None
 
@@ -250,7 +249,7 @@ class MotionFromStart:
             return difference_of(Study(phase.system), condition)
 
         for horizon in HORIZONS:
-            runs = list(through(self.models, self._first, Plan(horizon, fine_stepping(), None, until)))
+            runs = list(Plan(horizon, fine_stepping(), None, until).through(self.models, self._first))
             if runs[-1].is_met:
                 return runs
             if runs[-1].run.status != "finished":

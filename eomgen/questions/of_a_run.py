@@ -34,7 +34,7 @@ from eomgen.model import (
     parse_typed_equation,
 )
 from eomgen.proof import Check, Tally, differing
-from eomgen.simulation import DenseMotion, OutputColumns, PhaseRun, Plan, dense_motion
+from eomgen.simulation import DenseMotion, OutputColumns, PhaseRun, Plan
 from eomgen.symbolic.expression import Call, Expression, parse
 from eomgen.symbolic.numeric import ChebyshevPieces, resolved_curve, tolerances
 
@@ -431,7 +431,7 @@ class WholeRun:
     def _dense(self) -> dict[int, DenseMotion]:
         ends = [self.plan.end] * len(self.runs) if self.ends is None else self.ends
         plans = [replace(self.plan, end=end) for end in ends]
-        return {k: dense_motion(run, plans[k]) for k, run in enumerate(self.runs) if run.run.end > run.here.t}
+        return {k: DenseMotion.of(run, plans[k]) for k, run in enumerate(self.runs) if run.run.end > run.here.t}
 
     @cached_property
     def _made(self) -> dict[tuple[Expression, int], OutputColumns]:

@@ -40,7 +40,6 @@ from eomgen.proof import Certificate, checked, rows_that_stay
 from eomgen.questions.of_a_run import WholeRun, requested_of
 from eomgen.questions.single_run import finished_run, phase_models, run
 from eomgen.simulation import (
-    NO_EQUATIONS,
     DerivedAt,
     PhaseModels,
     PhaseRun,
@@ -48,14 +47,11 @@ from eomgen.simulation import (
     Plan,
     Stepping,
     Trajectory,
-    after_jump,
-    at_start,
     breakpoints_of,
     formulas_of,
     has_phases,
     instants_of,
     refuse_bad_run,
-    through,
 )
 from eomgen.symbolic.expression import Expression, as_expression, parse
 from eomgen.symbolic.numeric import tolerances
@@ -234,7 +230,7 @@ class KnownEquations:
         if not derived.requests(p)[0]:
             return True
         try:
-            here = at_start(models, 0.0, given_parameters(model), valued.start)
+            here = PhaseStart.of(models, 0.0, given_parameters(model), valued.start)
         except DerivationError:
             return False
         return bool(derived.is_regular(p, models.of(here.configuration).state(here.values)[None, :])[0])
@@ -442,7 +438,7 @@ def controlled_run(
             f"'{functions[0]}' is set by a Python function, and contacts change", fix="an expression, or `every`"
         )
     models = phase_models(equations, parameter_vector(model), how, target)
-    here = at_start(models, 0.0, None, None)
+    here = PhaseStart.of(models, 0.0, None, None)
     instants = instants_of(samples, 0.0, time)
     plan = Plan(time, replace(how.of_one_step(), breakpoints=breakpoints_of(model), keeps=True), instants)
     phases = list(_phases(_control(models, here, controllers), models, here, plan))
@@ -469,9 +465,9 @@ def _phases(
     for start, end, due in _stretches(control.controllers, plan.end):
         p = control.set_(p, start, here.values, due)
         models = models.at(p, fed)
-        here = after_jump(models, here)
+        here = here.after_jump(models)
         inside = None if plan.instants is None else plan.instants[(plan.instants >= start) & (plan.instants <= end)]
-        for phase in through(models, here, replace(plan, end=end, instants=inside)):
+        for phase in replace(plan, end=end, instants=inside).through(models, here):
             yield phase, end, models
         if phase.run.status != "finished":
             return
@@ -554,7 +550,7 @@ class Runs:
             UsageError: the runs were unpickled, without their equations.
         """
         if self.proof is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate_many(model), in the process that asks")
+            raise UsageError(Trajectory.NO_EQUATIONS, fix="take eomgen.simulate_many(model), in the process that asks")
         finished = self.status == "finished"
         whole = np.isfinite(self.x).all(axis=(1, 2))
         lost = [str(k) for k in np.flatnonzero(finished != whole)]

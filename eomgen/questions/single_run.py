@@ -47,18 +47,11 @@ from eomgen.simulation import (
     Run,
     Stepping,
     Trajectory,
-    accuracy_of,
-    at_start,
     condition_of,
-    finer,
     formulas_of,
     instants_of,
     joined,
     refuse_bad_run,
-    thinned,
-    through,
-    with_outputs,
-    with_reactions,
 )
 from eomgen.symbolic.expression import Expression
 from eomgen.symbolic.numeric import NoValue, PatienceEnded, doing, keep_what_there_is, tolerances
@@ -192,7 +185,7 @@ def run(
     condition = None if until is None else condition_of(model, until)
     refuse_bad_run(0.0, time, how)
     models = models or phase_models(equations, parameter_vector(model, parameters), how, target)
-    here = at_start(models, 0.0, parameters, start)
+    here = PhaseStart.of(models, 0.0, parameters, start)
     _refuse_fork_at_rest(models, here)
     instants = instants_of(samples, 0.0, time)
     plan = Plan(
@@ -201,11 +194,11 @@ def run(
         instants,
         None if condition is None else lambda phase: condition(phase.system),
     )
-    runs = _followed(through(models, here, plan))
+    runs = _followed(plan.through(models, here))
     words = until.text if isinstance(until, WrittenEquation) else until
 
     def estimated(found: Trajectory) -> Accuracy | None:
-        again = replace(how, rtol=finer(how.rtol), atol=finer(how.atol))
+        again = how.finer
         other = run(
             equations,
             time=time,
@@ -217,7 +210,7 @@ def run(
             reactions=False,
             outputs={},
         )
-        return accuracy_of(found, other, min(1.0, how.rtol / again.rtol))
+        return Accuracy.of(found, other, min(1.0, how.rtol / again.rtol))
 
     whole = WholeRun(model, runs, plan, parameters or {})
     return finished_run(
@@ -296,12 +289,11 @@ def finished_run(
     """The phases of a run as one trajectory, with its columns and its proof.
 
     Args:
-        instants: as of `thinned`; the others as of `run`.
+        instants: as of `Trajectory.thinned`; the others as of `run`.
     """
     model, runs = equations.model, whole.runs
-    found = _reported(joined(models, runs), until)
-    found = with_reactions(found, runs) if reactions else found
-    found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
+    columns = formulas_of(model) if outputs is None else outputs
+    found = joined(models, runs, until=until, reactions=reactions, outputs=columns)
     begun = runs[0].here.begun
     proof = RunProof(equations, models.p, how, models, whole)
     more = {
@@ -312,7 +304,7 @@ def finished_run(
         "watch": proof.watch,
         "estimate": estimate,
     }
-    return thinned(found, instants, **more)
+    return found.thinned(instants, **more)
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:
@@ -375,12 +367,3 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
     """
     pulled = stabilized(assembled_by_recursion(equations.graph.system), rates)
     return replace(equations, study=replace(equations.study, replaced=with_friction(pulled)))
-
-
-def _reported(found: Trajectory, until: str | None) -> Trajectory:
-    """Run whose message names the condition `until`."""
-    if until is None or found.ended not in ("event", "finished"):
-        return found
-    end = found.phases[-1].end
-    met = f"{until} at t = {end:.6g} s." if found.ended == "event" else f"{found.words} '{until}' did not come."
-    return replace(found, words=met, phases=(*found.phases[:-1], replace(found.phases[-1], ended_by=met)))

@@ -6,20 +6,17 @@ from eomgen.simulation.columns import OutputColumns as OutputColumns
 # The outputs that are functions of the state: at no given instant, and of no linearized system
 from eomgen.simulation.columns import formulas_of as formulas_of
 
-# The runs of a phase without bounds; None where not all that is watched is in C
-from eomgen.simulation.compiled_runs import marched as marched
+# Results of many runs
+from eomgen.simulation.compiled_runs import FoundRuns as FoundRuns
+
+# Runs of one phase, from t = 0 to one end, as they are made in C
+from eomgen.simulation.compiled_runs import ManyRuns as ManyRuns
 
 # Nearness of a motion to positions in which the constraints do not determine it; None without constraints
 from eomgen.simulation.constraint_drift import nearness_of as nearness_of
 
 # Projection of states onto the constraints of a system; None where none closes
 from eomgen.simulation.constraint_drift import projection_of as projection_of
-
-# Modes of all contacts in one phase
-from eomgen.simulation.contacts import Configuration as Configuration
-
-# The configuration where friction on a surface is along v/|v|, which has no value where v is 0
-from eomgen.simulation.contacts import by_the_law as by_the_law
 
 # Names of the contacts, and of the bodies on a path of several pieces, that can change as the model moves
 from eomgen.simulation.contacts import changing as changing
@@ -34,9 +31,6 @@ from eomgen.simulation.contacts import paths_of as paths_of
 from eomgen.simulation.contacts import sliding_velocity as sliding_velocity
 from eomgen.simulation.integration import SAMPLES as SAMPLES
 
-# max |E - E(0)| over max(T, |V - V(0)|), E = T + V; over |E(0)| where as good as nothing moves
-from eomgen.simulation.integration import drift_of as drift_of
-
 # The requested instants: so many, evenly spaced; or the instants themselves, in SI or with a unit
 from eomgen.simulation.integration import instants_of as instants_of
 
@@ -46,22 +40,11 @@ from eomgen.simulation.integration import integrate as integrate
 # Refuses options that make no sense
 from eomgen.simulation.integration import refuse_bad_run as refuse_bad_run
 
-# of Baumgarte's rows [1/s]
-from eomgen.simulation.integrator import RATES as RATES
-
 # Result of an integration
 from eomgen.simulation.integrator import Run as Run
 
 # Options of an integrator
 from eomgen.simulation.integrator import Stepping as Stepping
-
-# Sentence that says how a run ended
-from eomgen.simulation.integrator import ended_words as ended_words
-from eomgen.simulation.integrator import reached_words as reached_words
-from eomgen.simulation.many_runs import BATCHED as BATCHED
-
-# The starts of many runs of the one phase of a model
-from eomgen.simulation.many_runs import ManyStarts as ManyStarts
 
 # The states of one phase at any instant of it
 from eomgen.simulation.motion import DenseMotion as DenseMotion
@@ -72,30 +55,11 @@ from eomgen.simulation.motion import FirstTime as FirstTime
 # Options of the integration of a motion
 from eomgen.simulation.motion import Plan as Plan
 
-# The states of a phase between its steps
-from eomgen.simulation.motion import dense_motion as dense_motion
-
-# The phases of a motion, up to the first instant at which its end condition holds
-from eomgen.simulation.motion import through as through
-
-# The parameters that have values, by node
-from eomgen.simulation.motion import values_of as values_of
-
 # State in which a phase begins, and the configuration of its contacts
 from eomgen.simulation.phase_change import PhaseStart as PhaseStart
 
-# The same state where forces have jumped, with the contact modes from here on
-from eomgen.simulation.phase_change import after_jump as after_jump
-
-# The state at the start; a contact that can end may be open there. It is found once for the same values
-from eomgen.simulation.phase_change import at_start as at_start
-
 # The model of one phase. Its state is x = (q, u), and after these the slack of each string that hangs loose
 from eomgen.simulation.phase_model import PhaseModel as PhaseModel
-from eomgen.simulation.phase_model import Values as Values
-
-# Name of the integrated slack of a string among the values of a state
-from eomgen.simulation.phase_model import slack_name as slack_name
 
 # A system that was derived at values of its parameters
 from eomgen.simulation.phase_models import DerivedAt as DerivedAt
@@ -115,23 +79,8 @@ from eomgen.simulation.phase_run import condition_of as condition_of
 # The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it
 from eomgen.simulation.phase_run import joined as joined
 
-# The motion with one row an instant; one that ended early keeps its last row
-from eomgen.simulation.phase_run import thinned as thinned
-
-# The trajectory with formulas as columns, in SI; its remark names those without a column and the reason
-from eomgen.simulation.phase_run import with_outputs as with_outputs
-
-# The trajectory with its reactions as columns; its remark names those without a column and the reason
-from eomgen.simulation.phase_run import with_reactions as with_reactions
-
 # The reactions of one system along its motion
 from eomgen.simulation.reaction_columns import ReactionColumns as ReactionColumns
-
-# given by hand, or read from a pickle
-from eomgen.simulation.result import NO_EQUATIONS as NO_EQUATIONS
-
-# Columns by name, computed when one of them is read; a pickle holds all of them
-from eomgen.simulation.result import OnDemand as OnDemand
 
 # A stretch of time in which the model stays the same
 from eomgen.simulation.result import Phase as Phase
@@ -142,20 +91,11 @@ from eomgen.simulation.result import Trajectory as Trajectory
 # DOP853, and Radau where stability alone holds its steps short
 from eomgen.simulation.solvers import AUTO as AUTO
 
-# in C, of what has power series; else as auto
-from eomgen.simulation.solvers import TAYLOR as TAYLOR
-
 # Accuracy of the states of a run
 from eomgen.simulation.solvers import Accuracy as Accuracy
 
-# Accuracy of a run by another of the same motion; None where they have no instant in common
-from eomgen.simulation.solvers import accuracy_of as accuracy_of
-
 # The times of the samples of every motion and input, ascending [s]
 from eomgen.simulation.solvers import breakpoints_of as breakpoints_of
-
-# The tolerance of the run that one is held against; a coarser one where there is no finer
-from eomgen.simulation.solvers import finer as finer
 
 # An integrator at its start
 from eomgen.simulation.solvers import solver_of as solver_of

@@ -1,6 +1,8 @@
-"""PhaseModel, starts and parameters of many runs -> their states, by marches in C: a run costs no Python at all.
+"""PhaseModel, starts and parameters of many runs -> their states, in C: a run costs no Python at all.
 
-Each thread has one march, which takes the runs one after the other, each as `CompiledSteps` takes a run of its own. A
+In lanes of vectors runs go side by side, for models x' = f(t, x, p) without constraints, contacts that change and
+dependent quaternions, whose start follows from numbers. Marches are for models with constraints that hold throughout:
+each thread has one march, which takes the runs one after the other, each as `CompiledSteps` takes a run of its own. A
 run of which a step wants a look (near a singular position, a constraint that does not close, stiff, no value) is left
 undone.
 """
@@ -9,23 +11,139 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from collections.abc import Callable
-from functools import partial
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from functools import cached_property, partial
 
 import numpy as np
 
-from eomgen.codegen import in_threads, pieces_of
+from eomgen.codegen import Batch, Requested, in_c, in_threads, order_for, pieces_of
+from eomgen.errors import RunFailed, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.many_runs import library_of_march
+from eomgen.simulation.integration import drift_of
+from eomgen.simulation.integrator import Stepping, ended_words, reached_words
+from eomgen.simulation.many_runs import BATCHED, ManyStarts, library_of_march
 from eomgen.simulation.phase_model import PhaseModel
+from eomgen.simulation.phase_models import DerivedAt
 from eomgen.simulation.singular import NEARNESS, vanishing_after
-from eomgen.simulation.solvers import SEEN
+from eomgen.simulation.solvers import SEEN, TAYLOR
+from eomgen.symbolic.numeric import check_patience, tolerances
 
 AT_ONCE = 20_000  # steps in a call, a few hundredths of a second: between two calls somebody may have lost patience
 _SIZE, _AT = ctypes.c_size_t, ctypes.c_void_p
+
+
+@dataclass(frozen=True)
+class FoundRuns:
+    """Results of many runs.
+
+    Args:
+        names: of the columns.
+        x: runs x instants x columns.
+        status, message: of each run, in words.
+        steps: the number that each took.
+        alone: numbers of the runs that are to be run alone: of these nothing is known.
+    """
+
+    names: tuple[str, ...]
+    x: np.ndarray
+    status: np.ndarray
+    message: np.ndarray
+    steps: np.ndarray
+    alone: np.ndarray
+
+
+@dataclass(frozen=True)
+class ManyRuns:
+    """Runs of one phase, from t = 0 to one end, as they are made in C.
+
+    Args:
+        phase: without bounds.
+        how: the integrator's options, with the tolerances of one step and its breakpoints.
+        instants: at which states are given [s].
+        end: of all runs [s].
+        parameters: () -> runs x parameters.
+        threads: among which the runs are divided.
+    """
+
+    phase: PhaseModel
+    how: Stepping
+    instants: np.ndarray
+    end: float
+    parameters: Callable[[], np.ndarray]
+    threads: int
+
+    @cached_property
+    def p(self) -> np.ndarray:
+        """Runs x parameters."""
+        return self.parameters()
+
+    def in_lanes(self, starts: Callable[[], np.ndarray], *, required: bool) -> FoundRuns | None:
+        """The runs in lanes, of which those that are stiff are to be run alone; None where no compiler makes them.
+
+        Args:
+            starts: () -> runs x states.
+            required: True if that is an error.
+        Raises:
+            RunFailed, ToolMissing: no compiler makes what is required.
+        """
+        rhs, how = self.phase.functions.rhs, self.how
+        series = how.method == TAYLOR and not rhs.without_series
+        try:
+            batch = Batch(rhs.program, BATCHED, order_for(how.rtol) if series else None)
+        except (RunFailed, ToolMissing):
+            if required:
+                raise
+            return None
+        requested = Requested(
+            *((0.0, self.end), self.instants, how.rtol, how.atol, how.most_steps, how.breakpoints),
+            tuple(rhs.unit_quaternions),
+        )
+        p, x0 = self.p, starts()
+        found = batch.runs(x0, p, requested, threads=self.threads, check=check_patience)
+        ends = zip(found.words, found.reached, found.steps, strict=True)
+        message = np.array([ended_words(word, float(t), int(n)) for word, t, n in ends], dtype=object)
+        names, alone = self.phase.coordinates + self.phase.shown, np.flatnonzero(found.words == "stiff")
+        return FoundRuns(names, found.x, found.words, message, found.steps, alone)
+
+    def in_marches(self, derived: DerivedAt, given: Mapping[str, np.ndarray]) -> FoundRuns | None:
+        """The runs in marches; None where not all that they need is in C.
+
+        Those are to be run alone whose start is not known in doubles, or of which a step wants a look.
+
+        Args:
+            derived: values at which the phase was derived.
+            given: starts in place of the model's, a number a run.
+        """
+        phase, p = self.phase, self.p
+        columns, names = [*phase.coordinates, *phase.speeds], phase.coordinates + phase.shown
+        if phase.functions.rhs.target != "c" or not {*names} <= {*columns} or not len(phase.speeds):
+            return None
+        x0, places, known = ManyStarts(phase).at(p, given)
+        known &= derived.holds(p, places) & derived.is_regular(p, x0)
+        known &= np.max(np.abs(x0), axis=1) < tolerances.COMPUTED / np.finfo(float).eps
+        which, found = np.flatnonzero(known), None
+        if len(which):
+            march = partial(marched, replace(self, parameters=lambda: p[which]), x0[which])
+            found = in_c(march, "runs are made one by one")
+        if found is None:
+            return None
+        runs = len(p)
+        x, steps = np.full((runs, len(self.instants), len(names)), np.nan), np.zeros(runs, dtype=int)
+        x[which], steps[which] = found.x[:, :, [columns.index(name) for name in names]], found.steps
+        status, message = np.full(runs, "finished", object), np.full(runs, reached_words(self.end), object)
+        return FoundRuns(names, x, status, message, steps, np.setdiff1d(np.arange(runs), which[found.is_done]))
+
+    def drifts(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """Drift of the energy of each run; x: runs x instants x states."""
+        energies = self.phase.functions.energies
+        return np.array([drift_of(*energies.many(t, each, own).T) for each, own in zip(x, self.p, strict=True)])
+
+
+# -------- marches ---------------------------------------------------------------------------------------------
+# Runs, their states at the start -> their states, each by one march.
 
 
 class _Runs(ctypes.Structure):
@@ -54,43 +172,30 @@ class MarchedRuns:
     steps: np.ndarray
 
 
-def marched(
-    phase: PhaseModel,
-    starts: tuple[np.ndarray, np.ndarray],
-    how: Stepping,
-    instants: np.ndarray,
-    end: float,
-    *,
-    threads: int,
-    check: Callable[[], None],
-) -> MarchedRuns | None:
-    """The runs of a phase without bounds; None where not all that is watched is in C.
-
-    Args:
-        starts: states, runs x states, and parameters, runs x parameters.
-        how: the integrator's options, with the tolerances of one step.
-        check: called now and then; its exceptions end all runs.
-    """
-    x0, p = (np.ascontiguousarray(each, dtype=float) for each in starts)
-    n = len(x0)
-    found = MarchedRuns(np.zeros((n, len(instants), x0.shape[1])), np.zeros(n, np.int32), np.zeros(n, np.uintp))
-    pieces = pieces_of(n, min(threads, n))
-    marches = [_march(phase.at(p[first]), x0[first], how, instants, end) for first, _ in pieces]
+def marched(runs: ManyRuns, x0: np.ndarray) -> MarchedRuns | None:
+    """The runs from x0 (runs x states); None where not all that is watched is in C."""
+    x0, p = (np.ascontiguousarray(each, dtype=float) for each in (x0, runs.p))
+    phase, n = runs.phase, len(x0)
+    found = MarchedRuns(np.zeros((n, len(runs.instants), x0.shape[1])), np.zeros(n, np.int32), np.zeros(n, np.uintp))
+    pieces = pieces_of(n, min(runs.threads, n))
+    marches = [_march(phase.at(p[first]), x0[first], runs) for first, _ in pieces]
     if any(each.struct.is_blind for each in marches):
         return None
-    work = [partial(_runs, m, (x0, p), found, piece, how.most_steps) for m, piece in zip(marches, pieces, strict=True)]
-    in_threads(work, check)
-    return MarchedRuns(found.x, found.is_done.astype(bool) & _determined(phase, found.x, p, instants), found.steps)
+    most = runs.how.most_steps
+    work = [partial(_runs, m, (x0, p), found, piece, most) for m, piece in zip(marches, pieces, strict=True)]
+    in_threads(work, check_patience)
+    done = found.is_done.astype(bool) & _determined(phase, found.x, p, runs.instants)
+    return MarchedRuns(found.x, done, found.steps)
 
 
-def _march(phase: PhaseModel, x: np.ndarray, how: Stepping, instants: np.ndarray, end: float) -> CompiledSteps:
+def _march(phase: PhaseModel, x: np.ndarray, runs: ManyRuns) -> CompiledSteps:
     """A march with the checks of a single run."""
     nearness = phase.nearness
     lookout = None if nearness is None else RankLookout(nearness, NEARNESS[0], 0.0, x)
-    hold = how.hold(phase.functions.rhs.unit_quaternions, phase.projection)
-    watched = (hold, None, lookout)
+    hold = runs.how.hold(phase.functions.rhs.unit_quaternions, phase.projection)
+    span, watched = (0.0, runs.end), (hold, None, lookout)
     return CompiledSteps(
-        phase.rate, (0.0, end), x, how=how, instants=instants, watched=watched, slope=lambda: phase.slope
+        phase.rate, span, x, how=runs.how, instants=runs.instants, watched=watched, slope=lambda: phase.slope
     )
 
 

@@ -425,15 +425,14 @@ class Configuration:
         """The constraints that do not hold."""
         return tuple(name for name, mode in self.modes.items() if not mode.closed)
 
-
-def by_the_law(model: Model, configuration: Configuration) -> Configuration:
-    """The configuration where friction on a surface is along v/|v|, which has no value where v is 0."""
-    surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
-    modes = {
-        name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
-        for name, mode in configuration.modes.items()
-    }
-    return replace(configuration, modes=Table(modes))
+    def by_the_law(self, model: Model) -> Configuration:
+        """The same where friction on a surface is along v/|v|, which has no value where v is 0."""
+        surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
+        modes = {
+            name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
+            for name, mode in self.modes.items()
+        }
+        return replace(self, modes=Table(modes))
 
 
 def has_phases(model: Model) -> bool:

@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System, assembled_by_recursion
-from eomgen.simulation.phase_model import Values, slack_name
+from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.symbolic.expression import Scalar, jacobian, substituted
 from eomgen.symbolic.numeric import tolerances
 
@@ -46,7 +46,7 @@ class WithoutContacts:
         found = iter(self._gaps.many(t, self._x(values)[None, :], self.p)[0].tolist())
         gaps = {}
         for name, rows in self._rows.items():
-            gap = values.get(slack_name(name), 0.0) if rows[0].gap is None else next(found)
+            gap = values.get(PhaseModel.slack_name(name), 0.0) if rows[0].gap is None else next(found)
             gaps[name] = (gap, next(found))
         return gaps
 

@@ -20,7 +20,7 @@ from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, HeyokaStep
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.result import RunStatus
-from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate
+from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate, finer
 from eomgen.symbolic.numeric import PatienceEnded, check_patience, keep_what_there_is, tolerances
 
 MOST = 20_000  # states
@@ -118,6 +118,22 @@ class Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
         step: Stepping = with_fields(self, rtol=max(SHARE * self.rtol, tolerances.LEAST_RTOL), atol=SHARE * self.atol)
         return step
+
+    @property
+    def finer(self) -> Stepping:
+        """The tolerances of the run that one is held against; coarser ones where there are no finer."""
+        return replace(self, rtol=finer(self.rtol), atol=finer(self.atol))
+
+    @property
+    def is_in_lanes(self) -> bool:
+        """True if many runs can be made so in the lanes of vectors."""
+        return self.method in (AUTO, "DOP853", TAYLOR) and self.stabilization in ("projection", "none")
+
+    @property
+    def is_in_marches(self) -> bool:
+        """True if many runs can be made so, one after the other, without Python."""
+        projected = self.stabilization in ("projection", "none") and self.every is None
+        return self.method in (AUTO, "DOP853") and projected
 
     def hold(
         self,

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -52,11 +51,10 @@ class Plan:
     instants: np.ndarray | None = None
     until: PhaseCondition | None = None
 
-
-def through(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
-    """The phases of a motion, up to the first instant at which its end condition holds."""
-    runs = passed(models, here, plan)
-    return runs if plan.until is None else ended(runs, plan.until)
+    def through(self, models: PhaseModels, here: PhaseStart) -> Iterator[PhaseRun]:
+        """The phases of a motion, up to the first instant at which its end condition holds."""
+        runs = passed(models, here, self)
+        return runs if self.until is None else ended(runs, self.until)
 
 
 def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseRun]:
@@ -245,6 +243,35 @@ class DenseMotion:
     edges: np.ndarray
     states: np.ndarray
 
+    @staticmethod
+    def of(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
+        """The states of a phase between its steps.
+
+        It is followed once more with other instants, which change no step; where polynomials of so low a degree are not
+        what lies between two steps (few of many steps are stored), at more of them.
+
+        Args:
+            plan: the options with which it was run.
+        Raises:
+            RunFailed: the run was cut before its end.
+        """
+        run, here = phase_run.run, phase_run.here
+        if run.status in CUT:
+            raise RunFailed(f"the run was cut: {run.message}", fix="a longer --patience, or a shorter run")
+        kept = np.concatenate([part for track in run.tracks for part in track.t])
+        edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
+        edges = edges[np.append(True, np.diff(edges) > tolerances.ROUNDING * max(1.0, run.end - here.t))]
+        edges[-1] = run.end
+        for _ in range(MOST_HALVINGS + 1):
+            found = _through(phase_run, plan, edges)
+            last = np.abs(np.einsum("kn,mnx->mkx", transform(DEGREE)[-2:], found.states)).max(axis=1)
+            size = np.abs(found.states).max(axis=(0, 1), initial=0.0)
+            rough = (last > 10 * (plan.how.rtol * size + plan.how.atol)).any(axis=1)
+            if not rough.any():
+                break
+            edges = np.sort(np.concatenate([edges, (edges[:-1] + edges[1:])[rough] / 2]))
+        return found
+
     def at(self, t: np.ndarray) -> np.ndarray:
         """n x states, by the barycentric formula sum w_k x_k/(s - s_k) / sum w_k/(s - s_k)."""
         if len(self.states) == 0:
@@ -260,35 +287,6 @@ class DenseMotion:
         shares = np.where(exact.any(axis=1)[:, None], exact, shares)
         found: np.ndarray = np.einsum("nk,nkx->nx", shares, self.states[k]) / shares.sum(axis=1)[:, None]
         return found
-
-
-def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
-    """The states of a phase between its steps.
-
-    It is followed once more with other instants, which change no step; where polynomials of so low a degree are not
-    what lies between two steps (few of many steps are stored), at more of them.
-
-    Args:
-        plan: the options with which it was run.
-    Raises:
-        RunFailed: the run was cut before its end.
-    """
-    run, here = phase_run.run, phase_run.here
-    if run.status in CUT:
-        raise RunFailed(f"the run was cut: {run.message}", fix="a longer --patience, or a shorter run")
-    kept = np.concatenate([part for track in run.tracks for part in track.t])
-    edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
-    edges = edges[np.append(True, np.diff(edges) > tolerances.ROUNDING * max(1.0, run.end - here.t))]
-    edges[-1] = run.end
-    for _ in range(MOST_HALVINGS + 1):
-        found = _through(phase_run, plan, edges)
-        last = np.abs(np.einsum("kn,mnx->mkx", transform(DEGREE)[-2:], found.states)).max(axis=1)
-        size = np.abs(found.states).max(axis=(0, 1), initial=0.0)
-        rough = (last > 10 * (plan.how.rtol * size + plan.how.atol)).any(axis=1)
-        if not rough.any():
-            break
-        edges = np.sort(np.concatenate([edges, (edges[:-1] + edges[1:])[rough] / 2]))
-    return found
 
 
 def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
@@ -443,8 +441,3 @@ class FirstTime:
         if run.crossing is None:
             raise RunFailed("the condition on the time is never met", fix="ask for an instant after the start")
         return run.end
-
-
-def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> State:
-    """The parameters that have values, by node."""
-    return {node: float(known[name]) for name, node in parameters.items() if name in known}

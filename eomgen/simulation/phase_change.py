@@ -45,6 +45,31 @@ class PhaseStart:
     failure: str = ""
     begun: Start | None = None
 
+    @staticmethod
+    def of(
+        models: PhaseModels, t: float, parameters: Mapping[str, Any] | None, start: Mapping[str, float] | None
+    ) -> PhaseStart:
+        """The state at the start; a contact that can end may be open there. It is found once for the same values.
+
+        Raises:
+            DerivationError: the constraints do not hold at the start.
+        """
+        key = t, tuple((parameters or {}).items()), tuple((start or {}).items())
+        if key not in models.starts:
+            if len(models.starts) >= MOST_STARTS:
+                models.starts.clear()
+            models.starts[key] = _at_start(models, t, parameters, start)
+        found: PhaseStart = models.starts[key]
+        return found
+
+    def after_jump(self, models: PhaseModels) -> PhaseStart:
+        """The same state where forces have jumped, with the contact modes from here on."""
+        if not has_phases(models.model):
+            return self
+        pieces = self.configuration.pieces
+        found = _decided(models, self.t, self.values, pieces, before=self.configuration, ended=frozenset())
+        return replace(found, begun=self.begun)
+
 
 def next_start(
     models: PhaseModels, phase: PhaseModel, crossing: Crossing, ended: frozenset[Configuration]
@@ -101,23 +126,6 @@ def _at_rest_on_surface(
 MOST_STARTS = 16  # that are cached
 
 
-def at_start(
-    models: PhaseModels, t: float, parameters: Mapping[str, Any] | None, start: Mapping[str, float] | None
-) -> PhaseStart:
-    """The state at the start; a contact that can end may be open there. It is found once for the same values.
-
-    Raises:
-        DerivationError: the constraints do not hold at the start.
-    """
-    key = t, tuple((parameters or {}).items()), tuple((start or {}).items())
-    if key not in models.starts:
-        if len(models.starts) >= MOST_STARTS:
-            models.starts.clear()
-        models.starts[key] = _at_start(models, t, parameters, start)
-    found: PhaseStart = models.starts[key]
-    return found
-
-
 def _at_start(
     models: PhaseModels, t: float, parameters: Mapping[str, Any] | None, start: Mapping[str, float] | None
 ) -> PhaseStart:
@@ -151,15 +159,6 @@ def _closed_or_open(
     _refuse_overlap(models, t, free)
     away = tuple(name for name, (gap, rate) in models.without_contacts.gaps(t, free).items() if _apart(gap, rate, free))
     return values(away), away
-
-
-def after_jump(models: PhaseModels, here: PhaseStart) -> PhaseStart:
-    """The same state where forces have jumped, with the contact modes from here on."""
-    if not has_phases(models.model):
-        return here
-    pieces = here.configuration.pieces
-    found = _decided(models, here.t, here.values, pieces, before=here.configuration, ended=frozenset())
-    return replace(found, begun=here.begun)
 
 
 def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:

@@ -71,6 +71,11 @@ class PhaseModel:
     known: dict[Hashable, Any] = field(default_factory=dict, repr=False, compare=False)
     fed: Fed | None = None
 
+    @staticmethod
+    def slack_name(constraint: str) -> str:
+        """Name of the integrated slack of a string among the values of a state."""
+        return f"{constraint} slack"
+
     @property
     def system(self) -> System:
         return self.watch.system
@@ -92,6 +97,11 @@ class PhaseModel:
     @property
     def configuration(self) -> Configuration:
         return self.watch.configuration
+
+    @property
+    def changes(self) -> bool:
+        """True if contacts change in the motion, or could."""
+        return self.configuration != Configuration()
 
     @property
     def contacts(self) -> tuple[Contact, ...]:
@@ -186,11 +196,11 @@ class PhaseModel:
         x = self.state(values)
         found = self.functions.kinematic(self.declared.scope.rates).many(np.array([t]), x[None, :], self.p)[0]
         rates = {f"{q}'": float(rate) for q, rate in zip(self.coordinates, found, strict=True)}
-        return rates | dict.fromkeys(map(slack_name, self.loose), 0.0) | dict(values)
+        return rates | dict.fromkeys(map(self.slack_name, self.loose), 0.0) | dict(values)
 
     def state(self, values: Values) -> np.ndarray:
         """x of the phase; a displacement that did not exist before is 0."""
-        names = (*self.coordinates, *self.speeds, *map(slack_name, self.loose))
+        names = (*self.coordinates, *self.speeds, *map(self.slack_name, self.loose))
         return np.array([values.get(name, 0.0) for name in names])
 
     def columns(self, t: np.ndarray, x: np.ndarray) -> dict[str, np.ndarray]:
@@ -201,7 +211,7 @@ class PhaseModel:
             named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
         if not self.loose:
             return named
-        return named | dict(zip(map(slack_name, self.loose), self.functions.slacks(x).T, strict=True))
+        return named | dict(zip(map(self.slack_name, self.loose), self.functions.slacks(x).T, strict=True))
 
     def values(self, t: float, x: np.ndarray) -> dict[str, float]:
         """Coordinates, rates, speeds and slacks of one state, by name."""
@@ -300,11 +310,6 @@ class PhaseModel:
 def smallest_speed(values: Values) -> float:
     """Smallest speed that is larger than rounding, relative to the fastest of the rates."""
     return tolerances.COMPUTED * max([1.0, *(abs(v) for name, v in values.items() if name.endswith("'"))])
-
-
-def slack_name(constraint: str) -> str:
-    """Name of the integrated slack of a string among the values of a state."""
-    return f"{constraint} slack"
 
 
 # -------- slopes ----------------------------------------------------------------------------------------------

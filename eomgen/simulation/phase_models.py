@@ -120,6 +120,11 @@ class PhaseModels:
         """
         return PhaseModels(self.model, p, self.target, self.rates, self._derived, (self, fed))
 
+    @property
+    def only(self) -> PhaseModel:
+        """The one phase of a model whose contacts do not change."""
+        return self.of(Configuration())
+
     def of(self, configuration: Configuration) -> PhaseModel:
         """The phase of a configuration.
 

@@ -13,12 +13,12 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
 from itertools import accumulate
-from typing import Any
+from types import MappingProxyType
 
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageError
-from eomgen.frozen import dataclass, with_fields
+from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import Model, Output, Table, WrittenEquation, equation_typed
@@ -154,8 +154,36 @@ def _by_condition(phase_run: PhaseRun) -> PhaseRun:
 # The phases of a motion as they were run -> Trajectory: all in one table, reactions too.
 
 
-def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
-    """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it."""
+def joined(
+    models: PhaseModels,
+    runs: Sequence[PhaseRun],
+    *,
+    until: str | None = None,
+    reactions: bool = False,
+    outputs: Mapping[str, Expression] = MappingProxyType({}),
+) -> Trajectory:
+    """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it.
+
+    Args:
+        until: the condition that should end it, for its message.
+        reactions: True if these are among the columns.
+        outputs: formulas of further columns, by name.
+    """
+    found = _reported(_joined(models, runs), until)
+    found = _with_reactions(found, runs) if reactions else found
+    return _with_outputs(found, runs, outputs)
+
+
+def _reported(found: Trajectory, until: str | None) -> Trajectory:
+    """Run whose message names the condition `until`."""
+    if until is None or found.ended not in ("event", "finished"):
+        return found
+    end = found.phases[-1].end
+    met = f"{until} at t = {end:.6g} s." if found.ended == "event" else f"{found.words} '{until}' did not come."
+    return replace(found, words=met, phases=(*found.phases[:-1], replace(found.phases[-1], ended_by=met)))
+
+
+def _joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     coordinates, speeds = _union(runs)
     tables = [_table(phase_run, (*coordinates, *speeds)) for phase_run in runs]
     ends = [0, *accumulate(len(phase_run.run.t) for phase_run in runs)]
@@ -210,7 +238,7 @@ def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
     return float(gap), float(gap_rate) if holds else None
 
 
-def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
+def _with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
     """The trajectory with its reactions as columns; its remark names those without a column and the reason.
 
     In each phase they are those of the phase's own equations; a contact that is open has the reaction 0. Where nothing
@@ -255,7 +283,7 @@ def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
     return found
 
 
-def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[str, Expression]) -> Trajectory:
+def _with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[str, Expression]) -> Trajectory:
     """The trajectory with formulas as columns, in SI; its remark names those without a column and the reason."""
     if not formulas:
         return full
@@ -272,55 +300,6 @@ def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[s
     ]
     given = {name: column for name, column in found.items() if name not in nowhere}
     return replace(full, outputs=given, reported=" ".join(filter(None, (full.reported, *reported))))
-
-
-def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Trajectory:
-    """The motion with one row an instant; one that ended early keeps its last row.
-
-    Args:
-        instants: no others have a row; None: those at which phases change have one too.
-        more: fields that are replaced in the trajectory.
-
-    Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
-    """
-    if not len(full.t):
-        return replace(full, **more)
-    kept = np.ones(len(full.t), dtype=bool)
-    kept[:-1] = full.t[1:] > full.t[:-1]
-    if instants is not None and not np.array_equal(full.t, instants):
-        kept &= np.isin(full.t, instants)
-        kept[-1] |= full.ended != "finished"
-    all_kept = bool(kept.all())
-    before = range(len(kept) + 1) if all_kept else [0, *np.cumsum(kept).tolist()]
-    columns = cache(full.columns)
-
-    def of(phase: Phase) -> Phase:
-        begin, end = phase.rows
-
-        def edges() -> tuple[dict[str, float], dict[str, float]]:
-            first, last = ({n: float(c[i]) for n, c in columns().items()} for i in (begin, end - 1))
-            return first, last
-
-        found: Phase = with_fields(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
-        return found
-
-    more["phases"] = tuple(map(of, full.phases))
-    if all_kept:
-        whole: Trajectory = with_fields(full, **more)
-        return whole
-    reactions, outputs = (_at_rows(table, kept) for table in (full.reactions, full.outputs))
-    energies = None if full.energies is None else lambda: full["energy"][kept]
-    more |= {"t": full.t[kept], "x": full.x[kept], "energies": energies, "reactions": reactions, "outputs": outputs}
-    return replace(full, **more)
-
-
-def _at_rows(table: Mapping[str, np.ndarray], kept: np.ndarray) -> Mapping[str, np.ndarray]:
-    """The columns at these rows; columns computed on demand stay so."""
-
-    def found() -> dict[str, np.ndarray]:
-        return {name: column[kept] for name, column in table.items()}
-
-    return OnDemand(tuple(table), found) if isinstance(table, OnDemand) else found()
 
 
 def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import io
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
-from functools import cached_property
+from dataclasses import field, replace
+from functools import cache, cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -14,11 +14,10 @@ import numpy as np
 
 from eomgen import files
 from eomgen.errors import UsageError
-from eomgen.frozen import Pickled, dataclass
+from eomgen.frozen import Pickled, dataclass, with_fields
 from eomgen.model import OUTPUT, Unit
 from eomgen.symbolic.numeric import tolerances
 
-NO_EQUATIONS = "nothing is known of the equations behind these numbers"  # given by hand, or read from a pickle
 SHOWN = 80  # characters of names on a line
 
 RunStatus = Literal[
@@ -157,6 +156,8 @@ class Trajectory:
             does.
     """
 
+    NO_EQUATIONS = "nothing is known of the equations behind these numbers"
+    """why there is no proof of a run that was given by hand, or read from a pickle"""
     t: np.ndarray
     x: np.ndarray
     coordinates: tuple[str, ...]
@@ -218,6 +219,50 @@ class Trajectory:
         """Text that names the missing reactions and outputs, and the reason; or ""."""
         return " ".join(filter(None, (self.reported, self.gaps())))
 
+    def thinned(self, instants: np.ndarray | None, **more: Any) -> Trajectory:
+        """The motion with one row an instant; one that ended early keeps its last row.
+
+        Args:
+            instants: no others have a row; None: those at which phases change have one too.
+            more: fields that are replaced in the trajectory.
+
+        Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
+        """
+        if not len(self.t):
+            return replace(self, **more)
+        kept = np.ones(len(self.t), dtype=bool)
+        kept[:-1] = self.t[1:] > self.t[:-1]
+        if instants is not None and not np.array_equal(self.t, instants):
+            kept &= np.isin(self.t, instants)
+            kept[-1] |= self.ended != "finished"
+        all_kept = bool(kept.all())
+        before = range(len(kept) + 1) if all_kept else [0, *np.cumsum(kept).tolist()]
+        columns = cache(self.columns)
+
+        def of(phase: Phase) -> Phase:
+            begin, end = phase.rows
+
+            def edges() -> tuple[dict[str, float], dict[str, float]]:
+                first, last = ({n: float(c[i]) for n, c in columns().items()} for i in (begin, end - 1))
+                return first, last
+
+            found: Phase = with_fields(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
+            return found
+
+        more["phases"] = tuple(map(of, self.phases))
+        if all_kept:
+            whole: Trajectory = with_fields(self, **more)
+            return whole
+        reactions, outputs = (_at_rows(table, kept) for table in (self.reactions, self.outputs))
+        energies = None if self.energies is None else lambda: self["energy"][kept]
+        more |= {"t": self.t[kept], "x": self.x[kept], "energies": energies, "reactions": reactions, "outputs": outputs}
+        return replace(self, **more)
+
+    @property
+    def known_remark(self) -> str:
+        """The remark, without what it says of reactions that still wait to be read."""
+        return self.reported if isinstance(self.reactions, OnDemand) else self.remark
+
     @cached_property
     def accuracy(self) -> Any:
         """Its `Accuracy`: the correct digits at the end, by a run with finer tolerances; None where none compares.
@@ -226,7 +271,7 @@ class Trajectory:
             UsageError: as of `certify`.
         """
         if self.estimate is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
+            raise UsageError(self.NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
         return self.estimate(self)
 
     def certify(self) -> Any:
@@ -236,7 +281,7 @@ class Trajectory:
             UsageError: it was integrated without the equations of a model.
         """
         if self.proof is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
+            raise UsageError(self.NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
         return self.proof(self)
 
     def ask(self, text: Any) -> Any:
@@ -248,7 +293,7 @@ class Trajectory:
             UsageError: it cannot be read; or the run is of no model.
         """
         if self.whole is None:
-            raise UsageError(NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
+            raise UsageError(self.NO_EQUATIONS, fix="take eomgen.simulate(model), in the process that needs it")
         return self.whole(text)
 
     def plot(self, path: str | Path | None = None, view: str = "time") -> Any:
@@ -430,3 +475,12 @@ def _singular_positions(carried: Sequence[tuple[float, float]]) -> str:
     first = f"{sum(carried[0]) / 2:.6g} s"
     many = len(carried)
     return f"a singular position at t = {first}" if many == 1 else f"{many} singular positions, first at t = {first}"
+
+
+def _at_rows(table: Mapping[str, np.ndarray], kept: np.ndarray) -> Mapping[str, np.ndarray]:
+    """The columns at these rows; columns computed on demand stay so."""
+
+    def found() -> dict[str, np.ndarray]:
+        return {name: column[kept] for name, column in table.items()}
+
+    return OnDemand(tuple(table), found) if isinstance(table, OnDemand) else found()

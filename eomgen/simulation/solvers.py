@@ -308,6 +308,32 @@ class Accuracy:
     until: float | None
     parts: bool = False
 
+    @staticmethod
+    def of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | None:
+        """Accuracy of a run by another of the same motion; None where they have no instant in common.
+
+        Args:
+            other: at the same instants.
+            share: of the difference that is this run's error: 1 where the other is finer.
+        """
+        common, mine, its = np.intersect1d(run.t, other.t, return_indices=True)
+        if run.coordinates + run.speeds != other.coordinates + other.speeds or not len(common):
+            return None
+        ended = common[-1] < run.t[-1]  # the other came to another end
+        if ended and abs(run.t[-1] - other.t[-1]) <= tolerances.SAME_PLACE * (
+            run.t[-1] - run.t[0]
+        ):  # both at the same event
+            common, ended = np.append(common, run.t[-1]), False
+            mine, its = np.append(mine, len(run.t) - 1), np.append(its, len(other.t) - 1)
+        largest = np.max(np.abs(run.x), axis=0, initial=0.0)
+        apart = np.abs(run.x[mine] - other.x[its]) / np.where(largest > 0, largest, 1.0)
+        errors = np.nan_to_num(share * np.max(apart, axis=1, initial=0.0), nan=np.inf, posinf=np.inf)
+        lost = np.flatnonzero(~(errors < LOST))
+        until = float(common[lost[0]]) if lost.size else float(common[-1]) if ended else None
+        return Accuracy(
+            float(errors[-1]), until, until is not None and _part_steadily(errors[: lost[0]] if lost.size else errors)
+        )
+
     @property
     def digits(self) -> int:
         """Number of correct digits at the end."""
@@ -326,32 +352,6 @@ class Accuracy:
 def finer(tolerance: float) -> float:
     """The tolerance of the run that one is held against; a coarser one where there is no finer."""
     return tolerance / FINER if tolerance / FINER >= tolerances.LEAST_RTOL else tolerance * FINER
-
-
-def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | None:
-    """Accuracy of a run by another of the same motion; None where they have no instant in common.
-
-    Args:
-        other: at the same instants.
-        share: of the difference that is this run's error: 1 where the other is finer.
-    """
-    common, mine, its = np.intersect1d(run.t, other.t, return_indices=True)
-    if run.coordinates + run.speeds != other.coordinates + other.speeds or not len(common):
-        return None
-    ended = common[-1] < run.t[-1]  # the other came to another end
-    if ended and abs(run.t[-1] - other.t[-1]) <= tolerances.SAME_PLACE * (
-        run.t[-1] - run.t[0]
-    ):  # both at the same event
-        common, ended = np.append(common, run.t[-1]), False
-        mine, its = np.append(mine, len(run.t) - 1), np.append(its, len(other.t) - 1)
-    largest = np.max(np.abs(run.x), axis=0, initial=0.0)
-    apart = np.abs(run.x[mine] - other.x[its]) / np.where(largest > 0, largest, 1.0)
-    errors = np.nan_to_num(share * np.max(apart, axis=1, initial=0.0), nan=np.inf, posinf=np.inf)
-    lost = np.flatnonzero(~(errors < LOST))
-    until = float(common[lost[0]]) if lost.size else float(common[-1]) if ended else None
-    return Accuracy(
-        float(errors[-1]), until, until is not None and _part_steadily(errors[: lost[0]] if lost.size else errors)
-    )
 
 
 def _part_steadily(errors: np.ndarray) -> bool:

@@ -14,8 +14,8 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.rank import degrees_of_freedom
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.phase_change import at_start
+from eomgen.simulation.motion import Plan
+from eomgen.simulation.phase_change import PhaseStart
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun, phase_text
 from eomgen.simulation.result import Trajectory
@@ -574,7 +574,7 @@ def runs_until(text: str, name: str, level: int, time: float) -> tuple[PhaseMode
     models = PhaseModels(model, parameter_vector(model), "numpy")
     fine = Stepping(rtol=1e-12, atol=1e-12)
     plan = Plan(time, fine, until=lambda phase: phase.system.scope.names[name] - level)
-    return models, list(through(models, at_start(models, 0.0, None, None), plan))
+    return models, list(plan.through(models, PhaseStart.of(models, 0.0, None, None)))
 
 
 def test_a_condition_is_met_in_the_phase_in_which_it_holds():
