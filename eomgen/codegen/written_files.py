@@ -147,11 +147,9 @@ class Files:
 
     def functions(self, target: str) -> tuple[Written, ...]:
         """All functions, as a language has them in doubles."""
-        texts = _inside(self._in_doubles, self._folder(target))
-        stem = stem_of(self.name)
-        return tuple(
-            Written(target, texts, p, stem, described.role, described.vectors) for p, described in self.emitted
-        )
+        texts = self._in_doubles if self.float32 else self.texts
+        texts, stem = _inside(texts, self._folder(target)), stem_of(self.name)
+        return tuple(Written(target, texts, p, stem, each.role, each.vectors) for p, each in self.emitted)
 
     def written(self, target: str) -> tuple[Written, ...]:
         """Functions that the language writes."""
