@@ -26,7 +26,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import fixed_by_position, gaps_of, is_guess, is_typed, left_of
 from eomgen.mechanics.dynamics import System, mass
-from eomgen.mechanics.kinematics import Scope, branches_of
+from eomgen.mechanics.kinematics import Scope
 from eomgen.mechanics.start import start_speeds
 from eomgen.model import Coordinate, Model, in_order
 from eomgen.scene import Scene
@@ -232,5 +232,5 @@ def _begun(scope: Scope, part: Coordinate) -> Scalar:
 
 
 def _inertia(system: System) -> Program:
-    M = mass(system.motion, branches_of(system.motion))
+    M = mass(system.motion)
     return program_of(tuple(x for row in M for x in row), system.symbols, inputs=system.inputs)

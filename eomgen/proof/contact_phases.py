@@ -27,7 +27,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, on_unit_norms, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies import frictions, reactions_of
-from eomgen.mechanics.kinematics import CLOSED, ContactMode, Inertia
+from eomgen.mechanics.kinematics import ContactMode, Inertia
 from eomgen.mechanics.start import start_of_motion
 from eomgen.model import Contact, Resistance, contacts_of, exact_parameters
 from eomgen.proof.check import Check, Tally
@@ -337,7 +337,7 @@ def other_friction(system: System, state: State) -> str:
         found, v = proof.at((factor, sliding))
         along = 1 if name in surfaces else abs(v)  # on a surface viscous friction is for a unit of v
         slides = (
-            bool(system.modes.get(name, CLOSED).sense) or along != 0
+            bool(system.modes.get(name, ContactMode()).sense) or along != 0
         )  # in a phase it slides one way, also from rest
         due = [_declared(proof, law, along, slides) for law in _laws(system, name)]
         if all(abs(abs(found) - x) > tolerances.ZERO_AT_50 * (1 + x) for x in due):
@@ -370,7 +370,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
     """
     system = equations.system
     model, modes = system.scope.model, system.modes
-    ending = [c.name for c in contacts_of(model) if c.unilateral and modes.get(c.name, CLOSED) == CLOSED]
+    ending = [c.name for c in contacts_of(model) if c.unilateral and modes.get(c.name, ContactMode()) == ContactMode()]
     if not ending or not model.coordinates or len(exact_parameters(model)) < len(model.parameters):
         return ""
     try:
@@ -408,7 +408,7 @@ def pushing_otherwise(equations: EquationsOfMotion, start: State, moving: Callab
     named = [
         c.name for c in contacts_of(system.scope.model) if c.friction is not None and not (c.unilateral or c.round)
     ]
-    modes = {name: system.modes.get(name, CLOSED) for name in named}
+    modes = {name: system.modes.get(name, ContactMode()) for name in named}
     for name, mode in modes.items():
         if not mode.closed or mode.sense is not None:  # a phase of a motion: its own start is another
             continue

@@ -11,8 +11,8 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import ALL as FORMULATIONS
-from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates
-from eomgen.mechanics.free_bodies import inverse_residual, with_friction
+from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates, inverse_residual
+from eomgen.mechanics.free_bodies import with_friction
 from eomgen.mechanics.kinematics import Inertia
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States

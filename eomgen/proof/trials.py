@@ -16,7 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.mechanics.free_bodies import friction_contacts, frictions, imbalance, push_sizes, reactions_of
-from eomgen.mechanics.kinematics import CLOSED, spin_between
+from eomgen.mechanics.kinematics import ContactMode, spin_between
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
@@ -293,7 +293,7 @@ class Trials:
                 if not self._holds(law, state):
                     return f"the friction of '{name}' is not that of its normal force"
             for name, factor, sliding in frictions(self.equations.system):
-                mode = self.equations.system.modes.get(name, CLOSED)
+                mode = self.equations.system.modes.get(name, ContactMode())
                 v = sliding if mode.sense is None else mode.sense
                 speed, power, factor_at = evaluate((v, mode.push * factor * v, factor), state, fifty_digits())
                 if speed == 0:

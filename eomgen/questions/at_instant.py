@@ -10,7 +10,7 @@ from eomgen.errors import DerivationError, EomgenError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.integrals import ClosedInstant
-from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.mechanics.kinematics import Located
 from eomgen.model import exact_parameters, numeric_parameters
 from eomgen.simulation import FirstTime
 from eomgen.study import Study
@@ -73,7 +73,7 @@ def placed(phase: Study, known: Mapping[Node, Scalar], numbers: Mapping[Node, fl
         return dict(known)  # nothing to begin with
     located = Located({**parameters_of(phase), **numbers}, phase.system.scope.positive)
     equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
-    return {**known, **places_of(equations, unknown, located)}
+    return {**known, **located.places(equations, unknown)}
 
 
 def resting(study: Study) -> StateAtInstant:

@@ -27,7 +27,6 @@ from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compi
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE, gaps_of, rank_of_constraints, singular_blocks
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
-from eomgen.mechanics.kinematics import branches_of
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import Newton, dense, tolerances
@@ -230,7 +229,7 @@ def _rows(
     *,
     resting: bool = False,
 ) -> Rows:
-    M = mass(system.motion, branches_of(system.motion))
+    M = mass(system.motion)
     entries = tuple(x for matrix in (M, J, N) for row in matrix for x in row)
     return Rows(_compiled(entries, system, target), len(J), len(M), resting)
 

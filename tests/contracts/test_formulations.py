@@ -20,8 +20,8 @@ from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.dynamics.formulations import ALL, Formulation
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.dynamics.tree import branches_of
 from eomgen.mechanics.kinematics.inertia import Inertia
-from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.model.likely_mistakes import unbuilt
 from eomgen.symbolic.expression.derivatives import depends_on_any
 from eomgen.symbolic.expression.graph import same_number
@@ -232,4 +232,4 @@ def test_the_angle_of_a_body_of_revolution_about_its_axis_stands_nowhere():
     """A rotor's moments across its axis are one: R J R^T = R (J - A 1) R^T + A 1 holds no angle of it."""
     motion = system_named("dual_spin_satellite").motion
     sigma = next(q for q in motion.scope.symbols.q if q.name == "sigma")
-    assert not depends_on_any([x for row in recursive.mass(motion, branches_of(motion)) for x in row], (sigma,))
+    assert not depends_on_any([x for row in recursive.mass(motion) for x in row], (sigma,))

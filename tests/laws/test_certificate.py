@@ -14,8 +14,8 @@ import eomgen
 from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints import rows as constraints
-from eomgen.mechanics.dynamics import formulations
+from eomgen.mechanics.dynamics import formulations, tree
+from eomgen.mechanics.dynamics import tree as recursion
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.free_bodies import balance, friction, reactions
@@ -23,10 +23,8 @@ from eomgen.mechanics.free_bodies import wrenches as components
 from eomgen.mechanics.free_bodies import wrenches as effects
 from eomgen.mechanics.free_bodies.balance import Balance, BodyEquation
 from eomgen.mechanics.free_bodies.equilibrium import imbalance
-from eomgen.mechanics.kinematics import inertia, tree
 from eomgen.mechanics.kinematics import motion as kinematics
 from eomgen.mechanics.kinematics import scene as contacts
-from eomgen.mechanics.kinematics import tree as recursion
 from eomgen.model.forces.elements import Reach
 from eomgen.model.forces.weights import Gravity
 from eomgen.proof.printed import Printed
@@ -146,7 +144,7 @@ ENGINE_ERRORS = [
     ("double_pendulum", recursion, "rate_matrix", turned_rate_matrix),
     ("double_pendulum", tree, "_own_moments", lighter),
     ("double_pendulum", kinematics, "_twist", backwards),
-    ("arm3", inertia, "spin_between", lambda R, rate: swapped(spin_between(R, rate))),
+    ("arm3", kinematics, "spin_between", lambda R, rate: swapped(spin_between(R, rate))),
     ("simple_pendulum", Gravity, "potential", lambda self, scene: 0),
     ("two_mass_oscillator", Reach, "pulled", lambda self, tension: ()),
 ]
@@ -214,8 +212,8 @@ def test_a_wrong_sign_in_any_equation_of_a_body_is_out_of_balance(name, monkeypa
     assert planted >= 7
 
 
-def pushing(law, value, sliding, mode):
-    factor = friction_factor(law, value, sliding, mode)
+def pushing(mode, law, value, sliding):
+    factor = friction_factor(mode, law, value, sliding)
     return None if factor is None else -factor
 
 
@@ -231,10 +229,10 @@ def to_the_other_side(axes, i, place):
     return times(-1, arm(axes, i, place))
 
 
-friction_factor, friction_contacts = contacts.friction_factor, friction.friction_contacts
+friction_factor, friction_contacts = contacts.ContactMode.friction_factor, friction.friction_contacts
 joint_effects, arm = effects.effects_at_joint, effects.Axes.arm
 REACTION_ERRORS = [
-    ("ch16_p6", constraints, "friction_factor", pushing),
+    ("ch16_p6", contacts.ContactMode, "friction_factor", pushing),
     ("ch16_p6", friction, "friction_contacts", other_way),
     ("double_pendulum", components, "effects_at_joint", without_parent),
     ("arm3", components, "effects_at_joint", without_parent),
@@ -242,7 +240,7 @@ REACTION_ERRORS = [
     ("ch22_p1", effects.Axes, "arm", to_the_other_side),
     ("arm3", effects, "_armatures", lambda motion, link: [(0, 1)] if link.joint.efforts() else []),
     ("elastic_pendulum", effects, "_effort_effects", lambda axes, effort: []),
-    ("ch18_p3", balance, "weights", lambda loads: ()),
+    ("ch18_p3", balance, "effects_of_load", lambda axes, load: ()),
 ]
 
 

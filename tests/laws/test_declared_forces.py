@@ -9,7 +9,6 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.free_bodies import names_of_reactions as named_reactions
-from eomgen.mechanics.free_bodies import wrenches as components
 from eomgen.mechanics.kinematics import scene as contact_modes
 from eomgen.mechanics.statics import contacts as contacts_at_start
 from eomgen.model import joints
@@ -194,10 +193,9 @@ def test_functions_through_samples_are_those_of_the_samples(way, monkeypatch):
 def test_friction_is_that_of_its_coefficient_and_of_the_push_at_the_start(monkeypatch):
     """F = mu |N| against v, N < 0 where a block is lifted in its guide."""
     assert proven(LIFTED).ok
-    right = contact_modes.friction_factor
+    right = contact_modes.ContactMode.friction_factor
     with monkeypatch.context() as patch:
-        for module in (contact_modes, components):
-            patch.setattr(module, "friction_factor", lambda *args: 2 * right(*args))
+        patch.setattr(contact_modes.ContactMode, "friction_factor", lambda *args: 2 * right(*args))
         assert "friction takes power" in contradicted(LIFTED)
     monkeypatch.setattr(contacts_at_start._StartNumbers, "pushing", lambda *_: contacts_at_start.ContactsAtStart())
     assert "own pushes" in contradicted(LIFTED)

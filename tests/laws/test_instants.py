@@ -17,7 +17,7 @@ from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.integrals.first_integrals import energy_integral
 from eomgen.mechanics.integrals.laws import position_equations
-from eomgen.mechanics.kinematics.places import Located, places_of
+from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.start.exact import declared_start
 from eomgen.mechanics.start.state import start_state
 from eomgen.model.values import numeric_parameters
@@ -188,7 +188,7 @@ def exact_places(each: Study, start: dict, numbers: dict) -> dict:
     values = numeric_parameters(each.model)
     located = Located({symbols.parameters[n]: x for n, x in values.items()} | numbers, each.system.scope.positive)
     gaps = [*position_equations(each.system, start), *(q - start[q] for q in symbols.q if q in start)]
-    return places_of(gaps, [q for q in symbols.q], located)
+    return located.places(gaps, [q for q in symbols.q])
 
 
 def is_exactly(each: Study, found: Any, expected: str) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import eomgen
-from eomgen.mechanics.kinematics import inertia, loads
+from eomgen.mechanics.kinematics import loads, symbols
 from eomgen.model.constraints import held as support
 from eomgen.model.constraints import rolling
 from eomgen.model.constraints.rolling import Nearest, RollingBall, Wheel
@@ -157,7 +157,7 @@ def test_an_error_in_where_things_touch_is_not_called_right(monkeypatch, model, 
 
 def test_products_of_inertia_in_the_wrong_places_are_seen(monkeypatch):
     """n . I n, by the places in which the model's file has them: all routes share the tensor."""
-    name, own = "moments and products of inertia stand where they are declared", inertia._inertia
+    name, own = "moments and products of inertia stand where they are declared", symbols._inertia
 
     def mixed(scope, body, declared):
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = own(scope, body, declared)
@@ -165,7 +165,7 @@ def test_products_of_inertia_in_the_wrong_places_are_seen(monkeypatch):
 
     text = SOLID.replace("INERTIA", "[3, 4, 5, 0.1, 0.2, 0.3]")
     assert status(certificate_of(text), name) == "holds"
-    monkeypatch.setattr(inertia, "_inertia", mixed)
+    monkeypatch.setattr(symbols, "_inertia", mixed)
     assert status(certificate_of(text), name) == "fails"
 
 

@@ -10,9 +10,9 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.documents.json_form import as_dict
-from eomgen.mechanics.instant import kinematic_state, mechanism
-from eomgen.mechanics.instant import kinematic_state as body_motion
 from eomgen.mechanics.instant import kinematic_state as relative_motion
+from eomgen.mechanics.instant import mechanism
+from eomgen.mechanics.kinematics.motion import Motion, VelocityField
 from eomgen.questions import velocities
 from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_requested as verb
@@ -43,10 +43,10 @@ RELATIVE = ("bead.center", "hoop")
 
 def test_a_wrong_field_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """omega and epsilon against R(t)."""
-    right = kinematic_state.field_of
-    monkeypatch.setattr(kinematic_state, "field_of", lambda *given: replace(f := right(*given), w=times(2, f.w)))
+    right = Motion.field
+    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), w=times(2, f.w)))
     assert "spins and angular" in wrong_checks(CRANK)
-    monkeypatch.setattr(kinematic_state, "field_of", lambda *given: replace(f := right(*given), e=times(2, f.e)))
+    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), e=times(2, f.e)))
     assert "spins and angular" in wrong_checks(MODELS / "double_pendulum.toml", at="t = 1/2")
 
 
@@ -66,7 +66,7 @@ def test_a_wrong_pole_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """a(pole) = 0"""
     model = MODELS / "seeds" / "ch9_p11.toml"
     assert not wrong_checks(model)
-    monkeypatch.setattr(body_motion, "acceleration_pole", lambda field: field.p)
+    monkeypatch.setattr(VelocityField, "acceleration_pole", lambda field: field.p)
     assert "poles" in wrong_checks(model)
 
 
@@ -95,8 +95,8 @@ def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     model = eomgen.load(CRANK)
     assert as_dict(shown(verb(model)))["certificate"]["ok"] is True
     assert as_dict(shown(verb(model), certify=False))["certificate"] is None
-    right = kinematic_state.field_of
-    monkeypatch.setattr(kinematic_state, "field_of", lambda *given: replace(f := right(*given), v=times(2, f.v)))
+    right = Motion.field
+    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), v=times(2, f.v)))
     assert "do not trust" in shown(verb(model)).wrong
 
 

@@ -16,7 +16,7 @@ from eomgen.documents.json_form import as_dict
 from eomgen.documents.mass_properties import result, steps
 from eomgen.documents.mass_properties import steps as rows
 from eomgen.documents.mass_properties.result import inertia as verb
-from eomgen.mechanics.kinematics import motion as composition
+from eomgen.mechanics.kinematics import symbols as composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.proof.masses import FILLED
 from eomgen.verbs.outcome import shown

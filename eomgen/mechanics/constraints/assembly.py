@@ -26,7 +26,7 @@ from eomgen.mechanics.constraints.closure import (
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.rank import rank_of_constraints
 from eomgen.mechanics.constraints.rows import Constraints, Row
-from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.state import Numbers
 from eomgen.model import Model, contacts_of, exact_parameters
 from eomgen.symbolic.expression import (
@@ -74,7 +74,7 @@ def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
     known = {x: value for x, value in declared.items() if x not in moved}
     equations = [x for x in substituted(rows, known) if depends_on(x, moved)]
     located = [Located({x: float(value) for x, value in state.items()}, scope.positive) for state in states]
-    found = places_of(equations, moved, located[0])
+    found = located[0].places(equations, moved)
     exact = {q: x for q, x in found.items() if q in moved and all(each.agrees(x, q) for each in located)}
     left = [q for q in moved if q not in exact or depends_on(exact[q], moved)]
     if left and drawn:

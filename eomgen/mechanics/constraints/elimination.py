@@ -19,7 +19,7 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
 from eomgen.mechanics.constraints.rows import Constraints, holds_identically
-from eomgen.mechanics.kinematics import Scope, shorter, with_speeds_named
+from eomgen.mechanics.kinematics import Scope, shorter
 from eomgen.mechanics.state import Split
 from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations, order, substituted
 from eomgen.symbolic.numeric import NoValue, dense, rank, tolerances
@@ -284,7 +284,7 @@ def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A:
     second = reduced.with_accelerations(tuple(given.values()))
     names = {f"{name}'": rate for name, rate in given.items()}
     names |= {f"{name}''": acceleration for name, acceleration in zip(given, second, strict=True)}
-    return with_speeds_named(replace(reduced, names={**scope.names, **names}))
+    return replace(reduced, names={**scope.names, **names}).with_speeds_named()
 
 
 def _named(constraints: Constraints, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> DependentBlock:

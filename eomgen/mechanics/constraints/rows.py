@@ -13,21 +13,17 @@ import numpy as np
 from eomgen.errors import DerivationError, ModelError, NotYet, Problem
 from eomgen.frozen import RECALLED, dataclass
 from eomgen.mechanics.kinematics import (
-    CLOSED,
     GROUND,
     BodyLink,
     ContactMode,
     ContactModes,
     Motion,
     SystemScene,
-    friction_factor,
     motion_of,
-    rows_in_mode,
     scope_of,
-    shorter_row,
 )
 from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, exact_parameters, unbuilt_constraints
-from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
+from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -38,12 +34,14 @@ from eomgen.symbolic.expression import (
     dot,
     is_zero,
     jacobian,
+    operations,
     over,
     sqrt,
     substituted,
+    symbols_of,
     times,
 )
-from eomgen.symbolic.numeric import FLOAT, PRIME_FIELD, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import FLOAT, PRIME_FIELD, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 # -------- constraints ------------------------------------------------------------------------------------------------
@@ -174,8 +172,8 @@ def constraints_of(
     rows = []
     for name, constraint in motion.scope.model.constraints.items():
         scene = SystemScene(motion, f"{constraint.table}.{name}")
-        mode = (modes or {}).get(name, CLOSED)
-        for number, constraint_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
+        mode = (modes or {}).get(name, ContactMode())
+        for number, constraint_row in enumerate(mode.rows_of(constraint, constraint.rows(scene)), start=1):
             label = (name, number)
             row = _row(motion, name, number, constraint_row, used=label in (used or {}))
             row = replace(row, eliminates=(used or {}).get(label, ""))
@@ -271,7 +269,7 @@ def _with_friction(scene: SystemScene, constraint: Any, row: Row, mode: ContactM
             return row
         row = _on_surface(row, viscous=law.coulomb is None, still=mode.sense is not None)
         return replace(row, friction=-mode.push * scene.value(law.viscous if law.coulomb is None else law.coulomb))
-    return replace(row, friction=friction_factor(law, scene.value, row.sliding, mode))
+    return replace(row, friction=mode.friction_factor(law, scene.value, row.sliding))
 
 
 def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
@@ -445,3 +443,15 @@ def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, 
 def stopped_at(edge: Edge, t: float) -> str:
     """Reason why a motion ends there."""
     return f"Stopped at t = {t:.6g} s: {edge.words}, and how it goes on is not determined."
+
+
+MOST_SYMBOLS = 18  # in a velocity row that is multiplied out
+LONGEST_ROW = 2000  # characters of a velocity row that is multiplied out
+
+
+def shorter_row(x: Scalar) -> Scalar:
+    """A velocity multiplied out, where that halves its operations: cos^2 + sin^2 of a spin that no contact sees."""
+    if type(x) is not Node or text_size(x) > LONGEST_ROW or len(symbols_of((x,))) > MOST_SYMBOLS:
+        return x
+    short = readable(x, Work.ENTRY)
+    return short if 2 * operations((short,)).total <= operations((x,)).total else x

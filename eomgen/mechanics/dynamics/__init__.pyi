@@ -47,6 +47,9 @@ from eomgen.mechanics.dynamics.formulations import free_rates as free_rates
 # (M, c) by derivatives of the kinetic energy
 from eomgen.mechanics.dynamics.formulations import inertia_by_energies as inertia_by_energies
 
+# M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground
+from eomgen.mechanics.dynamics.formulations import inverse_residual as inverse_residual
+
 # M by composite bodies, armatures included
 from eomgen.mechanics.dynamics.formulations import mass as mass
 

@@ -10,17 +10,8 @@ import numpy as np
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
-from eomgen.mechanics.kinematics import (
-    GROUND,
-    Branch,
-    Inertia,
-    Loads,
-    Motion,
-    applied_wrenches,
-    branches_of,
-    inertia_wrench,
-    rate_matrix,
-)
+from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, branches_of, inertia_wrench, rate_matrix
+from eomgen.mechanics.kinematics import GROUND, Inertia, Loads, Motion
 from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,

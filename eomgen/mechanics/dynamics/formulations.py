@@ -13,16 +13,8 @@ from eomgen.mechanics.dynamics.system import (
     assembled,
     free_system_of,
 )
-from eomgen.mechanics.kinematics import (
-    Branch,
-    Inertia,
-    Loads,
-    Motion,
-    applied_wrenches,
-    bias_forces,
-    branches_of,
-    composite_mass_matrix,
-)
+from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, bias_forces, branches_of, composite_mass_matrix
+from eomgen.mechanics.kinematics import Inertia, Loads, Motion
 from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
 from eomgen.symbolic.expression import (
     ZERO,
@@ -276,12 +268,34 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
     return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))
 
 
-def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[ScalarRow, ...]:
-    """M by composite bodies, armatures included."""
-    M = composite_mass_matrix(branches, len(motion.scope.symbols.u))
+def mass(motion: Motion, branches: tuple[Branch, ...] = ()) -> tuple[ScalarRow, ...]:
+    """M by composite bodies, armatures included.
+
+    Args:
+        branches: the tree of bodies, where it is known.
+    """
+    M = composite_mass_matrix(branches or branches_of(motion), len(motion.scope.symbols.u))
     for i, j, value in Inertia(motion).added_mass:
         M[i][j] = M[i][j] + value
     return tuple(tuple(row) for row in M)
+
+
+def inverse_residual(system: System) -> ScalarRow:
+    """M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground."""
+    motion, loads, a = system.motion, system.loads, system.symbols.a
+    branches = branches_of(motion)
+    forces = bias_forces(
+        branches,
+        len(a),
+        base_acceleration=times(-1, loads.fields),
+        applied=applied_wrenches(loads, branches),
+        a=a,
+    )
+    rotors = Inertia(motion).added_bias
+    for i, j, value in Inertia(motion).added_mass:
+        rotors[i] = rotors[i] + value * a[j]
+    direct = zip(forces, rotors, loads.joint_forces, loads.placeless_forces, strict=True)
+    return tuple(f + rotor - x - y for f, rotor, x, y in direct)
 
 
 # -------- formulations ----------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.mechanics.kinematics import Located, Motion, places_of
+from eomgen.mechanics.kinematics import Located, Motion
 from eomgen.model import first_guesses, in_own_unit, start_values
 from eomgen.symbolic.exact import readable, readable_all, simplest
 from eomgen.symbolic.expression import (
@@ -405,7 +405,7 @@ class ClosedForms:
             if self._vain.get(way, 0) >= PATIENCE:
                 continue
             try:
-                found = {**known, **places_of(substituted(equations, known), unknowns, located)}
+                found = {**known, **located.places(substituted(equations, known), unknowns)}
             except DerivationError:  # too large, or a value that is not real
                 found = {}
             if all(q in found for q in self.statics.q):

@@ -20,7 +20,7 @@ from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
 from eomgen.mechanics.free_bodies import Indeterminate, reactions_of
-from eomgen.mechanics.kinematics import CLOSED, Located, Lock, Motion
+from eomgen.mechanics.kinematics import ContactMode, Located, Lock, Motion
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.state import Doubles
 from eomgen.model import contacts_of, exact_parameters
@@ -407,7 +407,7 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
     names = [
         contact.name
         for contact in contacts_of(system.scope.model)
-        if contact.unilateral and system.modes.get(contact.name, CLOSED).closed
+        if contact.unilateral and system.modes.get(contact.name, ContactMode()).closed
     ]
     if not names:
         return ()

@@ -60,9 +60,6 @@ from eomgen.mechanics.free_bodies.inverse import drive as drive
 # tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them
 from eomgen.mechanics.free_bodies.inverse import inverse_of as inverse_of
 
-# M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground
-from eomgen.mechanics.free_bodies.inverse import inverse_residual as inverse_residual
-
 # lam of a constraint of one row in the equations of motion; a symbol where it closes
 from eomgen.mechanics.free_bodies.inverse import multiplier as multiplier
 

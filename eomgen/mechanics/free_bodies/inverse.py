@@ -31,16 +31,11 @@ from eomgen.mechanics.dynamics import (
     System,
     assembled_by_recursion,
     free_system_of,
+    inverse_residual,
     system_of,
 )
 from eomgen.mechanics.free_bodies.friction import frictions, has_friction
 from eomgen.mechanics.free_bodies.reactions import reactions_of
-from eomgen.mechanics.kinematics import (
-    Inertia,
-    applied_wrenches,
-    bias_forces,
-    branches_of,
-)
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import Table, altered, driving_constraints, nearest
@@ -55,7 +50,6 @@ from eomgen.symbolic.expression import (
     inner,
     is_zero,
     substituted,
-    times,
 )
 from eomgen.symbolic.numeric import dense, tolerances, transplanted
 from eomgen.symbolic.solve import cramer
@@ -130,24 +124,6 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
     r = substituted(needed, dict.fromkeys(own.values(), 0))
     inputs = {name: value for name, value in system.inputs.items() if name not in own}
     return _solved_for(Inverse(system, names, inputs, ()), columns, r)
-
-
-def inverse_residual(system: System) -> ScalarRow:
-    """M a + c - Q by recursive Newton-Euler, weight as an upward acceleration of the ground."""
-    motion, loads, a = system.motion, system.loads, system.symbols.a
-    branches = branches_of(motion)
-    forces = bias_forces(
-        branches,
-        len(a),
-        base_acceleration=times(-1, loads.fields),
-        applied=applied_wrenches(loads, branches),
-        a=a,
-    )
-    rotors = Inertia(motion).added_bias
-    for i, j, value in Inertia(motion).added_mass:
-        rotors[i] = rotors[i] + value * a[j]
-    direct = zip(forces, rotors, loads.joint_forces, loads.placeless_forces, strict=True)
-    return tuple(f + rotor - x - y for f, rotor, x, y in direct)
 
 
 def _columns(system: System, names: Sequence[str], needed: ScalarRow) -> tuple[ScalarRow, ...]:

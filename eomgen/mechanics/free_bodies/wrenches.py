@@ -12,12 +12,11 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, generic_state, is_placed
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import (
-    CLOSED,
     GROUND,
     BodyLink,
+    ContactMode,
     JointEffort,
     Motion,
-    friction_factor,
 )
 from eomgen.model import Couple, MassProperties, PointForce, driven_coordinates
 from eomgen.symbolic.expression import (
@@ -404,8 +403,8 @@ def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str
 def joint_friction(system: System, link: BodyLink) -> Scalar | None:
     """The friction of a path along it for a unit of its normal reaction; None without friction, and elsewhere."""
     pieces = getattr(link.joint, "pieces", ())
-    value, mode = system.scope.value, system.modes.get(link.name, CLOSED)
-    factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
+    value, mode = system.scope.value, system.modes.get(link.name, ContactMode())
+    factors = [mode.friction_factor(piece.friction, value, link.s_rate[0]) for piece in pieces]
     if all(factor is None for factor in factors):
         return None
     friction: Scalar = link.joint.of_its_piece(

@@ -11,7 +11,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion, waves
 from eomgen.mechanics.integrals.speeds import Relations, rates_of, relations_of
-from eomgen.mechanics.kinematics import Located, integral_from_zero, places_of, primitive
+from eomgen.mechanics.kinematics import Located, integral_from_zero, primitive
 from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import sign_of_terms, simplest
 from eomgen.symbolic.expression import (
@@ -383,7 +383,7 @@ class ClosedInstant:
         equations += position_equations(self.equations.system, self.start, self._relations({}))
         others = (*self.equations.symbols.u, self.equations.symbols.t)
         equations = [x for x in equations if not depends_on(x, others)]
-        places = self._agreeing(places_of(equations, self.equations.symbols.q, self.located))
+        places = self._agreeing(self.located.places(equations, self.equations.symbols.q))
         rates = self._agreeing(self._there(speeds, places))
         if len(rates) < len(self.equations.symbols.u):  # the place may be one where the functions have no value
             rates |= self._agreeing(self._rates(places))

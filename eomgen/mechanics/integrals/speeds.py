@@ -11,10 +11,11 @@ from eomgen.mechanics.constraints import generic_state
 from eomgen.mechanics.dynamics import EVERYWHERE, EquationsOfMotion, Extent, System
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals, where_momenta_hold
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
-from eomgen.mechanics.kinematics import primitive, primitive_over_bends
+from eomgen.mechanics.kinematics import primitive
 from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import sign_of_terms, simplest
 from eomgen.symbolic.expression import (
+    Fraction,
     Node,
     Scalar,
     Symbols,
@@ -351,3 +352,45 @@ def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symb
             f"the start has no closed form: {', '.join(left)}", fix="give them as numbers in [coordinates]"
         )
     return value
+
+
+BENT = ("max", "min", "abs", "sign")
+
+
+def primitive_over_bends(f: Scalar, x: Node) -> Scalar | None:
+    """`primitive`, of functions with bends too, continuous over these; None where no closed form was found.
+
+    f = rest + sum of c times what has a bend, its arguments linear in x, c without x. The integral of max(0, d) is
+    max(0, d)^2/(2 d'), of min(0, d) the same with min, of |d| it is d |d|/(2 d'), of sign(d) it is |d|/d'.
+    """
+    total: Scalar = 0
+    while type(f) is Node and (bent := [n for n in order((f,)) if n.op in BENT and depends_on(n, (x,))]):
+        node = bent[-1]  # what holds others comes after them
+        name = f.graph.symbol("(what has a bend)")
+        (named,) = substituted((f,), {node: name})
+        factor, own = derivative(named, name), _of_one_bend(node, x)
+        if own is None or depends_on(factor, (x, name)):
+            return None
+        (f,) = substituted((named,), {name: 0})
+        total = total + factor * own
+    rest = 0 if is_zero(f) else primitive(f, x)
+    return None if rest is None else total + rest
+
+
+def _of_one_bend(node: Node, x: Node) -> Scalar | None:
+    """The integral of max, min, abs or sign of what is linear in x; None of anything else."""
+    a: Scalar
+    b: Scalar
+    a, b = node.args if len(node.args) == 2 else (node.args[0], 0)
+    if not depends_on(a, (x,)):
+        a, b = b, a
+    d = a - b
+    slope = derivative(d, x)
+    if is_zero(slope) or depends_on(slope, (x,)) or any(depends_on(derivative(y, x), (x,)) for y in (a, b)):
+        return None
+    if node.op == "sign":
+        return over(function("abs", d), slope)
+    if node.op == "abs":
+        return over(d * function("abs", d), 2 * slope)
+    above = function(node.op, 0, d)  # max(a, b) = b + max(0, a - b), and min the same
+    return Fraction(1, 2) * derivative(b, x) * x * x + substituted((b,), {x: 0})[0] * x + over(above * above, 2 * slope)

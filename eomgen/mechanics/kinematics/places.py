@@ -82,6 +82,32 @@ class Located:
         """The root of the equation with the value known of the node."""
         return self.chosen(roots(equation, node, self.positive, Work.VALUE), node, equation)
 
+    def places(self, equations: Sequence[Scalar], unknowns: Collection[Node]) -> dict[Node, Scalar]:
+        """The unknowns near there that equations determine in closed form, functions of the parameters alone.
+
+        Args:
+            equations: what vanishes.
+        """
+        left = [simplest(x, Work.VALUE, self.positive) for x in equations]
+        relations: dict[Node, Scalar] = {}
+        found: dict[Node, Scalar] = {}
+        while left:
+            left = [x for x in substituted(left, {**relations, **found}) if _held(x, unknowns) and not vanishes(x)]
+            step = _single(left, unknowns, self) or _relation(left, unknowns, self)
+            if step is not None:
+                node, value, used = step
+                relations = dict(zip(relations, substituted(tuple(relations.values()), {node: value}), strict=True))
+                target = relations if depends_on(value, unknowns) else found
+                target[node] = value
+                del left[used]
+            elif of_loop := _of_loop(left, unknowns, self):
+                found |= of_loop
+            elif not _joined(left, unknowns, self):
+                break
+        found |= {node: substituted((value,), found)[0] for node, value in relations.items()}
+        known = {node: value for node, value in found.items() if not depends_on(value, unknowns)}
+        return {node: simplest(value, Work.VALUE, self.positive) for node, value in known.items()}
+
 
 def _turn_of(equation: Scalar, node: Node) -> Scalar:
     """2 pi/q of an equation that holds a node in waves of q times it, q a constant with a name; else 2 pi."""
@@ -92,34 +118,6 @@ def _turn_of(equation: Scalar, node: Node) -> Scalar:
         return turn
     (q,) = slopes
     return over(turn, q) if type(q) is Node and not depends_on(q, (node,)) else turn
-
-
-def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:
-    """The unknowns that the equations determine in closed form, functions of the parameters alone.
-
-    Args:
-        equations: what vanishes.
-        located: a state near which the unknowns lie, in numbers.
-    """
-    left = [simplest(x, Work.VALUE, located.positive) for x in equations]
-    relations: dict[Node, Scalar] = {}
-    found: dict[Node, Scalar] = {}
-    while left:
-        left = [x for x in substituted(left, {**relations, **found}) if _held(x, unknowns) and not vanishes(x)]
-        step = _single(left, unknowns, located) or _relation(left, unknowns, located)
-        if step is not None:
-            node, value, used = step
-            relations = dict(zip(relations, substituted(tuple(relations.values()), {node: value}), strict=True))
-            target = relations if depends_on(value, unknowns) else found
-            target[node] = value
-            del left[used]
-        elif of_loop := _of_loop(left, unknowns, located):
-            found |= of_loop
-        elif not _joined(left, unknowns, located):
-            break
-    found |= {node: substituted((value,), found)[0] for node, value in relations.items()}
-    known = {node: value for node, value in found.items() if not depends_on(value, unknowns)}
-    return {node: simplest(value, Work.VALUE, located.positive) for node, value in known.items()}
 
 
 ChainStep = tuple[Node, Scalar, int]

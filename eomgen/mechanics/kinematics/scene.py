@@ -240,37 +240,31 @@ class ContactMode:
     sense: int | None = None
     push: int = 1
 
+    def rows_of(self, constraint: Any, rows: tuple[ConstraintRow, ...]) -> tuple[ConstraintRow, ...]:
+        """The rows that a constraint has: none while it is open, one more while it sticks (on a surface two)."""
+        if not self.closed:
+            return ()
+        law = getattr(constraint, "friction", None)
+        if law is None or self.sense != 0 or law.coulomb is None:
+            return rows
+        with_friction = [row for row in rows if row.tangent]
+        pairs = (
+            (name, row, push) for row in with_friction for name, push in (("t", row.tangent), ("s", row.cross_tangent))
+        )
+        held = (ConstraintRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
+        return (*rows, *held)
+
+    def friction_factor(self, law: Resistance | None, value: Callable[[Any], Scalar], sliding: Scalar) -> Scalar | None:
+        """The friction of a unit of N along the tangent; None without friction, or while it sticks."""
+        if law is None:
+            return None
+        if law.coulomb is None:
+            return -self.push * value(law.viscous) * sliding
+        if self.sense == 0:
+            return None
+        sense = function("sign", sliding) if self.sense is None else self.sense
+        return -self.push * value(law.coulomb) * sense
+
 
 ContactModes = Mapping[str, ContactMode]
 """By the name of the constraint, or of the body on a path. What is not named is closed and slides by the law."""
-
-CLOSED = ContactMode()
-
-
-def rows_in_mode(constraint: Any, rows: tuple[ConstraintRow, ...], mode: ContactMode) -> tuple[ConstraintRow, ...]:
-    """The rows that a constraint has in a mode: none while it is open, one more while it sticks (on a surface two)."""
-    if not mode.closed:
-        return ()
-    law = getattr(constraint, "friction", None)
-    if law is None or mode.sense != 0 or law.coulomb is None:
-        return rows
-    with_friction = [row for row in rows if row.tangent]
-    pairs = (
-        (name, row, push) for row in with_friction for name, push in (("t", row.tangent), ("s", row.cross_tangent))
-    )
-    held = (ConstraintRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
-    return (*rows, *held)
-
-
-def friction_factor(
-    law: Resistance | None, value: Callable[[Any], Scalar], sliding: Scalar, mode: ContactMode
-) -> Scalar | None:
-    """The friction of a unit of N along the tangent; None without friction, or while it sticks."""
-    if law is None:
-        return None
-    if law.coulomb is None:
-        return -mode.push * value(law.viscous) * sliding
-    if mode.sense == 0:
-        return None
-    sense = function("sign", sliding) if mode.sense is None else mode.sense
-    return -mode.push * value(law.coulomb) * sense

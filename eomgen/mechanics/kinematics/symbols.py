@@ -32,7 +32,7 @@ from eomgen.model import (
 from eomgen.model import (
     start_values as declared_starts,
 )
-from eomgen.symbolic.exact import cancelled, readable, readable_all
+from eomgen.symbolic.exact import cancelled, readable_all
 from eomgen.symbolic.expression import (
     ZERO,
     Expression,
@@ -47,8 +47,6 @@ from eomgen.symbolic.expression import (
     Vector,
     as_expression,
     depends_on,
-    derivative,
-    function,
     gradient,
     holds_op,
     is_zero,
@@ -325,6 +323,14 @@ class Scope:
         """-N^T dV/dq."""
         return tuple(-x for x in self.per_speed(gradient(V, self.symbols.q)))
 
+    def with_speeds_named(self) -> Scope:
+        """The scope in which declared speeds, and their derivatives, stand for what they are in its own speeds."""
+        names = self.names
+        found = _speeds_by_rates(self.model, names)
+        rates = self.with_accelerations(tuple(found.values()))
+        found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
+        return replace(self, names={**names, **found})
+
 
 def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
     """The symbols of a model, its kinematic equations, and the meaning of its names.
@@ -371,7 +377,7 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
     for four in quaternions:
         graph.hold_on_sphere(four)
     graph.hold_near(_own_numbers(model, symbols))
-    return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws))
+    return Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws).with_speeds_named()
 
 
 def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
@@ -383,15 +389,6 @@ def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
         found |= {node: q[node.name] for node in symbols.q if node.name in q}
         found |= {node: rates[node.name] for node in symbols.u if node.name in rates}
     return {node: value for node, value in found.items() if isfinite(value)}
-
-
-def with_speeds_named(scope: Scope) -> Scope:
-    """The scope in which declared speeds, and their derivatives, stand for what they are in its own speeds."""
-    names = scope.names
-    found = _speeds_by_rates(scope.model, names)
-    rates = scope.with_accelerations(tuple(found.values()))
-    found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
-    return replace(scope, names={**names, **found})
 
 
 def _speeds_by_rates(model: Model, names: Mapping[str, Scalar]) -> dict[str, Scalar]:
@@ -494,48 +491,6 @@ def _has_rooted_sines(f: Scalar, x: Node) -> bool:
     return any(depends_on(node, (x,)) for node in order(under) if node.op in ("sin", "cos"))
 
 
-BENT = ("max", "min", "abs", "sign")
-
-
-def primitive_over_bends(f: Scalar, x: Node) -> Scalar | None:
-    """`primitive`, of functions with bends too, continuous over these; None where no closed form was found.
-
-    f = rest + sum of c times what has a bend, its arguments linear in x, c without x. The integral of max(0, d) is
-    max(0, d)^2/(2 d'), of min(0, d) the same with min, of |d| it is d |d|/(2 d'), of sign(d) it is |d|/d'.
-    """
-    total: Scalar = 0
-    while type(f) is Node and (bent := [n for n in order((f,)) if n.op in BENT and depends_on(n, (x,))]):
-        node = bent[-1]  # what holds others comes after them
-        name = f.graph.symbol("(what has a bend)")
-        (named,) = substituted((f,), {node: name})
-        factor, own = derivative(named, name), _of_one_bend(node, x)
-        if own is None or depends_on(factor, (x, name)):
-            return None
-        (f,) = substituted((named,), {name: 0})
-        total = total + factor * own
-    rest = 0 if _zero(f) else primitive(f, x)
-    return None if rest is None else total + rest
-
-
-def _of_one_bend(node: Node, x: Node) -> Scalar | None:
-    """The integral of max, min, abs or sign of what is linear in x; None of anything else."""
-    a: Scalar
-    b: Scalar
-    a, b = node.args if len(node.args) == 2 else (node.args[0], 0)
-    if not depends_on(a, (x,)):
-        a, b = b, a
-    d = a - b
-    slope = derivative(d, x)
-    if _zero(slope) or depends_on(slope, (x,)) or any(depends_on(derivative(y, x), (x,)) for y in (a, b)):
-        return None
-    if node.op == "sign":
-        return over(function("abs", d), slope)
-    if node.op == "abs":
-        return over(d * function("abs", d), 2 * slope)
-    above = function(node.op, 0, d)  # max(a, b) = b + max(0, a - b), and min the same
-    return Fraction(1, 2) * derivative(b, x) * x * x + substituted((b,), {x: 0})[0] * x + over(above * above, 2 * slope)
-
-
 def _zero(a: Scalar) -> bool:
     return type(a) is int and a == 0
 
@@ -551,7 +506,6 @@ def _sizes(model: Model) -> frozenset[str]:
 # Scalar -> the same in a shorter form: what is divided by what dependent rates or declared speeds bring in.
 
 
-LONGEST_ROW = 2000  # characters of a velocity row that is multiplied out
 LONGEST = 600  # characters of a scalar that is made readable
 MOST = 9  # symbols in it
 
@@ -562,14 +516,6 @@ def shorter(x: Scalar) -> Scalar:
         return x
     short = cancelled(x, Work.ENTRY)
     return short if operations((short,)).total <= operations((x,)).total else x
-
-
-def shorter_row(x: Scalar) -> Scalar:
-    """A velocity multiplied out, where that halves its operations: cos^2 + sin^2 of a spin that no contact sees."""
-    if type(x) is not Node or text_size(x) > LONGEST_ROW or len(symbols_of((x,))) > 2 * MOST:
-        return x
-    short = readable(x, Work.ENTRY)
-    return short if 2 * operations((short,)).total <= operations((x,)).total else x
 
 
 def _written(scope: Scope, scalar: Scalar) -> Expression:

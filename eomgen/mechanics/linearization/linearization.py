@@ -16,7 +16,7 @@ from eomgen.mechanics.constraints import fork_at, refuse_undetermined
 from eomgen.mechanics.dynamics import System, valueless
 from eomgen.mechanics.equilibrium import standing_system, states_beside
 from eomgen.mechanics.free_bodies import frictions
-from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.first_order import (
     Choice,
     FirstOrder,
@@ -437,7 +437,7 @@ def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMo
     known = {x: value for x, value in reference.exact.items() if x not in guessed}
     try:
         unknown = [q for q in symbols.q if q not in known]
-        exact = {**reference.exact, **places_of(substituted(first.relations, known), unknown, located)}
+        exact = {**reference.exact, **located.places(substituted(first.relations, known), unknown)}
         if all(x in exact for x in (*symbols.q, *(symbols.u[k] for k in choice.speeds.free))):
             exact |= dependent_speeds(first, choice, Exact(exact, positive, reference.trial))
     except (DerivationError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula

@@ -14,7 +14,7 @@ from eomgen.mechanics.constraints import Row, fixed_by_position
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_equilibrium, over_rates, static_equations
 from eomgen.mechanics.integrals import position_equations
-from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import refuse_lost, start_state
 from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
@@ -167,7 +167,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
         scope.positive,
     )
     gaps = [gap for row in system.constraints.rows if (gap := _gap(row)) is not None]
-    exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}
+    exact |= located.places(substituted(tuple(gaps), exact), sought) if sought else {}
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
     exact = exact if symbols.parameters.keys() - exact_parameters(model).keys() else _short(exact)
     for x in (*symbols.q, *symbols.u):

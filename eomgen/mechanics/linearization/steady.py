@@ -13,7 +13,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import movable, nearest_root
 from eomgen.mechanics.equilibrium import StaticEquations, places_of_rest
-from eomgen.mechanics.kinematics import Located, places_of
+from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.first_order import Choice, FirstOrder, choice_of
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, dependent_speeds, floats, unsettled
 from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
@@ -399,7 +399,7 @@ class _Writing:
         if sum(map(text_size, conditions)) > LONGEST:
             return {}
         try:
-            found = places_of(conditions, self._unknowns, located or self._located)
+            found = located or self._located.places(conditions, self._unknowns)
             left = substituted(tuple(conditions), found)
         except (DerivationError, NoValue, ZeroDivisionError):
             return {}

@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import SEEDS, fixed_by_position, gaps_of, hold_identically, is_guess
 from eomgen.mechanics.dynamics import System, mass
-from eomgen.mechanics.kinematics import Located, Scope, branches_of, places_of
+from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
 from eomgen.mechanics.state import Doubles, Numbers, Split
 from eomgen.model import exact_parameters
@@ -238,7 +238,7 @@ class _Sought:
         if not gaps or len(gaps) < len(unknown) == len(self.system.symbols.q):
             return {}  # nothing to begin with
         equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
-        return places_of(equations, unknown, self.located)
+        return self.located.places(equations, unknown)
 
     def _speeds(self, known: Mapping[Node, Scalar], moved: Sequence[Node]) -> dict[Node, Scalar]:
         """The speeds that the constraints complete or change; those of which the least change has no closed form are
@@ -273,7 +273,7 @@ class _Sought:
             ways.append(([x for x, _ in along], W))
         elif not {*moved} & {*silent}:
             given = [x for x in u if x not in silent]
-            masses = mass(self.system.motion, branches_of(self.system.motion))
+            masses = mass(self.system.motion)
             M = [[masses[u.index(x)][u.index(y)] for y in given] for x in given]
             ways.append((given, [list(substituted(row, place)) for row in M]))
         return ways
@@ -430,7 +430,7 @@ def _closed_in(system: System, state: State, sought: list[Node]) -> State:
         for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
     }
     located = Located(numbers, system.scope.positive)
-    found = places_of(substituted(gaps_of(system.constraints), state), sought, located)
+    found = located.places(substituted(gaps_of(system.constraints), state), sought)
     missing = [q.name for q in sought if q not in found]
     if missing:
         raise DerivationError(

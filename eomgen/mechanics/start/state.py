@@ -35,7 +35,6 @@ from eomgen.mechanics.constraints import (
     with_gaps_closed,
 )
 from eomgen.mechanics.dynamics import System, mass, reason_without_value
-from eomgen.mechanics.kinematics import branches_of
 from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model import (
     Model,
@@ -239,7 +238,7 @@ def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None)
     known = exact_parameters(system.scope.model, parameters)
     values = {node: float(known[name]) for name, node in system.symbols.parameters.items() if name in known}
     values |= {node: float(x) for node, x in state.items()}
-    rows = mass(system.motion, branches_of(system.motion))
+    rows = mass(system.motion)
     entries = [x for row in rows for x in row]
     if not set(symbols_of(entries)) <= values.keys():
         return None

@@ -6,8 +6,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics.loads import Loads
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, shortened_twist
+from eomgen.mechanics.kinematics import GROUND, BodyLink, Loads, Motion, shorter
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.expression import (
     IDENTITY,
@@ -16,7 +15,6 @@ from eomgen.symbolic.expression import (
     Matrix,
     Node,
     Scalar,
-    Twist,
     Vector,
     Wrench,
     added,
@@ -140,7 +138,7 @@ def _branch(motion: Motion, link: BodyLink, offset: Vector, moments: Moments, pl
         w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
     own_rate = apply(parent_axes, rate)
     if scope.combines:
-        w = shortened_twist(Twist(w)).w
+        w = vector_of(map(shorter, w))
         w_bias = scope.rate_of(w)
     return Branch(
         link,
