@@ -41,7 +41,7 @@ from eomgen.documents.text import WIDTH, broken, formula_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.dynamics.system import System
-from eomgen.mechanics.kinematics.inertia import Inertia
+from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import gradient, substituted
@@ -166,7 +166,7 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
     system = _printed_system(derived)
     for free in (*system.symbols.u, *system.symbols.a):  # rates of dependent coordinates, as they stand there
         also.pop(free.name, None)
-    T = Inertia(system.motion).kinetic_energy
+    T = SystemInertia(system.motion).kinetic_energy
     pairs = []
     if is_complete(energy):
         total = next(f for f in energy.statements[::-1] if isinstance(f, Formula))

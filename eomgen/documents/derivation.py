@@ -22,7 +22,7 @@ from eomgen.documents.statements import Formula, Law, Prose, Step, notation_step
 from eomgen.documents.text import prose_text, side_text
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by, inertia_by_energies
 from eomgen.mechanics.free_bodies import reactions_of
-from eomgen.mechanics.kinematics import BodyEnergy, Inertia
+from eomgen.mechanics.kinematics import BodyEnergy, SystemInertia
 from eomgen.proof import Printed
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Node, Scalar
@@ -110,7 +110,7 @@ def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step,
     if system.free is None:
         return _by_energies(equations, reader)
     if _is_integrable(equations):
-        momenta = energy_steps.momenta_of(system, reader, _whole(system, reader, Inertia(system.motion).bodies))
+        momenta = energy_steps.momenta_of(system, reader, _whole(system, reader, SystemInertia(system.motion).bodies))
         if sum(text_size(x) for x in (*momenta.momenta, *momenta.rates, *momenta.held)) <= SHORT:
             return _by_energies(equations, reader)
     return _by_maggi(equations, system.free, reader)
@@ -118,13 +118,13 @@ def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step,
 
 def _is_integrable(equations: EquationsOfMotion) -> bool:
     """True if Lagrange's equations hold in the independent speeds alone, as they do with holonomic constraints."""
-    _, c = inertia_by_energies(equations.system.motion, Inertia(equations.system.motion).kinetic_energy)
+    _, c = inertia_by_energies(equations.system.motion, SystemInertia(equations.system.motion).kinetic_energy)
     return equal_at_random_states(zip(c, equations.c, strict=True)).equal
 
 
 def _by_energies(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
     system = equations.system
-    energies = Inertia(system.motion).bodies
+    energies = SystemInertia(system.motion).bodies
     T = _whole(system, reader, energies)
     momenta = energy_steps.momenta_of(system, reader, T)
     forces = reader.short_with_symbols(system.loads.generalized_forces)
@@ -147,7 +147,7 @@ def _by_maggi(equations: EquationsOfMotion, free: System, reader: Reader) -> tup
     """Lagrange's equations as if all coordinates were free, put together along the motions that the constraints
     allow."""
     system = equations.system
-    energies = Inertia(free.motion).bodies
+    energies = SystemInertia(free.motion).bodies
     T = _whole(free, reader, energies)
     momenta = energy_steps.momenta_of(free, reader, T)
     forces = reader.short_with_symbols(free.loads.generalized_forces)
@@ -169,9 +169,9 @@ def _by_maggi(equations: EquationsOfMotion, free: System, reader: Reader) -> tup
 
 def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Scalar:
     """T of the whole, readable where it is short enough."""
-    total = Inertia(system.motion).given_energy
+    total = SystemInertia(system.motion).given_energy
     for link, energy in zip(system.motion.links, energies, strict=True):
-        total = total + energy.translation + energy.rotation + Inertia(system.motion).rotor_energy(link)
+        total = total + energy.translation + energy.rotation + SystemInertia(system.motion).rotor_energy(link)
     return reader.short((total,))[0]
 
 

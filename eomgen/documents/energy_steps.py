@@ -63,8 +63,8 @@ from eomgen.mechanics.integrals import (
 from eomgen.mechanics.kinematics import (
     Applied,
     BodyEnergy,
-    Inertia,
     JointEffort,
+    SystemInertia,
 )
 from eomgen.mechanics.start import known_start
 from eomgen.model import Couple, Load, PointForce
@@ -126,16 +126,16 @@ def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
         of_body = energy.translation + energy.rotation
         if not is_zero(of_body):
             formulas.append((Name("T", link.name), of_body))
-        rotor = Inertia(system.motion).rotor_energy(link)
+        rotor = SystemInertia(system.motion).rotor_energy(link)
         if not is_zero(rotor):
             formulas.append((Name("T", f"{link.name}, rotor"), rotor))
-    given = Inertia(system.motion).given_energy
+    given = SystemInertia(system.motion).given_energy
     return formulas if is_zero(given) else [*formulas, (Name("T", "given"), given)]
 
 
 def energies_by_parts(system: System, reader: Reader, T: Scalar) -> tuple[Scalar, Scalar]:
     """(T, V), each as the sum over bodies or forces where that is shorter."""
-    bodies = [x for _, x in _of_bodies(system, Inertia(system.motion).bodies)]
+    bodies = [x for _, x in _of_bodies(system, SystemInertia(system.motion).bodies)]
     V, loads = system.loads.potential_energy, system.loads
     held = [*(force.potential for force in loads.applied), *(effort.potential for effort in loads.efforts)]
     potentials = [reader.as_square(x) for x in held if x is not None and not is_zero(x)]

@@ -22,7 +22,7 @@ from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameter
 from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import frictions, has_friction
-from eomgen.mechanics.kinematics import Inertia
+from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate
@@ -139,7 +139,7 @@ def regressor_of(system: System) -> Regressor:
         )
     size = len(system.symbols.u)
     columns = [*_bodies(system), *_joints(system)]
-    rest = tuple(x - y for x, y in zip(_rest(system), Inertia(system.motion).given_inertia, strict=True))
+    rest = tuple(x - y for x, y in zip(_rest(system), SystemInertia(system.motion).given_inertia, strict=True))
     columns += [(name, system.symbols.parameters[name], row) for name, row in _linear(system, rest).items()]
     known = substituted(rest, {x: 0 for name, x, _ in columns if name in system.symbols.parameters and type(x) is Node})
     names, values, by_column = zip(*columns, strict=True) if columns else ((), (), ())

@@ -19,7 +19,7 @@ from eomgen.mechanics.dynamics import (
     System,
     free_rates,
 )
-from eomgen.mechanics.kinematics import Applied, Inertia
+from eomgen.mechanics.kinematics import Applied, SystemInertia
 from eomgen.model import Catalog, Couple, Dimension, Load, PointForce, UniformField, inferred
 from eomgen.symbolic.expression import (
     Node,
@@ -184,13 +184,13 @@ class Contributions:
 
     def _kinetic(self) -> list[Contribution]:
         motion, found = self.operator.base.motion, []
-        for link, energy in zip(motion.links, Inertia(motion).bodies, strict=True):
-            rotor = Inertia(motion).rotor_energy(link)
+        for link, energy in zip(motion.links, SystemInertia(motion).bodies, strict=True):
+            rotor = SystemInertia(motion).rotor_energy(link)
             for kind, T in (("translation", energy.translation), ("rotation", energy.rotation), ("rotor", rotor)):
                 if not is_zero(T):
                     name = f"the {kind} of {link.name}"
                     found.append(Contribution(name, link.name, "", T, kind=kind))
-        given = Inertia(motion).given_energy
+        given = SystemInertia(motion).given_energy
         return found if is_zero(given) else [*found, Contribution("the given kinetic energy", T=given, kind="given")]
 
     def _forces(self) -> list[Contribution]:

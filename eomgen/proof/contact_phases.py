@@ -27,7 +27,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, on_unit_norms, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies import frictions, reactions_of
-from eomgen.mechanics.kinematics import ContactMode, Inertia
+from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import start_of_motion
 from eomgen.model import Contact, Resistance, contacts_of, exact_parameters
 from eomgen.proof.check import Check, Tally
@@ -299,11 +299,11 @@ class _Bodies:
             v = self.system.motion.velocity((link.name, mass.com))
             motions += [*v, *link.twist.w]
             momenta += [mass.m * x for x in v] + list(apply(mass.I, link.twist.w))
-        for link, k, armature in Inertia(self.system.motion).rotors:
+        for link, k, armature in SystemInertia(self.system.motion).rotors:
             motions.append(link.s_rate[k])
             momenta.append(armature * link.s_rate[k])
         motions += self.system.scope.rates
-        momenta += Inertia(self.system.motion).given_momenta
+        momenta += SystemInertia(self.system.motion).given_momenta
         return (*motions, *momenta)
 
     def _with(self, state: np.ndarray, speeds: Sequence[np.ndarray]) -> np.ndarray:

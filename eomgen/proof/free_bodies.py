@@ -36,7 +36,7 @@ from eomgen.mechanics.free_bodies import (
     named_reactions,
     with_drive_let_go,
 )
-from eomgen.mechanics.kinematics import BodyLink, Inertia
+from eomgen.mechanics.kinematics import BodyLink, SystemInertia
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
 from eomgen.symbolic.expression import (
     ZERO,
@@ -330,7 +330,7 @@ class _Formulas:
         """Bias of rotors along every speed, less the generalized forces without a place."""
         loads = self.system.loads
         acting = [x + y for x, y in zip(loads.joint_forces, loads.placeless_forces, strict=True)]
-        rotors = Inertia(self.system.motion).added_bias
+        rotors = SystemInertia(self.system.motion).added_bias
         return tuple(y - x for x, y in zip(acting, rotors, strict=True))
 
     @cached_property
@@ -479,7 +479,7 @@ class _Bodies(InNumbers):
 
     def of_rotors(self) -> Iterator[tuple[int, Any]]:
         """Rotors behind gears: armature D_k D_l a_l."""
-        found, a = Inertia(self.system.motion).added_mass, self.system.scope.symbols.a
+        found, a = SystemInertia(self.system.motion).added_mass, self.system.scope.symbols.a
         values = self.at([value for _, _, value in found])
         return ((i, value * self.state[a[j]]) for (i, j, _), value in zip(found, values, strict=True))
 

@@ -13,7 +13,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import ALL as FORMULATIONS
 from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates, inverse_residual
 from eomgen.mechanics.free_bodies import with_friction
-from eomgen.mechanics.kinematics import Inertia
+from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
 from eomgen.symbolic.exact import Equality, equal_at_real_states, equal_in_field
@@ -183,7 +183,7 @@ def _carried_power(system: System) -> Scalar:
     along = {q: rate - bias for q, rate, bias in zip(scope.symbols.q, scope.rates, scope.nu, strict=True)}
     apart = zip(tangent(own, _own_motion(scope)), tangent(carried, along), strict=True)
     differences = [a - b for a, b in apart]
-    momenta = gradient(Inertia(system.free.motion).kinetic_energy, free)
+    momenta = gradient(SystemInertia(system.free.motion).kinetic_energy, free)
     power = sum((p * x for p, x in zip(momenta, differences, strict=True)), start=0)
     return substituted((power,), dict(zip(free, rates, strict=True)))[0]
 

@@ -23,7 +23,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import FIXED, BodyMotion, Kind, KinematicState, Quantities, composition_of
-from eomgen.mechanics.kinematics import Inertia, JointEffort
+from eomgen.mechanics.kinematics import JointEffort, SystemInertia
 from eomgen.model import FUNCTIONS, GeneralizedForce, PointForce
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, checked, differing, unchecked
@@ -526,7 +526,7 @@ class NearbyStates:
         Some of these masses are negative; energy, momentum and moments of inertia are linear in them.
         """
         motion = self.state.equations.system.motion
-        if not still and not is_zero(Inertia(motion).rotor_energy(motion.link(body))):
+        if not still and not is_zero(SystemInertia(motion).rotor_energy(motion.link(body))):
             raise NoValue("rotors in a joint are no particles of the body")
         mass = self.scene.mass(body)
         P = self._second_moments(body, mass.I)

@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import (
     System,
 )
-from eomgen.mechanics.kinematics.inertia import Inertia
+from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.mechanics.kinematics.loads import Loads
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces import ALL
@@ -244,7 +244,7 @@ def test_a_force_acts(kind, space, fields):
     system = system_with(kind, space, fields)
     acts = system.loads.force_row(applied(system))
     if kind == "kinetic":
-        acts = tuple(value for _, _, value in Inertia(system.motion).added_mass)
+        acts = tuple(value for _, _, value in SystemInertia(system.motion).added_mass)
     assert np.abs(at(acts, state_of(system))).max() > 1e-6
 
 

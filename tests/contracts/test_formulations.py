@@ -21,7 +21,7 @@ from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.dynamics.formulations import ALL, Formulation
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
 from eomgen.mechanics.dynamics.tree import branches_of
-from eomgen.mechanics.kinematics.inertia import Inertia
+from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.model.likely_mistakes import unbuilt
 from eomgen.symbolic.expression.derivatives import depends_on_any
 from eomgen.symbolic.expression.graph import same_number
@@ -125,7 +125,7 @@ def test_rotors_behind_gears_move_with_the_rate_of_their_joint(formulation):
     system = written(ROTORS)
     first, other = ALL[0].assemble(system), formulation.assemble(system)
     assert equal([*(x for row in other.M for x in row), *other.c], [*(x for row in first.M for x in row), *first.c])
-    rotors = Inertia(system.motion).rotor_energy(system.motion.link("arm"))
+    rotors = SystemInertia(system.motion).rotor_energy(system.motion.link("arm"))
     a_rate = system.symbols.u[0]
     assert equal((rotors,), (system.symbols.parameters["I"] * 9 * a_rate * a_rate / 2,))
 

@@ -21,7 +21,7 @@ import numpy as np
 from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.equilibrium import BodyNumbers
-from eomgen.mechanics.kinematics.inertia import Inertia
+from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import State
@@ -65,9 +65,9 @@ def _accelerations(system: System, state: State) -> np.ndarray:
     speeds, multipliers = slice(12 * n, 12 * n + nu), slice(12 * n + nu, size)
     _put_bodies(numbers, A, right, speeds)
     direct = [a + b for a, b in zip(system.loads.joint_forces, system.loads.placeless_forces, strict=True)]
-    rotors = Inertia(system.motion).added_bias
+    rotors = SystemInertia(system.motion).added_bias
     right[speeds] = numbers.array(tuple(a - b for a, b in zip(direct, rotors, strict=True))) if nu else 0
-    for i, j, value in Inertia(system.motion).added_mass:
+    for i, j, value in SystemInertia(system.motion).added_mass:
         A[12 * n + i, 12 * n + j] += numbers.array((value,))[0]
     _close(numbers, A, right, multipliers)
     J = without_rounding(A[multipliers, speeds])

@@ -12,7 +12,8 @@ from scipy.integrate import dblquad
 import eomgen
 from eomgen.documents.json_form import as_dict
 from eomgen.mechanics.dynamics.system import System, system_of
-from eomgen.mechanics.mass_properties import angular_momentum, in_ground, numbers_in, principal_of, tensor_about
+from eomgen.mechanics.kinematics.inertia import SystemInertia
+from eomgen.mechanics.kinematics.principal_axes import Principal
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow
@@ -262,13 +263,13 @@ def test_parallel_axes_rotation_and_addition_hold_for_any_bodies(seed):
     P, names = (motion.position(motion.place("P")), list(motion.index))
     total = np.zeros((3, 3))
     for name in names:
-        mass, R = in_ground(motion, name), matrix(motion.link(name).pose.R)
+        mass, R = SystemInertia(motion).in_ground(name), matrix(motion.link(name).pose.R)
         d, m, I = vector(mass.com) - vector(P), float(evaluate((mass.m,), {}, FLOAT)[0]), matrix(mass.I)
         assert np.linalg.norm(R.T @ R - np.eye(3)) < 1e-12
         about_P = I + m * (d @ d * np.eye(3) - np.outer(d, d))
-        assert matrix(tensor_about(motion, P, [name])) == pytest.approx(about_P, abs=1e-9)
+        assert matrix(SystemInertia(motion).about(P, [name])) == pytest.approx(about_P, abs=1e-9)
         total += about_P
-    assert matrix(tensor_about(motion, P, names)) == pytest.approx(total, abs=1e-9)
+    assert matrix(SystemInertia(motion).about(P, names)) == pytest.approx(total, abs=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(3))
@@ -276,9 +277,9 @@ def test_principal_axes_are_the_rows_of_a_rotation_that_makes_the_tensor_diagona
     """R I R^T = diag(J_1, J_2, J_3), ascending; trace and determinant stay; no closed axes, none given."""
     system = assembled(seed)
     motion = system.motion
-    I = tensor_about(motion, motion.position(motion.place("P")), list(motion.index))
-    found = principal_of(I, system.scope)
-    moments = numbers_in(found.moments, system.scope)
+    I = SystemInertia(motion).about(motion.position(motion.place("P")), list(motion.index))
+    found = Principal.of(I, system.scope)
+    moments = system.scope.numbers(found.moments)
     assert moments is not None and found.sorted
     assert moments == pytest.approx(list(np.linalg.eigvalsh(matrix(I))), rel=1e-9)
     assert sum(moments) == pytest.approx(np.trace(matrix(I)))
@@ -315,8 +316,8 @@ def test_closed_axes_are_orthonormal_right_handed_and_principal(tables, point):
     """R R^T = 1, det R = 1, R I R^T = diag, at a state of the parameters."""
     system = system_of(eomgen.Model(**tables))
     motion, symbols = system.motion, system.scope.symbols.parameters
-    I = tensor_about(motion, motion.position(motion.place(point)), list(motion.index))
-    found = principal_of(I, system.scope)
+    I = SystemInertia(motion).about(motion.position(motion.place(point)), list(motion.index))
+    found = Principal.of(I, system.scope)
     assert found.axes is not None
     state = dict(zip(symbols.values(), (1.7, 2.3, 1.1), strict=False))
     flat = evaluate([x for M in (I, found.axes) for row in M for x in row] + list(found.moments), state, FLOAT)
@@ -436,7 +437,10 @@ def test_the_angular_momentum_of_particles_is_that_of_their_tensor():
     )
     motion, symbols = system.motion, system.scope.symbols
     O = motion.position(motion.place("O"))
-    L, I = angular_momentum(motion, O, list(motion.index)), tensor_about(motion, O, list(motion.index))
+    L, I = (
+        SystemInertia(motion).angular_momentum(O, list(motion.index)),
+        SystemInertia(motion).about(O, list(motion.index)),
+    )
     state = {**dict(zip(symbols.parameters.values(), (2.0, 3.0), strict=True)), symbols.q[0]: 0.4, symbols.u[0]: 1.5}
     found, tensor = evaluate(L, state, FLOAT), evaluate([x for row in I for x in row], state, FLOAT)
     assert found == pytest.approx([1.5 * tensor[2], 1.5 * tensor[5], 1.5 * tensor[8]])

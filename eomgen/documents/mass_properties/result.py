@@ -42,7 +42,7 @@ from eomgen.documents.statements import Law, Prose, Quantity, Statement, Step, p
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.mass_properties import flat_bodies, in_ground, numbers_in, shapeless
+from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.mechanics.start import start_state
 from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest, numeric_parameters
 from eomgen.proof import Certificate, Stated, mass_checks, other_parameters, tried
@@ -224,8 +224,8 @@ class _Report:
     def _quantities(self, entries: Mapping[str, InertiaEntry]) -> dict[str, Quantity]:
         """Each with its number: all in one go, or each by itself where some have none."""
         scalars = [entry.value for entry in entries.values()]
-        whole = numbers_in(scalars, self.system.scope, self.start)
-        single = (numbers_in((x,), self.system.scope, self.start) for x in scalars)
+        whole = self.system.scope.numbers(scalars, self.start)
+        single = (self.system.scope.numbers((x,), self.start) for x in scalars)
         numbers: Sequence[float | None] = whole or [None if each is None else each[0] for each in single]
         return {
             name: Quantity(readable_text(entry.value), None if x is None else x + 0.0, entry.unit)
@@ -237,7 +237,15 @@ class _Report:
 
     def _centroidal(self, sum: InertiaSum, of: str, bodies: tuple[str, ...]) -> Section:
         motion = self.system.motion
-        return Section(sum, sum.com, of, bool(flat_bodies(motion, bodies)), True, shapeless(motion, bodies), bodies)
+        return Section(
+            sum,
+            sum.com,
+            of,
+            bool(SystemInertia(motion).flat(bodies)),
+            True,
+            SystemInertia(motion).shapeless(bodies),
+            bodies,
+        )
 
     def _step(self, title: str, key: str, section: Section, axis: tuple[Vector, Vector] | None = None) -> Any:
         """A section as a step, its results, and its principal axes in numbers."""
@@ -270,13 +278,13 @@ class _Report:
     def _about(self, bodies: tuple[str, ...]) -> Any:
         """The bodies together about a point, and about an axis through it."""
         point, name, axis = self._point_and_axis()
-        if silent := shapeless(self.system.motion, bodies):
+        if silent := SystemInertia(self.system.motion).shapeless(bodies):
             raise ModelError(
                 f"body '{silent[0]}' has a mass and no inertia",
                 f"bodies.{silent[0]}",
                 "give 'inertia' (0 for a point), or a shape; or leave it out: --body",
             )
-        flat = bool(flat_bodies(self.system.motion, bodies))
+        flat = bool(SystemInertia(self.system.motion).flat(bodies))
         section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False, (), bodies)
         title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
         return self._step(title, "inertia_about", section, axis)
@@ -377,7 +385,7 @@ def inertia_scene(
         if body not in system.motion.index or body not in moments or min(moments[body]) < 0 or not any(moments[body]):
             continue
         mass = system.scope.mass_properties(body)
-        m, *com = numbers_in((mass.m, *mass.com), system.scope, known) or (0.0, 0.0, 0.0, 0.0)
+        m, *com = system.scope.numbers((mass.m, *mass.com), known) or (0.0, 0.0, 0.0, 0.0)
         if m <= 0:
             continue
         marks += _ellipsoid(moments[body], m, len(frames), body)
@@ -413,7 +421,7 @@ def values_at_start(system: System) -> dict[Node, float]:
 
 def _body(panel: Any, sketch: Sketch, body: str, rows: np.ndarray) -> None:
     """The mass centre as a cross, the principal axes in the plane as dashed lines."""
-    center = sketch.place(in_ground(sketch.system.motion, body).com)
+    center = sketch.place(SystemInertia(sketch.system.motion).in_ground(body).com)
     pose = sketch.system.motion.link(body).pose
     turn = np.array([sketch.numbers(row[:2]) for row in pose.R[:2]])
     for number, row in enumerate(rows, start=1):

@@ -12,8 +12,7 @@ import numpy as np
 
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics import Motion
-from eomgen.mechanics.mass_properties import Principal, numbers_in, principal_of, short_form
+from eomgen.mechanics.kinematics import Motion, Principal, short_form
 from eomgen.model import MassProperties, about, about_axis, matrix_times, polar, second_moments
 from eomgen.symbolic.expression import (
     ZERO,
@@ -233,7 +232,7 @@ def principal_statements(section: Section) -> tuple[list[Statement], list[Inerti
     """The principal moments, radii of gyration and axes; the rows of R as numbers too, where they have values."""
     if section.flat:
         return [], [], None
-    found = principal_of(section.tensor, section.sum.motion.scope)
+    found = Principal.of(section.tensor, section.sum.motion.scope)
     results = [section.named("I", str(k), x, "kg*m^2") for k, x in enumerate(found.moments, start=1)]
     if not is_zero(section.sum.m):
         radii = (_radius(section.sum, x) for x in found.moments)
@@ -342,7 +341,7 @@ class InertiaSum:
     def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
         """Values of scalars at the start, new ones evaluated together; None where one has no value."""
         fresh = [x for x in dict.fromkeys(scalars) if x not in self._value]
-        found = numbers_in(fresh, self.motion.scope, self.start) if fresh else []
+        found = self.motion.scope.numbers(fresh, self.start) if fresh else []
         if found is None:
             return None
         self._value.update(zip(fresh, found, strict=True))

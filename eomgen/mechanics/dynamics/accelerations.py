@@ -11,7 +11,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, branches_of, inertia_wrench, rate_matrix
-from eomgen.mechanics.kinematics import GROUND, Inertia, Loads, Motion
+from eomgen.mechanics.kinematics import GROUND, Loads, Motion, SystemInertia
 from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
@@ -155,7 +155,7 @@ def is_articulated(motion: Motion, branches: tuple[Branch, ...]) -> bool:
     """Every speed belongs to one joint alone, and no rotor couples two of them."""
     size = len(motion.scope.symbols.u)
     owned = [k for branch in branches for k in branch.columns]
-    coupled = any(i != j for i, j, _ in Inertia(motion).added_mass)
+    coupled = any(i != j for i, j, _ in SystemInertia(motion).added_mass)
     return sorted(owned) == list(range(size)) and size > 0 and not coupled
 
 
@@ -172,10 +172,10 @@ def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, .
     """a of the tree under its loads, constraint rows left out."""
     motion = loads.motion
     size = len(motion.scope.symbols.u)
-    direct = zip(loads.joint_forces, loads.placeless_forces, Inertia(motion).added_bias, strict=True)
+    direct = zip(loads.joint_forces, loads.placeless_forces, SystemInertia(motion).added_bias, strict=True)
     effort = [a + b - rotor for a, b, rotor in direct]
     rotors: list[Scalar] = [0] * size
-    for k, _, value in Inertia(motion).added_mass:
+    for k, _, value in SystemInertia(motion).added_mass:
         rotors[k] = rotors[k] + value
     base = (*ZERO, *times(-1, loads.fields))
     biases, p = _velocity_terms(branches)

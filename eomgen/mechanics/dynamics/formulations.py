@@ -14,7 +14,7 @@ from eomgen.mechanics.dynamics.system import (
     free_system_of,
 )
 from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, bias_forces, branches_of, composite_mass_matrix
-from eomgen.mechanics.kinematics import Inertia, Loads, Motion
+from eomgen.mechanics.kinematics import Loads, Motion, SystemInertia
 from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
 from eomgen.symbolic.expression import (
     ZERO,
@@ -55,7 +55,7 @@ def assembled_by_energies(system: System) -> EquationsOfMotion:
     """The equations of motion from the energies; constraint rows by multipliers."""
     if system.free is not None:
         return _reduced(system, system.free)
-    T = Inertia(system.motion).kinetic_energy
+    T = SystemInertia(system.motion).kinetic_energy
     M, c = inertia_by_energies(system.motion, T)
     return assembled(system, M=M, c=c, Q=system.loads.generalized_forces, T=T)
 
@@ -100,7 +100,7 @@ def energies_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
 def _along(system: System, a: ScalarRow) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     """The same for given accelerations of a system whose speeds are rates."""
     scope, u = system.scope, system.scope.symbols.u
-    T = Inertia(system.motion).kinetic_energy
+    T = SystemInertia(system.motion).kinetic_energy
     momenta = gradient(T, u)
     held = system.motion.scope.per_speed(gradient(T, scope.symbols.q))
     c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
@@ -132,7 +132,7 @@ def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...
 def assembled_by_wrenches(system: System) -> EquationsOfMotion:
     """The equations of motion from wrenches and twists; constraint rows by multipliers."""
     M, c = inertia_by_twists(system.motion)
-    return assembled(system, M=M, c=c, Q=force_side(system.loads), T=Inertia(system.motion).kinetic_energy)
+    return assembled(system, M=M, c=c, Q=force_side(system.loads), T=SystemInertia(system.motion).kinetic_energy)
 
 
 def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
@@ -148,9 +148,9 @@ def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
         inertia.append(body.momentum(_twist(pushed[6 * i : 6 * i + 6])))
         bias.append(_bias(body, link.twist, _twist(motion.alpha[i])))
     Ma = list(_projected(twists, inertia, u))
-    for i, j, value in Inertia(motion).added_mass:
+    for i, j, value in SystemInertia(motion).added_mass:
         Ma[i] = Ma[i] + value * a[j]
-    rotors = Inertia(motion).added_bias
+    rotors = SystemInertia(motion).added_bias
     c = tuple(x + y for x, y in zip(_projected(twists, bias, u), rotors, strict=True))
     applied = applied_to_bodies(system.loads)
     none = Wrench(ZERO, ZERO)
@@ -198,9 +198,9 @@ def _twist(entries: Sequence[Scalar]) -> Twist:
 
 
 def _with_armatures(motion: Motion, M: list[list[Scalar]], c: list[Scalar]) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
-    for i, j, value in Inertia(motion).added_mass:
+    for i, j, value in SystemInertia(motion).added_mass:
         M[i][j] = M[i][j] + value
-    added = Inertia(motion).added_bias
+    added = SystemInertia(motion).added_bias
     return tuple(tuple(row) for row in M), tuple(a + b for a, b in zip(c, added, strict=True))
 
 
@@ -241,7 +241,7 @@ def assembled_by_recursion(system: System) -> EquationsOfMotion:
         M=mass(motion, branches),
         c=inertia_terms(motion, branches),
         Q=system.loads.generalized_forces,
-        T=Inertia(motion).kinetic_energy,
+        T=SystemInertia(motion).kinetic_energy,
         forcing=forcing(system.loads, branches),
     )
 
@@ -250,7 +250,7 @@ def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> ScalarRow:
     """c: what inertia takes at a = 0, armatures included."""
     size = len(motion.scope.symbols.u)
     bias = bias_forces(branches, size, base_acceleration=ZERO, applied={})
-    return tuple(a + b for a, b in zip(bias, Inertia(motion).added_bias, strict=True))
+    return tuple(a + b for a, b in zip(bias, SystemInertia(motion).added_bias, strict=True))
 
 
 def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
@@ -264,7 +264,7 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
         applied=applied_wrenches(loads, branches),
     )
     direct = [a + b for a, b in zip(loads.joint_forces, loads.placeless_forces, strict=True)]
-    armature = Inertia(motion).added_bias
+    armature = SystemInertia(motion).added_bias
     return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))
 
 
@@ -275,7 +275,7 @@ def mass(motion: Motion, branches: tuple[Branch, ...] = ()) -> tuple[ScalarRow, 
         branches: the tree of bodies, where it is known.
     """
     M = composite_mass_matrix(branches or branches_of(motion), len(motion.scope.symbols.u))
-    for i, j, value in Inertia(motion).added_mass:
+    for i, j, value in SystemInertia(motion).added_mass:
         M[i][j] = M[i][j] + value
     return tuple(tuple(row) for row in M)
 
@@ -291,8 +291,8 @@ def inverse_residual(system: System) -> ScalarRow:
         applied=applied_wrenches(loads, branches),
         a=a,
     )
-    rotors = Inertia(motion).added_bias
-    for i, j, value in Inertia(motion).added_mass:
+    rotors = SystemInertia(motion).added_bias
+    for i, j, value in SystemInertia(motion).added_mass:
         rotors[i] = rotors[i] + value * a[j]
     direct = zip(forces, rotors, loads.joint_forces, loads.placeless_forces, strict=True)
     return tuple(f + rotor - x - y for f, rotor, x, y in direct)

@@ -19,7 +19,7 @@ from eomgen.mechanics.free_bodies.wrenches import (
     placements_of,
     seen_by_carriers,
 )
-from eomgen.mechanics.kinematics import GROUND, BodyLink, Inertia
+from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemInertia
 from eomgen.model import PointForce, driven_coordinates, driving_constraints, in_loads
 from eomgen.symbolic.exact import readable_all
 from eomgen.symbolic.expression import (
@@ -219,7 +219,7 @@ def _idle_rows(system: System) -> set[str]:
 
 def balances_of_nodes(free: System) -> set[str]:
     """The labels of rows that say 0 = Q_k of coordinates that move no mass: nothing else acts along these, lam = 0."""
-    T, Q, constraints = Inertia(free.motion).kinetic_energy, free.loads.generalized_forces, free.constraints
+    T, Q, constraints = SystemInertia(free.motion).kinetic_energy, free.loads.generalized_forces, free.constraints
     idle = [k for k, u in enumerate(free.symbols.u) if is_zero(derivative(T, u)) and not is_zero(Q[k])]
     rows: dict[int, str] = {}
     for row, line, sigma in zip(constraints.closing, constraints.J, constraints.sigma, strict=True) if idle else ():

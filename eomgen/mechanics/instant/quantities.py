@@ -14,12 +14,12 @@ from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, com
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
     Applied,
-    Inertia,
     JointEffort,
+    Principal,
+    SystemInertia,
     SystemScene,
     VelocityField,
 )
-from eomgen.mechanics.mass_properties import angular_momentum, flat_bodies, principal_moments, shapeless, tensor_about
 from eomgen.mechanics.statics import SectionForces, section_forces
 from eomgen.model import FUNCTIONS, GROUND, Couple, GeneralizedForce, Load, MassProperties, PointForce, UniformField
 from eomgen.symbolic.exact import simplest
@@ -230,23 +230,23 @@ class Quantities:
 
     def without_inertia(self, bodies: Sequence[str]) -> tuple[str, ...]:
         """Names of those bodies that have a mass but no stated inertia."""
-        return shapeless(self.system.motion, bodies)
+        return SystemInertia(self.system.motion).shapeless(bodies)
 
     def known_about_z(self, bodies: Sequence[str]) -> tuple[str, ...]:
         """Names of those bodies of which only the moment of inertia about z is known."""
-        return flat_bodies(self.system.motion, bodies)
+        return SystemInertia(self.system.motion).flat(bodies)
 
     def tensor(self, point: Vector, bodies: Sequence[str]) -> Matrix:
         """I_P of the bodies together [kg m^2]."""
-        return tensor_about(self.system.motion, point, bodies)
+        return SystemInertia(self.system.motion).about(point, bodies)
 
     def principal_moments(self, tensor: Matrix) -> tuple[Scalar, ...]:
         """Principal moments of inertia, ascending [kg m^2]."""
-        return principal_moments(tensor, self.system.scope)
+        return Principal.ascending(tensor, self.system.scope)
 
     def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector:
         """L_P of the bodies together [kg m^2/s]."""
-        return angular_momentum(self.system.motion, point, bodies)
+        return SystemInertia(self.system.motion).angular_momentum(point, bodies)
 
     def kinetic_energy(self, body: str | None = None) -> Scalar:
         """T of the whole, or of one body [J]."""
@@ -284,7 +284,7 @@ class Quantities:
     def momentum(self, coordinate: str) -> Scalar:
         """p_k = dT/dq_k', or dT/du_k of a declared speed."""
         system, k = self._speed(coordinate, "momentum")
-        return self._carried(system, derivative(Inertia(system.motion).kinetic_energy, system.symbols.u[k]))
+        return self._carried(system, derivative(SystemInertia(system.motion).kinetic_energy, system.symbols.u[k]))
 
     # -- the balance of the bodies -------------------------------------------------------------------
 
@@ -376,9 +376,9 @@ def energy_of_motion(system: System, body: str | None = None) -> Scalar:
     """T = m v.v / 2 + w.I w / 2 of the whole, or of one body with the rotors of its joint [J]."""
     motion = system.motion
     if body is None:
-        return Inertia(motion).kinetic_energy
-    energy = Inertia(motion).bodies[motion.index[body]]
-    return energy.translation + energy.rotation + Inertia(motion).rotor_energy(motion.link(body))
+        return SystemInertia(motion).kinetic_energy
+    energy = SystemInertia(motion).bodies[motion.index[body]]
+    return energy.translation + energy.rotation + SystemInertia(motion).rotor_energy(motion.link(body))
 
 
 def energy_of_force(system: System, name: str | None = None) -> Scalar:

@@ -19,8 +19,7 @@ from eomgen.mechanics.dynamics import (
     division_of,
     where_conservative,
 )
-from eomgen.mechanics.kinematics import GROUND, integral_from_zero
-from eomgen.mechanics.mass_properties import angular_momentum, shapeless
+from eomgen.mechanics.kinematics import GROUND, SystemInertia, integral_from_zero
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce
 from eomgen.symbolic.exact import equal_at_random_states, exact_state, readable, real_values
 from eomgen.symbolic.expression import (
@@ -353,7 +352,7 @@ def momenta_of_the_whole(equations: EquationsOfMotion, known: Sequence[Scalar]) 
     bodies = [link.name for link in system.motion.links if _has_inertia(system, link.name)]
     many = len(equations.M) > MOST_SPEEDS
     in_space = system.scope.model.space == "space"
-    if not bodies or many or (in_space and shapeless(system.motion, bodies)):
+    if not bodies or many or (in_space and SystemInertia(system.motion).shapeless(bodies)):
         return ()
     heavy = [body for body in bodies if not is_zero(system.scope.mass_properties(body).m)]
     P = _momentum(system, heavy)
@@ -371,7 +370,7 @@ def _constant_moments(equations: EquationsOfMotion, bodies: Sequence[str], about
     system = equations.system
     in_space = system.scope.model.space == "space"
     axes = "xyz" if in_space else "z"
-    L = angular_momentum(system.motion, point, bodies)[-len(axes) :]
+    L = SystemInertia(system.motion).angular_momentum(point, bodies)[-len(axes) :]
     constant = stay_constant(equations, L)
     found = [Constant("L", axis, about, x) for axis, x, yes in zip(axes, L, constant, strict=True) if yes]
     if in_space and all(constant) and len(bodies) == 1:

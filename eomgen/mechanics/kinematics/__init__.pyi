@@ -4,7 +4,7 @@
 from eomgen.mechanics.kinematics.inertia import BodyEnergy as BodyEnergy
 
 # Kinetic energies of a motion, and the inertia in it that belongs to no body
-from eomgen.mechanics.kinematics.inertia import Inertia as Inertia
+from eomgen.mechanics.kinematics.inertia import SystemInertia as SystemInertia
 
 # One named force of the model
 from eomgen.mechanics.kinematics.loads import Applied as Applied
@@ -39,6 +39,12 @@ from eomgen.mechanics.kinematics.motion import spin_between as spin_between
 
 # A state in numbers, by which exact values are recognised, never made
 from eomgen.mechanics.kinematics.places import Located as Located
+
+# The principal moments and axes of a tensor
+from eomgen.mechanics.kinematics.principal_axes import Principal as Principal
+
+# x in readable form, the magnitudes of constants by their sign; a long sum as it is
+from eomgen.mechanics.kinematics.principal_axes import short_form as short_form
 
 # State of one contact
 from eomgen.mechanics.kinematics.scene import ContactMode as ContactMode

@@ -1,30 +1,39 @@
-"""Motion -> Inertia: kinetic energies of bodies, of rotors and as given; the inertia that belongs to no body."""
+"""Motion -> SystemInertia: kinetic energies of bodies, of rotors and as given; the inertia that belongs to no body."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model import MassProperties
+from eomgen.model import MassProperties, about
 from eomgen.symbolic.expression import (
+    ZERO,
     Fraction,
+    Matrix,
     Scalar,
     ScalarRow,
     Vector,
+    added,
     apply,
+    cross,
     dot,
     gradient,
     inner,
     is_zero,
     jacobian,
+    minus,
+    plus,
+    product,
     substituted,
     tangent,
+    times,
+    transposed,
 )
 
 # -------- inertia ---------------------------------------------------------------------------------------------
-# Motion -> Inertia: energies of motion, and what belongs to no body: rotors behind gears, given kinetic energies.
+# Motion -> SystemInertia: energies of motion, and what belongs to no body: rotors behind gears, given kinetic energies.
 #
 # The kinetic energy here is built on derivatives of the poses, not on the twists of the recursion: v_C = d/dt p_C and
 # w~ = R^T R'. So what Lagrange's method derives shares no velocity with what the recursive forms derive, and their
@@ -54,7 +63,7 @@ class BodyEnergy:
 
 
 @dataclass(frozen=True)
-class Inertia:
+class SystemInertia:
     """Kinetic energies of a motion, and the inertia in it that belongs to no body.
 
     Of a rotor T = armature s'^2 / 2. Of a given T(q, q', t), with p = dT/dq' and q' = N u + nu,
@@ -160,6 +169,49 @@ class Inertia:
         for i, j, value in _given_mass(scope):
             taken[i] = taken[i] + value * scope.symbols.a[j]
         return tuple(taken)
+
+    # -- about a point -----------------------------------------------------------------------------
+    #
+    # With r from the point P, over the mass of the bodies that are meant:
+    #
+    #     tensor    I_P = integral (r.r 1 - r r^T) dm = sum (R I_C R^T + m (d.d 1 - d d^T)),   d = C - P
+    #     angular momentum   L_P = sum (R I_C R^T w + m d x v_C)
+
+    def in_ground(self, body: str) -> MassProperties:
+        """The mass properties of a body where it is: mass centre from the ground's origin, inertia in ground axes."""
+        own, pose = self.motion.scope.mass_properties(body), self.motion.link(body).pose
+        return MassProperties(own.m, pose.point(own.com), product(product(pose.R, own.I), transposed(pose.R)))
+
+    def about(self, point: Vector, bodies: Sequence[str]) -> Matrix:
+        """I_P of the bodies together, ground axes."""
+        total: Matrix = (ZERO, ZERO, ZERO)
+        for body in bodies:
+            total = added(total, about(self.in_ground(body), point))
+        return total
+
+    def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector:
+        """L_P of the bodies together, of the velocities against the ground, ground axes [kg m^2/s]."""
+        total: Vector = ZERO
+        for body in bodies:
+            link, mass = self.motion.link(body), self.in_ground(body)
+            velocity = self.motion.velocity((body, self.motion.scope.mass_properties(body).com))
+            spin = apply(mass.I, apply(link.pose.R, link.twist.w))
+            total = plus(total, plus(spin, times(mass.m, cross(minus(mass.com, point), velocity))))
+        return total
+
+    def flat(self, bodies: Sequence[str]) -> tuple[str, ...]:
+        """The bodies of a plane model of which only the moment about z is known: those given by `inertia`."""
+        scope = self.motion.scope
+        if scope.model.space != "plane":
+            return ()
+        given = [body for body in bodies if scope.model.bodies[body].inertia is not None]
+        return tuple(body for body in given if not is_zero(scope.mass_properties(body).I[2][2]))
+
+    def shapeless(self, bodies: Sequence[str]) -> tuple[str, ...]:
+        """Bodies that have a mass but no stated inertia."""
+        parts = self.motion.scope.model.bodies
+        silent = [b for b in bodies if parts[b].shape is None and parts[b].parts is None and parts[b].inertia is None]
+        return tuple(body for body in silent if not is_zero(self.motion.scope.mass_properties(body).m))
 
 
 def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:

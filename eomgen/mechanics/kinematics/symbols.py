@@ -61,7 +61,7 @@ from eomgen.symbolic.expression import (
     through_samples,
     vector_of,
 )
-from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, fifty_digits, of_50_digits
+from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, fifty_digits, numbers_of, of_50_digits
 from eomgen.symbolic.print import length_of, text_size, to_text
 
 # -------- scope -----------------------------------------------------------------------------------------------
@@ -278,6 +278,15 @@ class Scope:
             "the configuration has no value at these parameters",
             fix="give parameters at which lengths and roots are real",
         )
+
+    def numbers(self, scalars: Sequence[Scalar], state: Mapping[Node, float] | None = None) -> list[float] | None:
+        """Values of scalars; None where they depend on a symbol without a value.
+
+        Args:
+            state: values of symbols other than parameters; None: these have none.
+        """
+        known = {**(state or {}), **self.known_exactly}
+        return None if any(symbol not in known for symbol in symbols_of(tuple(scalars))) else numbers_of(scalars, known)
 
     def parameter_seeds(self, name: str) -> dict[Node, Scalar]:
         """Derivatives of the parameters by one of them: its own, and those of parameters that depend on it."""

@@ -399,7 +399,7 @@ class _Writing:
         if sum(map(text_size, conditions)) > LONGEST:
             return {}
         try:
-            found = located or self._located.places(conditions, self._unknowns)
+            found = (located or self._located).places(conditions, self._unknowns)
             left = substituted(tuple(conditions), found)
         except (DerivationError, NoValue, ZeroDivisionError):
             return {}

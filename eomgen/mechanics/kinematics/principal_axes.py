@@ -1,98 +1,37 @@
-"""Bodies -> inertia tensors and angular momenta about a point, principal moments and axes."""
+"""Inertia tensor -> principal moments and axes, exact wherever they have a closed form."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from functools import cached_property, cmp_to_key
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics import Motion, Scope
-from eomgen.model import MassProperties, about
+from eomgen.mechanics.kinematics.symbols import Scope
 from eomgen.symbolic.exact import common_factor, sign_of_terms, simplest
 from eomgen.symbolic.expression import (
     IDENTITY,
-    ZERO,
     Fraction,
     Matrix,
     Node,
     Scalar,
     Vector,
-    added,
-    apply,
     cos,
     cross,
     dot,
     function,
     is_zero,
     matrix_of,
-    minus,
     order,
     over,
-    plus,
-    product,
     sqrt,
     substituted,
     symbols_of,
     times,
-    transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric import Work, number_of, numbers_of
+from eomgen.symbolic.numeric import Work, number_of
 from eomgen.symbolic.print import text_size
 from eomgen.symbolic.solve import roots, vanishes
-
-# -------- inertia about ---------------------------------------------------------------------------------------
-# System -> the inertia tensor and the angular momentum of bodies about a point, in ground axes.
-#
-# With r from the point P, over the mass of the bodies that are meant:
-#
-#     tensor    I_P = integral (r.r 1 - r r^T) dm = sum (R I_C R^T + m (d.d 1 - d d^T)),   d = C - P   (parallel axes)
-#     angular momentum   L_P = sum (R I_C R^T w + m d x v_C)
-
-
-def in_ground(motion: Motion, body: str) -> MassProperties:
-    """The mass properties of a body where it is: mass centre from the ground's origin, inertia in ground axes."""
-    own, pose = motion.scope.mass_properties(body), motion.link(body).pose
-    return MassProperties(own.m, pose.point(own.com), product(product(pose.R, own.I), transposed(pose.R)))
-
-
-def tensor_about(motion: Motion, point: Vector, bodies: Sequence[str]) -> Matrix:
-    """I_P of the bodies together, ground axes."""
-    total: Matrix = (ZERO, ZERO, ZERO)
-    for body in bodies:
-        total = added(total, about(in_ground(motion, body), point))
-    return total
-
-
-def angular_momentum(motion: Motion, point: Vector, bodies: Sequence[str]) -> Vector:
-    """L_P of the bodies together, of the velocities against the ground, ground axes [kg m^2/s]."""
-    total: Vector = ZERO
-    for body in bodies:
-        link, mass = motion.link(body), in_ground(motion, body)
-        velocity = motion.velocity((body, motion.scope.mass_properties(body).com))
-        spin = apply(mass.I, apply(link.pose.R, link.twist.w))
-        total = plus(total, plus(spin, times(mass.m, cross(minus(mass.com, point), velocity))))
-    return total
-
-
-# -- what is not known ------------------------------------------------------------------------------
-
-
-def flat_bodies(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
-    """The bodies of a plane model of which only the moment about z is known: those given by `inertia`."""
-    scope = motion.scope
-    if scope.model.space != "plane":
-        return ()
-    given = [body for body in bodies if scope.model.bodies[body].inertia is not None]
-    return tuple(body for body in given if not is_zero(scope.mass_properties(body).I[2][2]))
-
-
-def shapeless(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
-    """Bodies that have a mass but no stated inertia."""
-    parts = motion.scope.model.bodies
-    silent = [b for b in bodies if parts[b].shape is None and parts[b].parts is None and parts[b].inertia is None]
-    return tuple(body for body in silent if not is_zero(motion.scope.mass_properties(body).m))
-
 
 # -------- principal -------------------------------------------------------------------------------------------
 # Inertia tensor -> principal moments and axes, exact wherever they have a closed form.
@@ -128,33 +67,33 @@ class Principal:
     sorted: bool
     equal: tuple[tuple[int, int], ...]
 
+    @staticmethod
+    def of(I: Matrix, scope: Scope) -> Principal:
+        """The principal moments with their axes."""
+        tensor = _Tensor(I, scope)
+        ascending = _ascending(tensor)
+        moments = tensor.moments if ascending is None else vector_of(tensor.moments[k] for k in ascending)
+        pairs = tuple((k, n) for k, n in ((0, 1), (1, 2), (0, 2)) if vanishes(moments[k] - moments[n]))
+        return Principal(moments, tensor.axes(moments, pairs), ascending is not None, pairs)
 
-def principal_moments(I: Matrix, scope: Scope) -> PrincipalMoments:
-    """The principal moments, ascending; by min and max where their order depends on the values of the symbols."""
-    tensor = _Tensor(I, scope)
-    found = tensor.moments
-    ascending = _ascending(tensor)
-    if ascending is not None:
-        return vector_of(found[k] for k in ascending)
-    for k in range(3):
-        signs = {tensor.larger(k, n) for n in range(3) if n != k}
-        one, other = (found[n] for n in range(3) if n != k)
-        pair = function("min", one, other), function("max", one, other)
-        if signs <= {0, 1}:
-            return (*pair, found[k])
-        if signs <= {0, -1}:
-            return (found[k], *pair)
-    least, most = (function(name, function(name, found[0], found[1]), found[2]) for name in ("min", "max"))
-    return least, found[0] + found[1] + found[2] - least - most, most
-
-
-def principal_of(I: Matrix, scope: Scope) -> Principal:
-    """The principal moments with their axes."""
-    tensor = _Tensor(I, scope)
-    ascending = _ascending(tensor)
-    moments = tensor.moments if ascending is None else vector_of(tensor.moments[k] for k in ascending)
-    pairs = tuple((k, n) for k, n in ((0, 1), (1, 2), (0, 2)) if vanishes(moments[k] - moments[n]))
-    return Principal(moments, tensor.axes(moments, pairs), ascending is not None, pairs)
+    @staticmethod
+    def ascending(I: Matrix, scope: Scope) -> PrincipalMoments:
+        """The principal moments, ascending; by min and max where their order depends on the values of the symbols."""
+        tensor = _Tensor(I, scope)
+        found = tensor.moments
+        ascending = _ascending(tensor)
+        if ascending is not None:
+            return vector_of(found[k] for k in ascending)
+        for k in range(3):
+            signs = {tensor.larger(k, n) for n in range(3) if n != k}
+            one, other = (found[n] for n in range(3) if n != k)
+            pair = function("min", one, other), function("max", one, other)
+            if signs <= {0, 1}:
+                return (*pair, found[k])
+            if signs <= {0, -1}:
+                return (found[k], *pair)
+        least, most = (function(name, function(name, found[0], found[1]), found[2]) for name in ("min", "max"))
+        return least, found[0] + found[1] + found[2] - least - most, most
 
 
 @dataclass(frozen=True)
@@ -314,7 +253,7 @@ class _Tensor:
     def _sign(self, x: Scalar) -> Scalar:
         """The sign of what does not vanish, as a formula where it is not known."""
         known = self.sign(x)
-        numbers = None if known else numbers_in((x,), self.scope)
+        numbers = None if known else self.scope.numbers((x,))
         return known or (function("sign", x) if numbers is None else (1 if numbers[0] > 0 else -1))
 
     def _by_rows(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
@@ -370,7 +309,7 @@ def _ascending(tensor: _Tensor) -> list[int] | None:
     moments = tensor.moments
     if tensor.is_ordered:
         return [0, 1, 2]
-    numbers = numbers_in(moments, tensor.scope)
+    numbers = tensor.scope.numbers(moments)
     if numbers is not None:
         return sorted(range(3), key=lambda k: numbers[k])
     signs = {(k, k): 0 for k in range(3)}
@@ -401,15 +340,3 @@ def _with_signs(x: Scalar) -> Scalar:
             (inside,) = node.args
             known[node] = inside if number_of(inside) > 0 else -inside
     return substituted((x,), known)[0] if known else x
-
-
-def numbers_in(
-    scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None
-) -> list[float] | None:
-    """Values of scalars; None where they depend on a symbol without a value.
-
-    Args:
-        state: values of symbols other than parameters; None: these have none.
-    """
-    known = {**(state or {}), **scope.known_exactly}
-    return None if any(symbol not in known for symbol in symbols_of(tuple(scalars))) else numbers_of(scalars, known)
