@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import MissingValues
 from eomgen.frozen import RECALLED, dataclass, recalled
-from eomgen.mechanics.constraints import degrees_of_freedom, holds_identically
+from eomgen.mechanics.constraints import Rank, holds_identically
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
@@ -351,7 +351,7 @@ class Study:
         if not constraints.closing or not all(holds_identically(x) for x in constraints.sigma):
             return False
         try:
-            return degrees_of_freedom(constraints) == 0
+            return Rank(constraints).degrees_of_freedom() == 0
         except MissingValues:
             return False
 

@@ -245,7 +245,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "proof": 114,
     "model": 163,
     "mechanics.kinematics": 24,
-    "mechanics.constraints": 58,
+    "mechanics.constraints": 38,
     "mechanics.dynamics": 43,
     "mechanics.start": 16,
     "mechanics.free_bodies": 54,

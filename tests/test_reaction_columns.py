@@ -22,7 +22,7 @@ import eomgen
 from eomgen.documents.figures import over_time
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.closure import Closure
 from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
@@ -92,7 +92,7 @@ def test_a_column_is_what_an_output_of_its_name_says(path):
     """reaction_x(B), reaction_n(wall), tension(rope, 2), drive(q): the same number, in the motion through a state."""
     equations = equations_of(path.stem)
     reactions, quantities = equations.reactions, Quantities(equations.system)
-    state = generic_state(equations.system.constraints, Random(3))
+    state = Closure(equations.system.constraints).generic(Random(3))
     a = [fifty_digits().number(1) * float(value) for value in accelerations_at(equations.graph, state)]
     state |= dict(zip(equations.graph.symbols.a, a, strict=True))
     state |= multipliers_at(equations, state)
@@ -120,7 +120,7 @@ def multipliers_at(equations: Equations, state: dict) -> dict:
 def states(equations: Equations, count: int = 6) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """(t, x, p) of random states on the constraints."""
     symbols = equations.graph.symbols
-    found = [generic_state(equations.system.constraints, Random(seed)) for seed in range(count)]
+    found = [Closure(equations.system.constraints).generic(Random(seed)) for seed in range(count)]
     rows = np.array([[float(state[s]) for s in (symbols.t, *symbols.q, *symbols.u)] for state in found])
     p = np.array([float(found[0][s]) for s in symbols.parameters.values()])
     return rows[:, 0], rows[:, 1:], p

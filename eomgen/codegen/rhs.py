@@ -18,7 +18,7 @@ from eomgen.codegen.targets.c import c_together
 from eomgen.codegen.taylor import Series, series_of, without_series
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import rank_of_constraints
+from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.model import (
     Model,
@@ -275,7 +275,7 @@ def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray,
     values = compiled(program, "numpy")(t, x, p)
     a, lam, J = np.split(values, [len(names), len(names) + len(rows)])
     left = _left(J.reshape(len(rows), len(names)))
-    if len(left) and len(rows) - len(left) < rank_of_constraints(system.constraints):
+    if len(left) and len(rows) - len(left) < Rank(system.constraints).rank():
         return Accelerations(dict.fromkeys(names), dict.fromkeys(rows))
     single = np.max(np.abs(left), axis=0, initial=0.0) < tolerances.SHARE
     return Accelerations(

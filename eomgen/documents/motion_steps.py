@@ -13,7 +13,7 @@ from eomgen.documents.bounded import page
 from eomgen.documents.reading import Reader
 from eomgen.documents.statements import Formula, Law, Meaning, Name, Piece, Rate, Side, Statement, Step, Table, prose
 from eomgen.errors import DerivationError, MissingValues
-from eomgen.mechanics.constraints import Row, dependent_coordinates, integrability_of
+from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
@@ -251,7 +251,7 @@ def _in_unit(value: Any, part: Quantified) -> str:
 def _freedom(system: System) -> Step:
     """Step with the numbers of coordinates, driven coordinates, constraint rows and degrees of freedom."""
     symbols, closing = system.symbols, system.constraints.closing
-    dependent = len(dependent_coordinates(system.scope))
+    dependent = len(system.scope.dependent)
     driven = sum(part.driven for part in system.scope.model.coordinates.values())
     others = [f"{number} of them {kind}" for number, kind in ((driven, "driven"), (dependent, "dependent")) if number]
     statements: list[Statement] = [
@@ -303,7 +303,7 @@ def _freedom(system: System) -> Step:
 def _velocities(system: System) -> list[Statement]:
     """Statements on velocity constraints: the holonomic ones with the functions that they hold at zero."""
     try:
-        found = integrability_of((system.free or system).constraints)
+        found = Rank((system.free or system).constraints).integrability
     except (
         DerivationError,
         MissingValues,

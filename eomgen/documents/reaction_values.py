@@ -25,7 +25,7 @@ from eomgen.documents.reading import (
 from eomgen.documents.statements import Meaning, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, is_placed
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, short_accelerations
 from eomgen.mechanics.free_bodies import (
     EACH_AXIS,
@@ -448,7 +448,7 @@ def _on(balance: Balance, component: Component) -> str:
     first, *others = dict.fromkeys(effect.link for effect in component.effects)
     body, other = (links[first].name, links[others[0]].name if others else "the ground")
     if component.kind != "constraint":
-        where = "place" if is_placed(links[first]) else "joint"
+        where = "place" if links[first].is_placed else "joint"
         return f"on {body} in its {where}, from {other}"
     if component.side:
         return f"on {component.side} in the hinge {component.owner}, from the others"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import gaps_of, generic_state, movable, norms_of
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
 from eomgen.symbolic.expression import Fraction, ScalarRow, State, jacobian
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
@@ -61,7 +61,7 @@ def constrained_states(system: System, rng: Random, *, shaken: bool = False) -> 
     J = tuple(x for row in constraints.J for x in row)
     given = {} if shaken else system.scope.values_of_parameters(None)
     while True:
-        state = _closed_to_the_last_digit(system, generic_state(constraints, rng, shaken=shaken, spreads=FAR) | given)
+        state = _closed_to_the_last_digit(system, Closure(constraints).generic(rng, shaken=shaken, spreads=FAR) | given)
         numbers = np.array(evaluate((*J, *constraints.sigma), state, fifty_digits()), dtype=object)
         there, sigma = numbers[: len(J)].reshape(-1, size), numbers[len(J) :]
         along, u = _allowed(there, sigma, size, rng)
@@ -73,7 +73,7 @@ def constrained_states(system: System, rng: Random, *, shaken: bool = False) -> 
 
 def _closed_to_the_last_digit(system: System, state: State) -> State:
     """A state whose gaps are closed, by Newton's method with 50 digits; of gaps that follow from others any."""
-    gaps, free = (*gaps_of(system.constraints), *norms_of(system.constraints)), movable(system.constraints)
+    gaps, free = (*system.constraints.gaps, *system.constraints.norms), system.constraints.movable
     if not gaps:
         return state
     slopes = tuple(x for row in jacobian(gaps, free) for x in row)

@@ -24,7 +24,7 @@ from eomgen.codegen import (
 )
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import fixed_by_position, gaps_of, is_guess, is_typed, left_of
+from eomgen.mechanics.constraints import is_guess, is_typed, left_of
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Scope
 from eomgen.mechanics.start import start_speeds
@@ -84,7 +84,7 @@ def constraint_rows(system: System) -> ConstraintRows:
     closing = system.constraints.closing
     J = tuple(map(tuple, system.constraints.J)) if closing and system.symbols.u else ()
     rates = tuple(row.velocity for row in closing) if J else ()
-    return ConstraintRows(system, gaps_of(free.constraints), rates, J)
+    return ConstraintRows(system, free.constraints.gaps, rates, J)
 
 
 def _places(rows: Sequence[Sequence[Scalar]]) -> Slopes:
@@ -181,8 +181,8 @@ class Live:
         """Description of the programs for the page."""
         declared, model = self.phase.declared, self.model
         q, u, parts = declared.symbols.q, declared.symbols.u, model.coordinates
-        standing = set(symbols_of(gaps_of(declared.constraints)))
-        sought = fixed_by_position(declared.constraints)
+        standing = set(symbols_of(declared.constraints.gaps))
+        sought = declared.constraints.fixed_by_position
         return {
             "parameters": list(declared.symbols.parameters),
             "derived": list(self.derived),

@@ -24,7 +24,7 @@ import numpy as np
 from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, on_unit_norms, rows_of_constraint
+from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies import frictions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
@@ -170,7 +170,7 @@ def _state(system: System, values: Mapping[str, float], p: np.ndarray, t: float)
     """State of the run with 50 digits; quaternions of doubles are normalized, as their norm is off by 1e-16."""
     symbols = system.symbols
     known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
-    known |= on_unit_norms(system.scope.quaternions, known)
+    known |= system.scope.on_unit_norms(known)
     given = zip(symbols.parameters.values(), p, strict=True)
     return {**known, symbols.t: of_50_digits(t)} | {node: of_50_digits(float(x)) for node, x in given}
 

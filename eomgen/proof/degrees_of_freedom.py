@@ -24,7 +24,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Constraints, Freedom, Row, RowName, constraints_of, generic_state
+from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row, RowName, constraints_of
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
@@ -60,7 +60,7 @@ def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
             return wrong
         if not constraints.closing or len(constraints.motion.scope.symbols.u) > MOST:
             return ""
-        return _by_differences(constraints, generic_state(constraints, 29), found)
+        return _by_differences(constraints, Closure(constraints).generic(29), found)
     except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):  # the count has said so
         return ""
 

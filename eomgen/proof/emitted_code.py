@@ -21,7 +21,7 @@ import numpy as np
 from eomgen.codegen import Role, Written
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import closed, movable, speeds_closed
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, accelerations_at, free_rates
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
@@ -188,12 +188,12 @@ class RunNumbers:
 
 def _held(system: System, given: State) -> State | None:
     """The nearest state at which all constraints hold, positions and speeds; None where none is near."""
-    found = closed(system.constraints, given, movable(system.constraints))
+    found = Closure(system.constraints).closed(given, system.constraints.movable)
     if found is None or system.free is None or system.declared:
-        return None if found is None else speeds_closed(system.constraints, found)
+        return None if found is None else Closure(system.constraints).with_speeds(found)
     free = system.free
     rates = evaluate(free_rates(system, free), found, fifty_digits())
-    return speeds_closed(free.constraints, found | dict(zip(free.scope.symbols.u, rates, strict=True)))
+    return Closure(free.constraints).with_speeds(found | dict(zip(free.scope.symbols.u, rates, strict=True)))
 
 
 def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], name: str) -> Check:

@@ -23,7 +23,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import generic_state, rows_where_closed
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System, free_rates
 from eomgen.mechanics.free_bodies import (
     Balance,
@@ -176,7 +176,7 @@ def moved_otherwise(
     if friction and free is not system:
         raise NoValue("there is friction")
     known = _of_all_rates(system, free, state)
-    needed, J = _demand(free, known), rows_where_closed(free.constraints, known)
+    needed, J = _demand(free, known), Closure(free.constraints).rows_at(known)
     held = np.vstack([J, *_unit_lengths(free, known)])
     turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # terms of the rate of J are of the size J u^2
     a = np.abs([float(known[x]) for x in free.scope.symbols.a]) + np.fromiter(turning, float)
@@ -216,8 +216,8 @@ def _motions_elsewhere(free: System, state: State, regular: float) -> float:
     """Number of motions that the constraints allow at another state where they hold; infinite where none is found."""
     if ELSEWHERE not in free.found:
         try:
-            there = state | generic_state(free.constraints, 1)
-            held = np.vstack([rows_where_closed(free.constraints, there), *_unit_lengths(free, there)])
+            there = state | Closure(free.constraints).generic(1)
+            held = np.vstack([Closure(free.constraints).rows_at(there), *_unit_lengths(free, there)])
             free.found[ELSEWHERE] = _allowed(held, regular).shape[1]
         except (DerivationError, MissingValues, ModelError, NoValue):
             free.found[ELSEWHERE] = np.inf

@@ -20,7 +20,6 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import on_unit_norms
 from eomgen.mechanics.kinematics import Motion, Scope
 from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
@@ -101,7 +100,7 @@ def tried(scope: Scope) -> dict[Node, float]:
     rng, symbols = Random(3), scope.symbols
     known = {x: float(v) for x, v in scope.values_of_parameters(rng).items()}
     known |= {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
-    return known | {e: float(v) for e, v in on_unit_norms(scope.quaternions, known).items()}
+    return known | {e: float(v) for e, v in scope.on_unit_norms(known).items()}
 
 
 # -- quadrature ----------------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import closed, generic_state, movable, on_unit_norms
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import start_state
 from eomgen.model import exact_parameters
@@ -160,11 +160,11 @@ class States:
 
     def _closed(self, state: State, switch: Switch, piece: int) -> TrialState | None:
         """State with its constraints satisfied; None where that leads out of its piece: no motion comes there."""
-        state = state | on_unit_norms(self.system.scope.quaternions, state)
+        state = state | self.system.scope.on_unit_norms(state)
         constraints = self.system.constraints
         if all(row.identical for row in constraints.rows):
             return TrialState(state, " (in one of its pieces)")
-        found = closed(constraints, state, movable(constraints))
+        found = Closure(constraints).closed(state, constraints.movable)
         if found is None or switch.piece(found) != piece:
             return None
         return TrialState(found, " (in one of its pieces)")
@@ -203,9 +203,9 @@ def _own_state(system: System, rng: Random) -> State | None:
         for node, value in given.items()
     }
     state |= {symbols.t: of_50_digits(0.0)} | {x: of_50_digits(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
-    state |= on_unit_norms(system.scope.quaternions, state)
+    state |= system.scope.on_unit_norms(state)
     if not all(row.identical for row in system.constraints.rows):
-        state = closed(system.constraints, state, movable(system.constraints)) or state
+        state = Closure(system.constraints).closed(state, system.constraints.movable) or state
     elif not system.scope.quaternions:
         state = in_doubles(state)
     return with_inputs(system, state)
@@ -222,10 +222,10 @@ def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
     shifted = {x: state[x] + of_50_digits(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
     shifted[symbols.t] = state[symbols.t] + of_50_digits(rng.uniform(0, spread))
     state = state | shifted
-    state |= on_unit_norms(system.scope.quaternions, state)
+    state |= system.scope.on_unit_norms(state)
     if all(row.identical for row in system.constraints.rows):
         return state
-    return closed(system.constraints, state, movable(system.constraints)) or state
+    return Closure(system.constraints).closed(state, system.constraints.movable) or state
 
 
 def real_state(system: System, rng: Random) -> State:
@@ -239,7 +239,7 @@ def real_state(system: System, rng: Random) -> State:
     state = {p: draw(1, 3) / 2 for p in symbols.parameters.values()}
     state |= {x: draw(-1, 1) for x in (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values())}
     state[symbols.t] = draw(0, 1)
-    return state | on_unit_norms(system.scope.quaternions, state)
+    return state | system.scope.on_unit_norms(state)
 
 
 def refuse_open(system: System, state: State) -> None:
@@ -277,7 +277,7 @@ def consistent_states(system: System) -> tuple[tuple[str, Supply], ...]:
             state = real_state(system, rng)
             with suppress(DerivationError, ModelError):
                 yield TrialState(
-                    state | generic_state(whole.constraints, rng), " (at a state at which all constraints hold)"
+                    state | Closure(whole.constraints).generic(rng), " (at a state at which all constraints hold)"
                 )
 
     begun = () if start is None else (TrialState(start, " (at the start)"),)
@@ -296,6 +296,6 @@ def closed_state(system: System, rng: Random) -> tuple[State, str]:
     if all(row.identical for row in system.constraints.rows):
         return state if system.scope.quaternions else in_doubles(state), ""
     try:
-        return state | generic_state(system.constraints, rng), ""
+        return state | Closure(system.constraints).generic(rng), ""
     except (DerivationError, ModelError) as error:  # the equations still say what a is, if no row is redundant
         return state, f" ({error.what})"

@@ -20,7 +20,6 @@ from eomgen.codegen import compiled, program_of
 from eomgen.documents import Linearization, Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import dependent_coordinates
 from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
 from eomgen.mechanics.linearization import MATRICES
@@ -109,7 +108,7 @@ class _Proof:
     def begins(self) -> Iterator[Check]:
         """Check of the start of a motion that is described by all rates: that of the model by its own speeds."""
         own = self.solver.motions[False].phase.system
-        if not self.requested or own.free is not None or not dependent_coordinates(own.scope):
+        if not self.requested or own.free is not None or not own.scope.dependent:
             return
         tally = Tally("answers begin where the motion of the model does", "the start over its own speeds")
         here = start_state(own)

@@ -13,7 +13,7 @@ from math import isfinite
 
 from eomgen.documents import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.constraints import counted, degrees_of_freedom, refuse_undetermined
+from eomgen.mechanics.constraints import Rank, refuse_undetermined
 from eomgen.mechanics.instant import InstantKinematics, Kinds, KinematicState, instant_kinematics_of
 from eomgen.mechanics.start import refuse_lost
 from eomgen.model import (
@@ -75,7 +75,7 @@ def _of_instant_kinematics(model: Model) -> KinematicState:
         instant_kinematics.moving,
         {} if rate else _accelerated(instant_kinematics),
         known.degrees_of_freedom,
-        counted(instant_kinematics.system.constraints),
+        Rank(instant_kinematics.system.constraints).counted(),
         "in this configuration",
         tuple(equation.text for equation in given),
         rate,
@@ -137,8 +137,8 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
         )
     moving = {**{symbols.t: 0}, **moving}
     refuse_undetermined(phase.system.elimination, phase.system.scope, moving, when)
-    free = degrees_of_freedom(phase.system.constraints)
-    count = counted((phase.system.free or phase.system).constraints)
+    free = Rank(phase.system.constraints).degrees_of_freedom()
+    count = Rank((phase.system.free or phase.system).constraints).counted()
     found = KinematicState(phase.system, moving, {}, free, count, when, exact=whole)
     if at is None and free == 1 == len(symbols.u) and _rests(found):
         (u,) = symbols.u

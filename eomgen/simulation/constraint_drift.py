@@ -25,7 +25,7 @@ import numpy as np
 
 from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compiled, program_of, unit_quaternions_of
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE, gaps_of, rank_of_constraints, singular_blocks
+from eomgen.mechanics.constraints import PLACE, Rank, singular_blocks
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression import Scalar
@@ -190,7 +190,7 @@ def projection_of(system: System, p: np.ndarray, target: str | None = None) -> P
         target: the language in which long functions are run.
     """
     free = system if system.elimination is None else system.free or system
-    symbols, closing, gaps = system.symbols, system.constraints.closing, gaps_of(free.constraints)
+    symbols, closing, gaps = system.symbols, system.constraints.closing, free.constraints.gaps
     if not gaps and not closing:
         return None
     speeds = tuple(row.velocity for row in closing)
@@ -605,7 +605,7 @@ def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -
 def independence_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> ConstraintRank | None:
     """Measure of the independence of the rows that close by multipliers; None without such."""
     system = equations.system
-    rank = rank_of_constraints(system.constraints)
+    rank = Rank(system.constraints).rank()
     if not rank:
         return None
     J = measure(system, tuple(x for row in equations.J for x in row), p)

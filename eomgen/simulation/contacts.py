@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.codegen import RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, redundant_rows, rows_of_constraint
+from eomgen.mechanics.constraints import Rank, Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode
@@ -223,7 +223,7 @@ class ContactEvents:
 
     @cached_property
     def _redundant(self) -> bool:
-        return bool(redundant_rows(self.system.constraints))
+        return bool(Rank(self.system.constraints).redundant())
 
 
 def stopped_below(contact: Contact) -> Fraction | int:

@@ -24,7 +24,7 @@ from eomgen.codegen import (
     unit_quaternions_of,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import CLOSING, fixed_by_position, gaps_of, norms_of
+from eomgen.mechanics.constraints import CLOSING
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import start_speeds
 from eomgen.simulation import constraint_drift, event_location
@@ -258,11 +258,11 @@ class ManyStarts:
 
     @cached_property
     def _sought(self) -> list[Node]:
-        return fixed_by_position(self._system.constraints)
+        return self._system.constraints.fixed_by_position
 
     @cached_property
     def _phi(self) -> tuple[Scalar, ...]:
-        return (*gaps_of(self._system.constraints), *norms_of(self._system.constraints))
+        return (*self._system.constraints.gaps, *self._system.constraints.norms)
 
     @cached_property
     def _slopes(self) -> RightHandSide:

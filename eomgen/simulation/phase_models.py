@@ -13,10 +13,7 @@ from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
-    degrees_of_freedom,
-    dependent_coordinates,
-    rank_of_constraints,
-    redundant_rows,
+    Rank,
     rows_of_constraint,
     singular_blocks,
 )
@@ -233,9 +230,9 @@ def _released(system: System, constraint: str) -> System:
     rows = [row for row in system.constraints.rows if row.constraint == constraint]
     if all(row.status == "closing" for row in rows):
         return after
-    dependent = {(row.constraint, row.number) for row in redundant_rows(system.constraints)}
+    dependent = {(row.constraint, row.number) for row in Rank(system.constraints).redundant()}
     held = [row for row in rows if (row.constraint, row.number) not in dependent]
-    if degrees_of_freedom(after.constraints) < degrees_of_freedom(system.constraints) + len(held):
+    if Rank(after.constraints).degrees_of_freedom() < Rank(system.constraints).degrees_of_freedom() + len(held):
         raise DerivationError(
             f"'{constraint}' ends, and what it held does not become free",
             f"constraints.{constraint}",
@@ -329,13 +326,13 @@ class DerivedAt:
 
     @cached_property
     def _rank(self) -> int:
-        return rank_of_constraints(self._free.constraints)
+        return Rank(self._free.constraints).rank()
 
     @property
     def _determining(self) -> tuple[list[int], list[int]]:
         """(the rows by which dependent coordinates are eliminated, their speeds)."""
         used = {} if self.system.elimination is None else self.system.elimination.used
-        names = dependent_coordinates(self._free.scope)
+        names = self._free.scope.dependent
         rows = [i for i, row in enumerate(self._free.constraints.closing) if used.get((row.constraint, row.number))]
         return rows, [k for k, u in enumerate(self._free.symbols.u) if u.name[:-1] in names]
 

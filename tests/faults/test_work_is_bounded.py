@@ -423,8 +423,8 @@ eye = { kind = "pin", points = ["piston.center", "boom.end"] }
 @pytest.mark.slow
 def test_ties_that_close_nowhere_near_the_start_are_not_looked_for_by_every_question(monkeypatch):
     """A strut of 1.5 m on a boom that reaches 0.8 m: each of what may stay constant draws twice, not twelve times."""
-    sought, own = [], closure.closed
-    monkeypatch.setattr(closure, "closed", lambda *given: sought.append(1) or own(*given))
+    sought, own = [], closure.Closure.closed
+    monkeypatch.setattr(closure.Closure, "closed", lambda *given: sought.append(1) or own(*given))
     assert eomgen.derive(eomgen.loads(OUT_OF_REACH)).render("text")
     assert 0 < len(sought) < 60
 

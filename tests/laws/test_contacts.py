@@ -12,7 +12,7 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.rank import degrees_of_freedom
+from eomgen.mechanics.constraints.rank import Rank
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.motion import Plan
 from eomgen.simulation.phase_change import PhaseStart
@@ -193,9 +193,9 @@ constraints.other = { kind = "rolling", body = "disc", line = { at = [0, 0], nor
 """
     model = eomgen.loads(HEAD + text)
     system = PhaseModels(model, parameter_vector(model), "numpy").without_contacts.system
-    assert {row.constraint for row in system.constraints.rows} == {"one"} and degrees_of_freedom(
+    assert {row.constraint for row in system.constraints.rows} == {"one"} and Rank(
         system.constraints
-    ) == 2
+    ).degrees_of_freedom() == 2
 
 
 def test_a_start_below_the_floor_is_refused():

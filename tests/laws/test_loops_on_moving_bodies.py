@@ -270,11 +270,12 @@ def test_accelerations_by_a_row_that_vanishes_where_the_others_hold_are_contradi
     Slow: equations, answers and code are each proven.
     """
 
-    def as_found(constraints, state):
-        values = floats_of(evaluate([x for row in constraints.J for x in row], state, fifty_digits()))
-        return np.array(values).reshape(len(constraints.closing), -1)
+    class AsFound(elimination.Closure):
+        def rows_at(self, state):
+            values = floats_of(evaluate([x for row in self.constraints.J for x in row], state, fifty_digits()))
+            return np.array(values).reshape(len(self.constraints.closing), -1)
 
-    monkeypatch.setattr(elimination, "rows_where_closed", as_found)
+    monkeypatch.setattr(elimination, "Closure", AsFound)
     model = eomgen.loads(IN_GROUND_AXES.replace(*FOLLOWING) + REQUESTED)
     derived = eomgen.derive(model)
     assert "accelerations are those of the free bodies, all constraints holding at once" in _failing(derived.certify())

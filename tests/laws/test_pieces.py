@@ -9,7 +9,6 @@ import pytest
 import eomgen
 from eomgen.documents.text import render
 from eomgen.errors import UsageError
-from eomgen.mechanics.constraints.closure import norms_of
 from eomgen.mechanics.dynamics import pieces, wellposed
 from eomgen.mechanics.dynamics.wellposed import is_conservative, where_conservative
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
@@ -400,7 +399,7 @@ def test_states_in_which_ties_close_do_so_to_their_last_digits(tmp_path):
     T = { kind = "support", point = "b.Q", normal = [0, 0, 1] }
     """
     graph = eomgen.derive(at(text, tmp_path)).graph
-    norms = norms_of(graph.system.constraints)
+    norms = graph.system.constraints.norms
     for _, supply in Trials(graph).states.supplies:
         for place, _ in zip(supply, range(2), strict=False):
             assert all(abs(x) < tolerances.CERTAIN_AT_50**1.2 for x in evaluate(norms, place.state, fifty_digits()))

@@ -9,9 +9,6 @@ from eomgen.mechanics.constraints.assembly import Fork as Fork
 # Start values that the constraints change from the declared ones, in closed form or else in numbers
 from eomgen.mechanics.constraints.assembly import begun_places as begun_places
 
-# The dependent coordinates that stand in a gap
-from eomgen.mechanics.constraints.assembly import fixed_by_position as fixed_by_position
-
 # The fork at a state where the rank of the constraint rows is less than elsewhere; None where it is not
 from eomgen.mechanics.constraints.assembly import fork_at as fork_at
 
@@ -40,17 +37,8 @@ from eomgen.mechanics.constraints.assembly import tiers_of as tiers_of
 from eomgen.mechanics.constraints.assembly import with_gaps_closed as with_gaps_closed
 from eomgen.mechanics.constraints.closure import CLOSING as CLOSING
 
-# Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given
-from eomgen.mechanics.constraints.closure import begun_state as begun_state
-
-# The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near
-from eomgen.mechanics.constraints.closure import closed as closed
-
-# phi of every row that the coordinates do not satisfy by themselves, where it has one
-from eomgen.mechanics.constraints.closure import gaps_of as gaps_of
-
-# Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0
-from eomgen.mechanics.constraints.closure import generic_state as generic_state
+# States in which constraints hold, phi = 0 and J u + sigma = 0, with 50 digits
+from eomgen.mechanics.constraints.closure import Closure as Closure
 
 # True if the start of a coordinate or speed is not given, or is only a guess by `near`
 from eomgen.mechanics.constraints.closure import is_guess as is_guess
@@ -58,36 +46,12 @@ from eomgen.mechanics.constraints.closure import is_guess as is_guess
 # True if a person typed the start of a coordinate or speed, in place of what the model declares
 from eomgen.mechanics.constraints.closure import is_typed as is_typed
 
-# The coordinates that are not driven
-from eomgen.mechanics.constraints.closure import movable as movable
-
 # The nearest state at which the scalars vanish, as `closed`
 from eomgen.mechanics.constraints.closure import nearest_root as nearest_root
-
-# The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none
-from eomgen.mechanics.constraints.closure import nearest_speeds as nearest_speeds
-
-# e . e - 1 of every quaternion
-from eomgen.mechanics.constraints.closure import norms_of as norms_of
-
-# The symbols whose squares add up to 1, over their norm
-from eomgen.mechanics.constraints.closure import on_unit_norms as on_unit_norms
-
-# J of the constraint rows at a state in which they hold, k x nu; entries that vanish there are exactly 0
-from eomgen.mechanics.constraints.closure import rows_where_closed as rows_where_closed
-
-# Values of every symbol: near the start, off any special position; the constraints need not hold
-from eomgen.mechanics.constraints.closure import scattered_state as scattered_state
-
-# The state with the nearest speeds that satisfy J u + sigma = 0
-from eomgen.mechanics.constraints.closure import speeds_closed as speeds_closed
 from eomgen.mechanics.constraints.elimination import PLACE as PLACE
 
 # Result of the elimination of dependent coordinates
 from eomgen.mechanics.constraints.elimination import Elimination as Elimination
-
-# The names of the coordinates that are eliminated, in the model's order
-from eomgen.mechanics.constraints.elimination import dependent_coordinates as dependent_coordinates
 
 # The dependent coordinates of a model eliminated through its constraints
 from eomgen.mechanics.constraints.elimination import elimination_of as elimination_of
@@ -101,38 +65,17 @@ from eomgen.mechanics.constraints.elimination import singular_blocks as singular
 # Degrees of freedom of a model
 from eomgen.mechanics.constraints.rank import Freedom as Freedom
 
+# Which constraint rows are independent: at a generic configuration in which the constraints hold
+from eomgen.mechanics.constraints.rank import Rank as Rank
+
 # of a constraint, from 1
 from eomgen.mechanics.constraints.rank import RowName as RowName
 
 # A row of velocities alone
 from eomgen.mechanics.constraints.rank import VelocityRow as VelocityRow
 
-# 3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text
-from eomgen.mechanics.constraints.rank import counted as counted
-
-# nu - rank J; the state and the errors are those of `redundant_rows`
-from eomgen.mechanics.constraints.rank import degrees_of_freedom as degrees_of_freedom
-
 # The degrees of freedom of a model, where its kinds are built; constraints that move dependent coordinates close
 from eomgen.mechanics.constraints.rank import freedom_of as freedom_of
-
-# Integrability of the constraint rows of velocities alone; None where there are none
-from eomgen.mechanics.constraints.rank import integrability_of as integrability_of
-
-# A point mass that its joint does not turn
-from eomgen.mechanics.constraints.rank import is_particle as is_particle
-
-# True if a body stands where the model places it, without a joint that carries a reaction
-from eomgen.mechanics.constraints.rank import is_placed as is_placed
-
-# rank J, how many constraint rows are independent; the state and the errors are those of `redundant_rows`
-from eomgen.mechanics.constraints.rank import rank_of_constraints as rank_of_constraints
-
-# The constraint rows that follow from those before them, at a generic configuration in which the constraints hold
-from eomgen.mechanics.constraints.rank import redundant_rows as redundant_rows
-
-# Number of the group of each constraint row; rows of one group depend linearly on one another
-from eomgen.mechanics.constraints.rank import rows_alike as rows_alike
 
 # a sliding velocity that is none [m/s]
 from eomgen.mechanics.constraints.rows import STILL as STILL
@@ -163,9 +106,6 @@ from eomgen.mechanics.constraints.rows import limits_passed as limits_passed
 
 # The rows that a constraint has while it is closed, whether it is so or not: how far an open contact is open
 from eomgen.mechanics.constraints.rows import rows_of_constraint as rows_of_constraint
-
-# Power of a push on a point that moves in its body: F . R r'
-from eomgen.mechanics.constraints.rows import slide_power as slide_power
 
 # Reason why a motion ends there
 from eomgen.mechanics.constraints.rows import stopped_at as stopped_at

@@ -15,16 +15,12 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import (
+    Closure,
     bilateral,
-    closed,
-    gaps_of,
     is_guess,
     is_typed,
-    nearest_places,
-    still_values,
 )
-from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.rank import rank_of_constraints
+from eomgen.mechanics.constraints.rank import Rank
 from eomgen.mechanics.constraints.rows import Constraints, Row
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.state import Numbers
@@ -62,7 +58,7 @@ def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
     Raises:
         DerivationError: a value has no closed form, and parameters have no value.
     """
-    scope, rows = constraints.motion.scope, gaps_of(constraints)
+    scope, rows = constraints.motion.scope, constraints.gaps
     if not rows:
         return {}
     declared = scope.with_unit_quaternions(scope.start_values()) | {scope.symbols.t: 0}
@@ -86,11 +82,11 @@ def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
 def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int) -> State:
     """A state at t = 0 in which positions agree with the constraints."""
     scope = constraints.motion.scope
-    state, guesses = still_values(constraints, Random(seed))
+    state, guesses = Closure(constraints).still(Random(seed))
     state = state | dict(zip(declared, evaluate(tuple(declared.values()), state, fifty_digits()), strict=True))
-    sought = fixed_by_position(constraints)
+    sought = constraints.fixed_by_position
     state |= {q: of_50_digits(guesses[q.name]) for q in sought}
-    state = (closed(constraints, state, sought) or state) if sought else state
+    state = (Closure(constraints).closed(state, sought) or state) if sought else state
     called = frozenset(q.name for q in scope.symbols.q if is_typed(scope.model, q.name))
     return with_gaps_closed(constraints, state, called)[0]
 
@@ -113,19 +109,14 @@ def with_gaps_closed(constraints: Constraints, state: State, called: frozenset[s
     opened = tuple(name for name in apart if any(row.constraint == name for row in staying.rows))
     if not opened:
         return state, ()
-    standing, sought = set(symbols_of(gaps_of(staying))), fixed_by_position(constraints)
+    standing, sought = set(symbols_of(staying.gaps)), constraints.fixed_by_position
     own = [
         q for q in scope.symbols.q if q in standing and q not in sought and not scope.model.coordinates[q.name].driven
     ]
     silent, given, typed = tiers_of(scope.model, own, called)
-    return nearest_places(staying, state, ([*sought, *silent], given, typed), (*sought, *silent)) or state, opened
-
-
-def fixed_by_position(constraints: Constraints) -> list[Node]:
-    """The dependent coordinates that stand in a gap."""
-    scope, standing = constraints.motion.scope, set(symbols_of(gaps_of(constraints)))
-    names = dependent_coordinates(scope)
-    return [q for q in scope.symbols.q if q.name in names and q in standing]
+    return Closure(staying).nearest_places(
+        state, ([*sought, *silent], given, typed), (*sought, *silent)
+    ) or state, opened
 
 
 def tiers_of(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
@@ -227,7 +218,7 @@ def fork_at(constraints: Constraints, state: State) -> Fork | None:
     here = int(np.sum(sizes > tolerances.RANK))
     if here == len(constraints.closing):
         return None
-    more = rank_of_constraints(constraints) - here
+    more = Rank(constraints).rank() - here
     if more <= 0:
         return None
     shares = np.max(np.abs(U[:, here:]), axis=1)

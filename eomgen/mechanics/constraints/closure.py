@@ -19,7 +19,7 @@ from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.state import Numbers
 from eomgen.model import Model, exact_parameters, first_guesses, start_values
-from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian, sqrt
+from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian
 from eomgen.symbolic.numeric import (
     Newton,
     NoValue,
@@ -35,85 +35,157 @@ CLOSING = Newton(enough=tolerances.CLOSED_AT_50, stalls=tolerances.SUMMED, dampe
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
-def generic_state(
-    constraints: Constraints, rng: Random | int = 1, *, shaken: bool = False, spreads: Sequence[float] = ()
-) -> State:
-    """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
+@dataclass(frozen=True)
+class Closure:
+    """States in which constraints hold, phi = 0 and J u + sigma = 0, with 50 digits."""
 
-    Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
+    constraints: Constraints
 
-    Args:
-        rng: its numbers, or their seed; of a seed it is found once.
-        shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
-        spreads: how far from the start it is looked for, the first first; before those near to it.
-    Raises:
-        MissingValues, DerivationError: the constraints do not close there.
-    """
-    if isinstance(rng, int):
-        seed, key = rng, (generic_state, rng, shaken, tuple(spreads))
-        known = recalled(
-            constraints, key, lambda: generic_state(constraints, Random(seed), shaken=shaken, spreads=spreads)
-        )
-        return dict(known)
-    state, q = still_values(constraints, rng, shaken=shaken)
-    for spread in (*spreads, *SPREADS):
-        found = closed(constraints, state | _scattered(constraints, q, spread, rng), movable(constraints))
-        if found is not None:
-            with suppress(NoValue, ZeroDivisionError):  # a strand into a pulley: nearer then
-                return speeds_closed(constraints, _with_laws(constraints, found))
-    raise _open(constraints, exact_parameters(constraints.motion.scope.model))
+    def generic(self, rng: Random | int = 1, *, shaken: bool = False, spreads: Sequence[float] = ()) -> State:
+        """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
 
+        Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
 
-def begun_state(constraints: Constraints) -> State:
-    """Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given.
+        Args:
+            rng: its numbers, or their seed; of a seed it is found once.
+            shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
+            spreads: how far from the start it is looked for, the first first; before those near to it.
+        Raises:
+            MissingValues, DerivationError: the constraints do not close there.
+        """
+        if isinstance(rng, int):
+            seed, key = rng, ("generic", rng, shaken, tuple(spreads))
+            known = recalled(self.constraints, key, lambda: self.generic(Random(seed), shaken=shaken, spreads=spreads))
+            return dict(known)
+        state, q = self.still(rng, shaken=shaken)
+        for spread in (*spreads, *SPREADS):
+            found = self.closed(state | _scattered(self.constraints, q, spread, rng), self.constraints.movable)
+            if found is not None:
+                with suppress(NoValue, ZeroDivisionError):  # a strand into a pulley: nearer then
+                    return self.with_speeds(_with_laws(self.constraints, found))
+        raise _open(self.constraints, exact_parameters(self.constraints.motion.scope.model))
 
-    Raises:
-        MissingValues, DerivationError: the constraints do not close there.
-    """
-    model, symbols = constraints.motion.scope.model, constraints.motion.scope.symbols
-    state, q = still_values(constraints, Random(1))
-    numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
-    speeds = start_values(model, numbers)[1]
-    given = {node: of_50_digits(q[node.name]) for node in symbols.q}
-    given |= {u: of_50_digits(speeds.get(u.name, 0.0)) for u in symbols.u}
-    given |= on_unit_norms(constraints.motion.scope.quaternions, state | given)
-    found = closed(constraints, state | given, movable(constraints))
-    if found is None:
-        raise _open(constraints, exact_parameters(model))
-    return speeds_closed(constraints, _with_laws(constraints, found))
+    def begun(self) -> State:
+        """Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given.
 
+        Raises:
+            MissingValues, DerivationError: the constraints do not close there.
+        """
+        model, symbols = self.constraints.motion.scope.model, self.constraints.motion.scope.symbols
+        state, q = self.still(Random(1))
+        numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
+        speeds = start_values(model, numbers)[1]
+        given = {node: of_50_digits(q[node.name]) for node in symbols.q}
+        given |= {u: of_50_digits(speeds.get(u.name, 0.0)) for u in symbols.u}
+        given |= self.constraints.motion.scope.on_unit_norms(state | given)
+        found = self.closed(state | given, self.constraints.movable)
+        if found is None:
+            raise _open(self.constraints, exact_parameters(model))
+        return self.with_speeds(_with_laws(self.constraints, found))
 
-def scattered_state(constraints: Constraints) -> State:
-    """Values of every symbol: near the start, off any special position; the constraints need not hold."""
-    rng = Random(1)
-    state, q = still_values(constraints, rng)
-    return _with_laws(constraints, state | _scattered(constraints, q, SPREADS[0], rng))
+    def scattered(self) -> State:
+        """Values of every symbol: near the start, off any special position; the constraints need not hold."""
+        rng = Random(1)
+        state, q = self.still(rng)
+        return _with_laws(self.constraints, state | _scattered(self.constraints, q, SPREADS[0], rng))
 
+    def still(self, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
+        """(values of every symbol but the coordinates, where the coordinates start)."""
+        scope = self.constraints.motion.scope
+        model, symbols = scope.model, scope.symbols
+        known = exact_parameters(model)
+        p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
+        if shaken:
+            p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
+        given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
+        given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
+        state = {node: of_50_digits(value) for node, value in given.items()}
+        for name, node in symbols.inputs.items():
+            try:
+                state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
+            except NoValue:  # at t = 0, as 1/t: of another instant then
+                state[node] = of_50_digits(rng.uniform(-1, 1))
+        return state, start_values(model, p)[0] | first_guesses(model, p)
 
-def still_values(constraints: Constraints, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
-    """(values of every symbol but the coordinates, where the coordinates start)."""
-    scope = constraints.motion.scope
-    model, symbols = scope.model, scope.symbols
-    known = exact_parameters(model)
-    p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
-    if shaken:
-        p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
-    given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
-    given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
-    state = {node: of_50_digits(value) for node, value in given.items()}
-    for name, node in symbols.inputs.items():
-        try:
-            state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
-        except NoValue:  # at t = 0, as 1/t: of another instant then
-            state[node] = of_50_digits(rng.uniform(-1, 1))
-    return state, start_values(model, p)[0] | first_guesses(model, p)
+    def rows_at(self, state: State) -> np.ndarray:
+        """J of the constraint rows at a state in which they hold, k x nu; entries that vanish there are exactly 0.
+
+        Raises:
+            NoValue: it has none there.
+        """
+        return Numbers(state).on_manifold(self.constraints.J, len(self.constraints.motion.scope.symbols.u))
+
+    def closed(self, state: State, free: Sequence[Node], sizes: np.ndarray | None = None) -> State | None:
+        """The nearest state with phi = 0, quaternions of norm 1, by moving free coordinates; None where none is near.
+
+        What rounding alone would move stays: a distance that is 0 is 0, and what is divided by it has no value.
+
+        Args:
+            sizes: what counts as the same change of each of the free coordinates (None: 1 of each).
+
+        The way is damped: see `symbolic.numeric.roots`.
+        """
+        found = nearest_root((*self.constraints.gaps, *self.constraints.norms), state, free, sizes)
+        if found is None:
+            return None
+        return found | {q: state[q] for q in free if abs(found[q] - state[q]) < tolerances.ROUNDED_AWAY}
+
+    def with_speeds(self, state: State) -> State:
+        """The state with the nearest speeds that satisfy J u + sigma = 0."""
+        u = self.constraints.motion.scope.symbols.u
+        if not self.constraints.closing or not u:
+            return state
+        J, open_rate = _rates(self.constraints, state)
+        step = np.linalg.lstsq(J, -open_rate, rcond=tolerances.LEAST_CHANGE)[0]
+        return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}
+
+    def nearest_places(self, state: State, tiers: Tiers, guessed: Sequence[Node]) -> State | None:
+        """The nearest state with phi = 0, moving as few kinds of values as will do; None where none is near.
+
+        Args:
+            tiers: what may move, each with those before it: values that nobody gave, those of the model, the caller's.
+            guessed: coordinates whose values are guesses: they may move far.
+        """
+        free: list[Node] = []
+        for tier in tiers:
+            free += tier
+            moved = _moved(self.constraints, state, free) if tier else None
+            found = None if moved is None else _nearest(moved, state, free, guessed)
+            if found is not None:
+                return found
+        return None
+
+    def nearest_speeds(self, state: State, tiers: Tiers, M: np.ndarray | None) -> State | None:
+        """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none.
+
+        Of each tier no more is changed than what those before it cannot close.
+
+        Args:
+            tiers: as in `nearest_places`; the last two are of values that somebody gave.
+            M: the mass matrix at the state, where it is known: it measures changes of these.
+        """
+        u = self.constraints.motion.scope.symbols.u
+        if not self.constraints.closing or not u:
+            return state
+        J, open_rate = _rates(self.constraints, state)
+        found, step = open_rate, np.zeros(len(u))
+        columns = [[u.index(x) for x in tier] for tier in tiers]
+        for k in reversed(range(len(columns))):
+            earlier = [i for tier in columns[:k] for i in tier]
+            block = None if M is None or k < len(columns) - 2 else M[np.ix_(columns[k], columns[k])]
+            step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier], block)
+            found = found + J[:, columns[k]] @ step[columns[k]]
+        size = np.max(abs(J) @ abs(step) + abs(open_rate))
+        if np.any(abs(J @ step + open_rate) > tolerances.RANK * size):
+            return None
+        return state | {x: state[x] + float(d) for x, d in zip(u, step, strict=True) if d}
 
 
 def _scattered(constraints: Constraints, q: Mapping[str, float], spread: float, rng: Random) -> State:
     """Coordinates that lie about those given, soon after t = 0."""
     symbols = constraints.motion.scope.symbols
     shifted = {node: of_50_digits(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
-    shifted |= on_unit_norms(constraints.motion.scope.quaternions, shifted)
+    shifted |= constraints.motion.scope.on_unit_norms(shifted)
     return shifted | {symbols.t: of_50_digits(rng.uniform(0, spread))}
 
 
@@ -123,15 +195,6 @@ def _with_laws(constraints: Constraints, state: State) -> State:
     return state | dict(zip(laws, evaluate(tuple(laws.values()), state, fifty_digits(partial=True)), strict=True))
 
 
-def on_unit_norms(unit_quaternions: Sequence[Sequence[Node]], state: State) -> State:
-    """The symbols whose squares add up to 1, over their norm."""
-    found: State = {}
-    for symbols in unit_quaternions:
-        (norm,) = evaluate((sqrt(sum((x * x for x in symbols), start=0)),), state, fifty_digits())
-        found |= {x: state[x] / norm for x in symbols}
-    return found
-
-
 def _open(constraints: Constraints, known: Mapping[str, Any]) -> EomgenError:
     missing = tuple(name for name in constraints.motion.scope.symbols.parameters if name not in known)
     if missing:
@@ -139,49 +202,6 @@ def _open(constraints: Constraints, known: Mapping[str, Any]) -> EomgenError:
     names = ", ".join(dict.fromkeys(row.constraint for row in constraints.rows if not row.identical))
     what = f"the constraints do not close near the start values: {names}"
     return OpenConstraints(what, fix="`eomgen check` says whether they can")
-
-
-def rows_where_closed(constraints: Constraints, state: State) -> np.ndarray:
-    """J of the constraint rows at a state in which they hold, k x nu; entries that vanish there are exactly 0.
-
-    Raises:
-        NoValue: it has none there.
-    """
-    return Numbers(state).on_manifold(constraints.J, len(constraints.motion.scope.symbols.u))
-
-
-def movable(constraints: Constraints) -> list[Node]:
-    """The coordinates that are not driven."""
-    scope = constraints.motion.scope
-    return [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
-
-
-def gaps_of(constraints: Constraints) -> tuple[Scalar, ...]:
-    """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
-    return tuple(row.gap for row in constraints.rows if row.gap is not None and not row.identical)
-
-
-def norms_of(constraints: Constraints) -> tuple[Scalar, ...]:
-    """e . e - 1 of every quaternion."""
-    return tuple(sum((e * e for e in four), start=-1) for four in constraints.motion.scope.quaternions)
-
-
-def closed(
-    constraints: Constraints, state: State, free: Sequence[Node], sizes: np.ndarray | None = None
-) -> State | None:
-    """The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near.
-
-    What rounding alone would move stays: a distance that is 0 is 0, and what is divided by it has no value.
-
-    Args:
-        sizes: what counts as the same change of each of the free coordinates (None: 1 of each).
-
-    The way is damped: see `symbolic.numeric.roots`.
-    """
-    found = nearest_root((*gaps_of(constraints), *norms_of(constraints)), state, free, sizes)
-    if found is None:
-        return None
-    return found | {q: state[q] for q in free if abs(found[q] - state[q]) < tolerances.ROUNDED_AWAY}
 
 
 def nearest_root(
@@ -214,16 +234,6 @@ class _Gaps:
         return state | {q: state[q] + float(s) * d for q, s, d in zip(self.free, self.sizes, step, strict=True)}
 
 
-def speeds_closed(constraints: Constraints, state: State) -> State:
-    """The state with the nearest speeds that satisfy J u + sigma = 0."""
-    u = constraints.motion.scope.symbols.u
-    if not constraints.closing or not u:
-        return state
-    J, open_rate = _rates(constraints, state)
-    step = np.linalg.lstsq(J, -open_rate, rcond=tolerances.LEAST_CHANGE)[0]
-    return state | {node: state[node] + float(d) for node, d in zip(u, step, strict=True)}
-
-
 def _rates(constraints: Constraints, state: State) -> tuple[np.ndarray, np.ndarray]:
     """(J, J u + sigma)."""
     rows = [(*J, row.velocity) for J, row in zip(constraints.J, constraints.closing, strict=True)]
@@ -249,49 +259,6 @@ SPREADS_OF_ROUGH = (0.0, 0.1, 0.5, 1.0)  # rad: how far from a guess another one
 EASY = 1e3  # times farther a guess may move than a given value, for the same
 
 Tiers = Sequence[Sequence[Node]]
-
-
-def nearest_places(constraints: Constraints, state: State, tiers: Tiers, guessed: Sequence[Node]) -> State | None:
-    """The nearest state with phi = 0, moving as few kinds of values as will do; None where none is near.
-
-    Args:
-        tiers: what may move, each with those before it: values that nobody gave, those of the model, the caller's.
-        guessed: coordinates whose values are guesses: they may move far.
-    """
-    free: list[Node] = []
-    for tier in tiers:
-        free += tier
-        moved = _moved(constraints, state, free) if tier else None
-        found = None if moved is None else _nearest(moved, state, free, guessed)
-        if found is not None:
-            return found
-    return None
-
-
-def nearest_speeds(constraints: Constraints, state: State, tiers: Tiers, M: np.ndarray | None) -> State | None:
-    """The state with the nearest speeds that satisfy J u + sigma = 0, or None where there are none.
-
-    Of each tier no more is changed than what those before it cannot close.
-
-    Args:
-        tiers: as in `nearest_places`; the last two are of values that somebody gave.
-        M: the mass matrix at the state, where it is known: it measures changes of these.
-    """
-    u = constraints.motion.scope.symbols.u
-    if not constraints.closing or not u:
-        return state
-    J, open_rate = _rates(constraints, state)
-    found, step = open_rate, np.zeros(len(u))
-    columns = [[u.index(x) for x in tier] for tier in tiers]
-    for k in reversed(range(len(columns))):
-        earlier = [i for tier in columns[:k] for i in tier]
-        block = None if M is None or k < len(columns) - 2 else M[np.ix_(columns[k], columns[k])]
-        step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier], block)
-        found = found + J[:, columns[k]] @ step[columns[k]]
-    size = np.max(abs(J) @ abs(step) + abs(open_rate))
-    if np.any(abs(J @ step + open_rate) > tolerances.RANK * size):
-        return None
-    return state | {x: state[x] + float(d) for x, d in zip(u, step, strict=True) if d}
 
 
 def _least(J: np.ndarray, left: np.ndarray, others: np.ndarray, M: np.ndarray | None) -> np.ndarray:
@@ -338,11 +305,11 @@ def regular(constraints: Constraints, state: State, free: Sequence[Node]) -> boo
 def _another(constraints: Constraints, state: State, free: Sequence[Node]) -> State:
     """A configuration that is not special; where the gaps close in none but this one, they need not close there."""
     try:
-        other = generic_state(constraints)
+        other = Closure(constraints).generic()
     except (DerivationError, MissingValues):
-        return scattered_state(constraints)
+        return Closure(constraints).scattered()
     same = all(abs(other[q] - state[q]) < tolerances.SAME_PLACE for q in free)
-    return scattered_state(constraints) if same else other
+    return Closure(constraints).scattered() if same else other
 
 
 def far(constraints: Constraints, before: State, after: State, given: Sequence[Node]) -> bool:
@@ -385,7 +352,7 @@ def _moved(constraints: Constraints, state: State, free: Sequence[Node]) -> Cons
     """The rows that these coordinates move; None where another one is open by more than the rounding of its values."""
     others = [row for row in constraints.rows if row.gap is not None and not depends_on(row.gap, free)]
     gaps = tuple(row.gap for row in others if row.gap is not None and not row.identical)
-    slopes = _slope(replace(constraints, rows=tuple(others)), state, movable(constraints))
+    slopes = _slope(replace(constraints, rows=tuple(others)), state, constraints.movable)
     sizes = np.max(np.abs(slopes), axis=1, initial=0.0)
     try:
         values = evaluate(gaps, state, fifty_digits())
@@ -425,7 +392,7 @@ def _turned_back(constraints: Constraints, before: State, found: State, guessed:
         if not turns:
             continue
         back = found | {q: found[q] - turns * turn}
-        if all(abs(x) <= tolerances.CLOSED_AT_50 for x in evaluate(gaps_of(constraints), back, fifty_digits())):
+        if all(abs(x) <= tolerances.CLOSED_AT_50 for x in evaluate(constraints.gaps, back, fifty_digits())):
             found = back
     return found
 
@@ -445,7 +412,7 @@ def _walked(
     dq = (1 - J^+ J) (q_wanted - q), and closed again, till that is nothing.
     """
     sizes = 1 / _slopes(_slope(constraints, start, free)) * np.array([EASY if q in guessed else 1.0 for q in free])
-    found = closed(constraints, start, free, sizes)
+    found = Closure(constraints).closed(start, free, sizes)
     for _ in range(ROUNDS if found is not None else 0):
         assert found is not None
         J = _slope(constraints, found, free) * sizes
@@ -454,13 +421,13 @@ def _walked(
         if np.max(abs(along), initial=0.0) < tolerances.SOLVED:
             break
         moved = found | {q: found[q] + float(d) for q, d in zip(free, sizes * along, strict=True)}
-        found = closed(constraints, moved, free, sizes) or found
+        found = Closure(constraints).closed(moved, free, sizes) or found
     return found
 
 
 def _slope(constraints: Constraints, state: State, free: Sequence[Node]) -> np.ndarray:
     """d phi/dq of the free coordinates."""
-    gaps: tuple[Scalar, ...] = gaps_of(constraints)
+    gaps: tuple[Scalar, ...] = constraints.gaps
     try:
         return Numbers(state).array(jacobian(gaps, free), len(free))
     except (NoValue, ZeroDivisionError):

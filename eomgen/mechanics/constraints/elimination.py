@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
+from eomgen.mechanics.constraints.closure import Closure
 from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics import Scope, shorter
 from eomgen.mechanics.state import Split
@@ -67,11 +67,6 @@ class Elimination:
     blocks: tuple[DependentBlock, ...]
 
 
-def dependent_coordinates(scope: Scope) -> tuple[str, ...]:
-    """The names of the coordinates that are eliminated, in the model's order."""
-    return tuple(name for name, part in scope.model.coordinates.items() if part.dependent)
-
-
 def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[DependentBlock, ...]:
     """The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good."""
     moving = (*scope.symbols.q, scope.symbols.t)
@@ -108,7 +103,7 @@ def elimination_of(constraints: Constraints) -> Elimination:
         DerivationError: a dependent coordinate that no constraint determines.
     """
     scope = constraints.motion.scope
-    names = dependent_coordinates(scope)
+    names = scope.dependent
     dependent = tuple(k for k, u in enumerate(scope.symbols.u) if u.name[:-1] in names)
     kept = tuple(k for k in range(len(scope.symbols.u)) if k not in dependent)
     J = _numbers(constraints)
@@ -138,11 +133,11 @@ def _numbers(constraints: Constraints) -> np.ndarray:
         DerivationError: it has no finite value there.
     """
     try:
-        state = generic_state(constraints)
+        state = Closure(constraints).generic()
     except (DerivationError, MissingValues):
-        state = scattered_state(constraints)
+        state = Closure(constraints).scattered()
     try:
-        return rows_where_closed(constraints, state)
+        return Closure(constraints).rows_at(state)
     except (NoValue, ZeroDivisionError):
         what = "the velocities of the constraints have no finite value near the start"
         raise DerivationError(what, "constraints", "look at what grows in the joints that they hold") from None
@@ -225,7 +220,7 @@ class _LinearRows:
         zero = self.numbers == 0
         try:
             for seed in SHAKEN:
-                zero &= rows_where_closed(self.constraints, generic_state(self.constraints, seed, shaken=True)) == 0
+                zero &= Closure(self.constraints).rows_at(Closure(self.constraints).generic(seed, shaken=True)) == 0
         except (DerivationError, MissingValues, NoValue):
             return self
         return replace(self, vanishing=frozenset((int(i), int(k)) for i, k in np.argwhere(zero)))
@@ -239,8 +234,8 @@ class _LinearRows:
         rows, shares = [*self.rows, *sharing], []
         for seed in range(FAR_STATES):
             with suppress(DerivationError, MissingValues, NoValue, ZeroDivisionError):
-                state = generic_state(self.constraints, seed, spreads=FAR)
-                J = (rows_where_closed(self.constraints, state) / dense.divisor(lengths))[rows]
+                state = Closure(self.constraints).generic(seed, spreads=FAR)
+                J = (Closure(self.constraints).rows_at(state) / dense.divisor(lengths))[rows]
                 J_d = J[:, self.dependent]
                 whole = np.linalg.det(J_d.T @ J_d)
                 if whole > tolerances.RANK and rank(J) == len(self.rows):  # on another branch they need not follow

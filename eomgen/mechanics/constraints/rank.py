@@ -10,8 +10,8 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, NotYet
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
-from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
+from eomgen.mechanics.constraints.closure import Closure
+from eomgen.mechanics.constraints.elimination import elimination_of
 from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of, holds_identically
 from eomgen.mechanics.kinematics import (
     GROUND,
@@ -141,14 +141,14 @@ def freedom_of(
         constraints = constraints_of(motion_of(scope_of(model)), modes=modes)
     except NotYet as error:
         return Freedom(not_counted=error.what)
-    if dependent_coordinates(constraints.motion.scope):
+    if constraints.motion.scope.dependent:
         elimination_of(constraints)
-    count, formula = counted(constraints)
+    count, formula = Rank(constraints).counted()
     identical = tuple((row.constraint, row.number) for row in constraints.rows if row.identical)
     closing = tuple((row.constraint, row.number) for row in constraints.closing)
     try:
-        state = generic_state(constraints)
-        redundant, integrability = redundant_rows(constraints, state), integrability_of(constraints)
+        state = Closure(constraints).generic()
+        redundant, integrability = Rank(constraints).redundant(state), Rank(constraints).integrability
         shared = rows_held_twice(constraints, redundant, state)
     except (DerivationError, MissingValues) as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
@@ -161,27 +161,105 @@ def freedom_of(
 # -- by formula ------------------------------------------------------------------------------------
 
 
-def counted(constraints: Constraints) -> tuple[int, str]:
-    """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
-    motion = constraints.motion
-    of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
-    particles = [link for link in motion.links if is_particle(motion, link)]
-    bodies = [link for link in motion.links if link not in particles]
-    free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
-    joints = sum(_components(constraints, link, of_body, link.S) for link in bodies)
-    joints += sum(_components(constraints, link, of_particle, _sliding(link.S)) for link in particles)
-    driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
-    taken = [(joints, "joints"), (len(constraints.rows), "constraints"), (driven, "given motions")]
-    total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
-    text = " + ".join(f"{each}*{many} ({what})" for each, many, what in free if many)
-    return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
+@dataclass(frozen=True)
+class Rank:
+    """Independence of constraint rows, at a generic configuration in which the constraints hold."""
 
+    constraints: Constraints
 
-def is_particle(motion: Motion, link: BodyLink) -> bool:
-    """A point mass that its joint does not turn."""
-    shape = motion.scope.model.bodies[link.name].shape
-    turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
-    return shape is not None and shape.is_point and (is_placed(link) or not turns)
+    def counted(self) -> tuple[int, str]:
+        """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
+        motion = self.constraints.motion
+        of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
+        particles = [link for link in motion.links if motion.is_particle(link)]
+        bodies = [link for link in motion.links if link not in particles]
+        free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
+        joints = sum(_components(self.constraints, link, of_body, link.S) for link in bodies)
+        joints += sum(_components(self.constraints, link, of_particle, _sliding(link.S)) for link in particles)
+        driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
+        taken = [(joints, "joints"), (len(self.constraints.rows), "constraints"), (driven, "given motions")]
+        total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
+        text = " + ".join(f"{each}*{many} ({what})" for each, many, what in free if many)
+        return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
+
+    def redundant(self, state: State | None = None) -> tuple[Redundant, ...]:
+        """The constraint rows that follow from those before them, at a configuration in which the constraints hold.
+
+        Args:
+            state: a generic one, where it is known already.
+        Raises:
+            MissingValues: the constraints cannot be closed without values for the parameters.
+            DerivationError: they do not close near the start.
+        """
+        closing = self.constraints.closing
+        if not closing:
+            return ()
+        J = Closure(self.constraints).rows_at(state or Closure(self.constraints).generic())
+        kept = independent_rows(J, tolerances.RANK_NEARBY)
+        return tuple(
+            Redundant(
+                row.constraint,
+                row.number,
+                _others(row.constraint, J[i], [(closing[k].constraint, J[k]) for k in kept if k < i]),
+            )
+            for i, row in enumerate(closing)
+            if i not in kept
+        )
+
+    def rank(self, state: State | None = None) -> int:
+        """rank J, how many constraint rows are independent; the state and the errors are those of `redundant`."""
+        return len(self.constraints.closing) - len(self.redundant(state))
+
+    def degrees_of_freedom(self, state: State | None = None) -> int:
+        """nu - rank J; the state and the errors are those of `redundant`."""
+        scope = self.constraints.motion.scope
+        turning = sum(f"{four[0].name}'" in {u.name for u in scope.symbols.u} for four in scope.quaternions)
+        return len(scope.symbols.u) - turning - self.rank(state)
+
+    @property
+    def alike(self) -> tuple[int, ...]:
+        """Number of the group of each constraint row; rows of one group depend linearly on one another.
+
+        The row of a group that is redundant may change along a motion: d cos q = 0, d sin q = 0 determine d in turns.
+        Rows are of one kind where their lengths are, at a generic state, within LONGER of one another.
+        """
+        own = tuple(range(len(self.constraints.closing)))
+        if len(own) < 2:
+            return own
+        try:
+            J = Closure(self.constraints).rows_at(Closure(self.constraints).generic())
+        except (DerivationError, MissingValues, NoValue):
+            return own
+        kept, lengths, found = independent_rows(J, tolerances.RANK_NEARBY), lengths_of(J, 1), list(own)
+        for i in own:
+            if i in kept or not lengths[i]:
+                continue
+            shares = np.linalg.lstsq(J[kept].T, J[i], rcond=None)[0] * lengths[kept] / lengths[i]
+            near = (lengths[kept] < LONGER * lengths[i]) & (LONGER * lengths[kept] > lengths[i])
+            sharing = {
+                found[k]
+                for k, share, one in zip(kept, shares, near, strict=True)
+                if one and abs(share) > tolerances.SHARE
+            }
+            found = [min(sharing | {i}) if number in sharing | {i} else number for number in found]
+        return tuple(found)
+
+    @property
+    def integrability(self) -> Integrability | None:
+        """Integrability of the constraint rows of velocities alone, over the rates; None where there are none.
+
+        Raises:
+            MissingValues, DerivationError: the constraints cannot be satisfied near the start.
+        """
+        moving = tuple(row for row in self.constraints.closing if row.gap is None)
+        if not moving:
+            return None
+        forms = _forms_of(self.constraints, Closure(self.constraints).generic())
+        together = forms.allowed([form for _, form in forms.moving])
+        complete = all(forms.closes(form, together) for _, form in forms.moving)
+        rows = [_judged(forms, row, form, complete) for row, form in forms.moving]
+        reached = together.shape[1] if complete else _reached(forms)
+        return Integrability(tuple(rows), reached - 1)
 
 
 def _components(constraints: Constraints, link: BodyLink, free: int, columns: TwistColumns) -> int:
@@ -189,18 +267,11 @@ def _components(constraints: Constraints, link: BodyLink, free: int, columns: Tw
 
     A variable that is a constant (`angle = 0`) is one more, unless a constraint that this satisfies is counted for it.
     """
-    if is_placed(link):
+    if link.is_placed:
         return 0
-    constant = sum(column not in _ways(constraints.motion, link) for column in columns)
+    constant = sum(column not in constraints.motion.joint_columns(link) for column in columns)
     satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in constraints.rows)
     return free - len(columns) + max(0, constant - satisfied)
-
-
-def _ways(motion: Motion, link: BodyLink) -> TwistColumns:
-    """The columns of S along which the joint moves."""
-    if len(link.S) != len(link.s):  # of a quaternion
-        return link.S
-    return tuple(column for column, s in zip(link.S, link.s, strict=True) if motion.moves((s,)))
 
 
 def _sliding(columns: TwistColumns) -> TwistColumns:
@@ -209,69 +280,6 @@ def _sliding(columns: TwistColumns) -> TwistColumns:
 
 
 # -- by rank ---------------------------------------------------------------------------------------
-
-
-def degrees_of_freedom(constraints: Constraints, state: State | None = None) -> int:
-    """nu - rank J; the state and the errors are those of `redundant_rows`."""
-    scope = constraints.motion.scope
-    turning = sum(f"{four[0].name}'" in {u.name for u in scope.symbols.u} for four in scope.quaternions)
-    return len(scope.symbols.u) - turning - rank_of_constraints(constraints, state)
-
-
-def rank_of_constraints(constraints: Constraints, state: State | None = None) -> int:
-    """rank J, how many constraint rows are independent; the state and the errors are those of `redundant_rows`."""
-    return len(constraints.closing) - len(redundant_rows(constraints, state))
-
-
-def redundant_rows(constraints: Constraints, state: State | None = None) -> tuple[Redundant, ...]:
-    """The constraint rows that follow from those before them, at a generic configuration in which the constraints hold.
-
-    Args:
-        state: such a configuration, where one is known already.
-    Raises:
-        MissingValues: the constraints cannot be closed without values for the parameters.
-        DerivationError: they do not close near the start.
-    """
-    closing = constraints.closing
-    if not closing:
-        return ()
-    J = rows_where_closed(constraints, state or generic_state(constraints))
-    kept = independent_rows(J, tolerances.RANK_NEARBY)
-    return tuple(
-        Redundant(
-            row.constraint,
-            row.number,
-            _others(row.constraint, J[i], [(closing[k].constraint, J[k]) for k in kept if k < i]),
-        )
-        for i, row in enumerate(closing)
-        if i not in kept
-    )
-
-
-def rows_alike(constraints: Constraints) -> tuple[int, ...]:
-    """Number of the group of each constraint row; rows of one group depend linearly on one another.
-
-    The row of a group that is redundant may change along a motion: d cos q = 0 and d sin q = 0 determine d in turns.
-    Rows are of one kind where their lengths are, at a generic state, within LONGER of one another.
-    """
-    own = tuple(range(len(constraints.closing)))
-    if len(own) < 2:
-        return own
-    try:
-        J = rows_where_closed(constraints, generic_state(constraints))
-    except (DerivationError, MissingValues, NoValue):
-        return own
-    kept, lengths, found = independent_rows(J, tolerances.RANK_NEARBY), lengths_of(J, 1), list(own)
-    for i in own:
-        if i in kept or not lengths[i]:
-            continue
-        shares = np.linalg.lstsq(J[kept].T, J[i], rcond=None)[0] * lengths[kept] / lengths[i]
-        near = (lengths[kept] < LONGER * lengths[i]) & (LONGER * lengths[kept] > lengths[i])
-        sharing = {
-            found[k] for k, share, one in zip(kept, shares, near, strict=True) if one and abs(share) > tolerances.SHARE
-        }
-        found = [min(sharing | {i}) if number in sharing | {i} else number for number in found]
-    return tuple(found)
 
 
 def rows_held_twice(constraints: Constraints, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:
@@ -355,7 +363,7 @@ def _twists(motion: Motion, state: State, loose: Container[str]) -> np.ndarray:
 
 
 def _own_ways(motion: Motion, link: BodyLink, state: State, loose: Container[str]) -> np.ndarray:
-    if is_placed(link):
+    if link.is_placed:
         return np.eye(6) if motion.scope.model.space == "space" else np.eye(6)[:, 2:5]
     driven = [q for q in motion.scope.symbols.q if motion.scope.model.coordinates[q.name].driven]
     free = [q for q in motion.scope.symbols.q if q not in driven]
@@ -367,11 +375,6 @@ def _own_ways(motion: Motion, link: BodyLink, state: State, loose: Container[str
     ]
     S = _numbers([x for w, v in kept for x in (*w, *v)], state).reshape(-1, 6).T
     return _shifted(-_numbers(link.point, state)) @ S if kept else np.zeros((6, 0))
-
-
-def is_placed(link: BodyLink) -> bool:
-    """True if a body stands where the model places it, without a joint that carries a reaction."""
-    return link.joint is None or not link.joint.carries_reaction
 
 
 def _carried(link: BodyLink, state: State) -> np.ndarray:
@@ -478,25 +481,6 @@ class _Forms:
         turning = slopes.T - slopes  # entry (a, b): dw_b/dy_a - dw_a/dy_b
         size = max(1.0, float(np.abs(turning).max(initial=0)))
         return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < tolerances.RANK * size)
-
-
-def integrability_of(constraints: Constraints) -> Integrability | None:
-    """Integrability of the constraint rows of velocities alone; None where there are none.
-
-    Args:
-        constraints: over the rates, before any elimination.
-    Raises:
-        MissingValues, DerivationError: the constraints cannot be satisfied near the start.
-    """
-    moving = tuple(row for row in constraints.closing if row.gap is None)
-    if not moving:
-        return None
-    forms = _forms_of(constraints, generic_state(constraints))
-    together = forms.allowed([form for _, form in forms.moving])
-    complete = all(forms.closes(form, together) for _, form in forms.moving)
-    rows = [_judged(forms, row, form, complete) for row, form in forms.moving]
-    reached = together.shape[1] if complete else _reached(forms)
-    return Integrability(tuple(rows), reached - 1)
 
 
 def _judged(forms: _Forms, row: Row, form: DifferentialForm, complete: bool) -> VelocityRow:

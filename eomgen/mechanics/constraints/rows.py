@@ -31,7 +31,6 @@ from eomgen.symbolic.expression import (
     Wrench,
     apply,
     depends_on,
-    dot,
     is_zero,
     jacobian,
     operations,
@@ -150,6 +149,29 @@ class Constraints:
     @property
     def phi(self) -> tuple[Scalar | None, ...]:
         return tuple(row.gap for row in self.closing)
+
+    @property
+    def movable(self) -> list[Node]:
+        """The coordinates that are not driven."""
+        scope = self.motion.scope
+        return [q for q in scope.symbols.q if not scope.model.coordinates[q.name].driven]
+
+    @property
+    def gaps(self) -> tuple[Scalar, ...]:
+        """phi of every row that the coordinates do not satisfy by themselves, where it has one."""
+        return tuple(row.gap for row in self.rows if row.gap is not None and not row.identical)
+
+    @property
+    def norms(self) -> tuple[Scalar, ...]:
+        """e . e - 1 of every quaternion."""
+        return tuple(sum((e * e for e in four), start=-1) for four in self.motion.scope.quaternions)
+
+    @property
+    def fixed_by_position(self) -> list[Node]:
+        """The dependent coordinates that stand in a gap."""
+        scope, standing = self.motion.scope, set(symbols_of(self.gaps))
+        names = scope.dependent
+        return [q for q in scope.symbols.q if q.name in names and q in standing]
 
 
 def constraints_of(
@@ -352,7 +374,7 @@ def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Sca
 
 def _slide(motion: Motion, pushes: tuple[Push, ...]) -> Scalar:
     """Power that pushes have from points that move in their bodies."""
-    return sum((slide_power(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
+    return sum((motion.slide_power(push) for push in pushes if isinstance(push, PointForce)), start=0)
 
 
 def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
@@ -365,11 +387,6 @@ def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
             "write it as a sum of rates, each times a function of the coordinates",
         )
     return rate
-
-
-def slide_power(motion: Motion, push: PointForce) -> Scalar:
-    """Power of a push on a point that moves in its body: F . R r'."""
-    return dot(motion.in_ground_axes(push.force, push.axes), motion.slide(push.place))
 
 
 def holds_identically(scalar: Scalar) -> bool:

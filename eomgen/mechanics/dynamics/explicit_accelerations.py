@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints import redundant_rows
+from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.dynamics.wellposed import massless_motions
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, inner, is_zero, over
@@ -80,7 +80,7 @@ def _entries(row: ScalarRow) -> dict[int, Scalar]:
 
 def regular_rows(system: System) -> list[int]:
     """The constraint rows that do not follow from others."""
-    dropped = {(row.constraint, row.number) for row in redundant_rows(system.constraints)}
+    dropped = {(row.constraint, row.number) for row in Rank(system.constraints).redundant()}
     return [i for i, row in enumerate(system.constraints.closing) if (row.constraint, row.number) not in dropped]
 
 

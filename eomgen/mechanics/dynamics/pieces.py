@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import begun_state, closed, generic_state, movable, on_unit_norms
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.model import exact_parameters
@@ -304,7 +304,7 @@ class _Search:
     def _begun(self) -> State | None:
         """The model's own start, its constraints closed; None where it has none."""
         try:
-            return begun_state(self._system.constraints)
+            return Closure(self._system.constraints).begun()
         except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):
             return None
 
@@ -329,7 +329,7 @@ class _Search:
         constraints, symbols = self._system.constraints, self._system.symbols
         try:
             if begun is None:
-                return generic_state(constraints, rng)
+                return Closure(constraints).generic(rng)
             moved = {x: begun[x] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[x])) for x in symbols.q}
             moved |= {u: begun[u] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[u])) for u in symbols.u}
             moved |= {symbols.t: begun[symbols.t] + of_50_digits(spread * rng.uniform(0, 1))}
@@ -340,11 +340,11 @@ class _Search:
 
     def _closed(self, state: State) -> State | None:
         constraints = self._system.constraints
-        state = state | on_unit_norms(self._system.scope.quaternions, state)
+        state = state | self._system.scope.on_unit_norms(state)
         return (
             state
             if all(row.identical for row in constraints.rows)
-            else closed(constraints, state, movable(constraints))
+            else Closure(constraints).closed(state, constraints.movable)
         )
 
     def _along(self, state: State, step: float) -> Iterator[State]:

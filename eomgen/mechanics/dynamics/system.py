@@ -12,12 +12,11 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
     Constraints,
     Elimination,
+    Rank,
     begun_places,
     constraints_of,
-    dependent_coordinates,
     elimination_of,
     holds_identically,
-    rows_alike,
 )
 from eomgen.mechanics.kinematics import (
     ContactModes,
@@ -118,7 +117,7 @@ def system_of(
         DerivationError: what the model says cannot be derived.
     """
     free = free_system_of(model, modes, with_laws=with_laws, begun_as=begun_as)
-    return reduced_system(free) if dependent_coordinates(free.scope) or model.speeds else free
+    return reduced_system(free) if free.scope.dependent or model.speeds else free
 
 
 def free_system_of(
@@ -150,7 +149,7 @@ def reduced_system(free: System) -> System:
         DerivationError: a dependent coordinate that no constraint determines.
         ModelError: declared speeds that do not determine the rates.
     """
-    elimination = elimination_of(free.constraints) if dependent_coordinates(free.scope) else None
+    elimination = elimination_of(free.constraints) if free.scope.dependent else None
     scope = free.scope if elimination is None else elimination.scope
     solved: tuple[Solved, ...] = ()
     if scope.model.speeds:
@@ -254,9 +253,9 @@ def assembled(
 def _alike(system: System) -> tuple[int, ...]:
     if len(system.constraints.closing) < 2:
         return ()
-    if rows_alike not in system.found:
-        system.found[rows_alike] = rows_alike(system.constraints)
-    found: tuple[int, ...] = system.found[rows_alike]
+    if Rank not in system.found:
+        system.found[Rank] = Rank(system.constraints).alike
+    found: tuple[int, ...] = system.found[Rank]
     return found
 
 

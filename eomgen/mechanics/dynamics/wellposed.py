@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import generic_state, scattered_state
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import BodyLink
@@ -121,9 +121,9 @@ def _idle(equations: EquationsOfMotion) -> tuple[Problem, ...]:
     if not equations.M or _is_full(system):
         return ()
     try:
-        if _has_energy(equations, scattered_state(system.constraints)):
+        if _has_energy(equations, Closure(system.constraints).scattered()):
             return ()
-        state = generic_state(system.constraints)
+        state = Closure(system.constraints).generic()
         u = _without_energy(equations, state)
         return () if u is None else (_idle_problem(system, u, state),)
     except (MissingValues, DerivationError, NoValue):

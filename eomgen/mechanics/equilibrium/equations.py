@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import constraints_of, degrees_of_freedom, dependent_coordinates
+from eomgen.mechanics.constraints import Rank, constraints_of
 from eomgen.mechanics.dynamics import System, reduced_system, system_of
 from eomgen.mechanics.kinematics import Scope, loads_of, motion_of
 from eomgen.mechanics.state import Doubles
@@ -287,7 +287,7 @@ def has_degrees_of_freedom(system: System) -> bool:
     """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
     unknowns = system.symbols.unknowns.values()
     forces = system.loads.generalized_forces
-    return degrees_of_freedom(system.constraints) > 0 and not depends_on_any(forces, unknowns)
+    return Rank(system.constraints).degrees_of_freedom() > 0 and not depends_on_any(forces, unknowns)
 
 
 def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
@@ -393,4 +393,4 @@ def _made_of(free: System, scope: Scope) -> System:
     scope = replace(scope, model=altered(scope.model, speeds=Table({})))
     motion = motion_of(scope)
     made = System(motion, loads_of(motion, free.loads.begun), constraints_of(motion, modes=free.modes), free.modes)
-    return reduced_system(made) if dependent_coordinates(scope) else made
+    return reduced_system(made) if scope.dependent else made

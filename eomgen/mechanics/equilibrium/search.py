@@ -13,7 +13,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Constraints, generic_state, rows_of_constraint
+from eomgen.mechanics.constraints import Closure, Constraints, rows_of_constraint
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
 from eomgen.mechanics.equilibrium.equations import StaticEquations
@@ -134,7 +134,7 @@ MOST_NAMED = 4  # coordinates
 def nowhere(complete: bool, constraints: Constraints) -> DerivationError:
     """Error: there is no equilibrium, none was found, or the constraints cannot be satisfied near the start."""
     try:
-        generic_state(constraints)
+        Closure(constraints).generic()
     except DerivationError as error:
         return error
     except MissingValues:  # without values nobody can say if they can be satisfied

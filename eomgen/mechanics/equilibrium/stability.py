@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import rank_of_constraints
+from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.symbolic.exact import readable, sign_of_terms, simplest
@@ -179,7 +179,7 @@ class _Place:
             rng = Random(6)
             away = np.array([self.numbers[q] + rng.uniform(0.1, 0.3) for q in self.statics.q])
             return rank(self.statics.slopes(self.statics.J, away, self.numbers))
-        return rank_of_constraints((self.statics.system.free or self.statics.system).constraints) + self.statics.norms
+        return Rank((self.statics.system.free or self.statics.system).constraints).rank() + self.statics.norms
 
     @cached_property
     def _H(self) -> StiffnessRows:

@@ -8,7 +8,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import generic_state, holds_identically, slide_power
+from eomgen.mechanics.constraints import Closure, holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.wrenches import (
     Axes,
@@ -166,7 +166,7 @@ def _refuse_placeless_forces(system: System) -> None:
             what = f"the force '{force.name}' acts on coordinates and at no place: reactions do not follow"
             raise DerivationError(what, f"forces.{force.name}", "give it as forces and couples on bodies")
         pushes = [load for load in force.loads if isinstance(load, PointForce)]
-        if any(_pushes_along(system, slide_power(system.motion, push)) for push in pushes):
+        if any(_pushes_along(system, system.motion.slide_power(push)) for push in pushes):
             raise _moved_inside(f"the force '{force.name}'", f"forces.{force.name}")
 
 
@@ -177,7 +177,7 @@ def _refuse_placeless_constraints(system: System) -> None:
     idle = _idle_rows(system)
     for row in (row for row in system.constraints.rows if row.constraint not in drives and row.label not in idle):
         points = (push for push in row.pushes if isinstance(push, PointForce))
-        slide = sum((slide_power(system.motion, push) for push in points), start=0)
+        slide = sum((system.motion.slide_power(push) for push in points), start=0)
         seen_alike = row.carrier is None and not is_zero(row.direct)
         own = row.direct - slide if seen_alike else 0  # a row of material points sees no slide
         if row.status != "identical" and (not row.pushes or _pushes_along(system, own)):
@@ -373,7 +373,7 @@ def is_balanced(balance: Balance, solution: Solution) -> bool:
         return True
     if not balance.system.symbols.q:
         return False
-    state = generic_state(balance.system.constraints)
+    state = Closure(balance.system.constraints).generic()
     try:
         sizes = [abs(x) for x in evaluate(left, state, fifty_digits())]
     except NoValue:

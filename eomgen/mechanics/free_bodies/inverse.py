@@ -19,12 +19,11 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
+    Closure,
     Constraints,
+    Rank,
     Row,
-    dependent_coordinates,
-    generic_state,
     holds_identically,
-    redundant_rows,
 )
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
@@ -176,7 +175,7 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
         UsageError: rank [A J^T] < nu, or rank [A J^T] - rank J^T < number of actuators.
     """
     constraints, nu = system.constraints, len(system.symbols.u)
-    state = generic_state(constraints)
+    state = Closure(constraints).generic()
     A, J = Numbers(state).array(columns, nu), Numbers(state).on_manifold(constraints.J, nu)
     whole, own = (dense.rank(rows, smallest=tolerances.RANK_NEARBY) for rows in (np.vstack([A, J]), J))
     reported = f"{len(names)} actuated, and {nu - own} degrees of freedom"
@@ -265,7 +264,7 @@ def with_drive_let_go(system: System, coordinate: str) -> System:
             system.scope.model,
             coordinates=Table({**system.scope.model.coordinates, coordinate: system.scope.let_go(coordinate)}),
         )
-        over_all = system.free is None and dependent_coordinates(system.scope)
+        over_all = system.free is None and system.scope.dependent
         system.found[key] = (free_system_of if over_all else system_of)(model, system.modes, begun_as=system)
     free: System = system.found[key]
     return free
@@ -325,7 +324,7 @@ def multiplier(system: System, constraint: str) -> Scalar:
 def _refuse_shared(constraints: Constraints, constraint: str) -> None:
     """Refuse a constraint that follows from others: what these carry together is determined, not what each does."""
     try:
-        redundant = redundant_rows(constraints)
+        redundant = Rank(constraints).redundant()
     except MissingValues:  # without values nobody can say if they do
         return
     for row in redundant:
@@ -421,7 +420,7 @@ def _states(system: System) -> Iterator[State]:
     """The start where it has values, then a configuration that is not special."""
     with suppress(DerivationError, ModelError):
         yield begun_state(system)
-    yield generic_state(system.constraints)
+    yield Closure(system.constraints).generic()
 
 
 def _entries(row: Sequence[Scalar]) -> dict[int, Scalar]:

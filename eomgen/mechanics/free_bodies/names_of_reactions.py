@@ -11,7 +11,7 @@ from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, holds_identically, is_placed
+from eomgen.mechanics.constraints import Row, holds_identically
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, efforts_of
 from eomgen.mechanics.kinematics import BodyLink, Motion
@@ -171,7 +171,7 @@ def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]
     for i, c in enumerate(balance.components):
         if c.kind == "drive" and c.side == q.name:
             found[i] = derivative(motion.link(c.owner).s[c.number - 1], q)
-        elif c.kind == "joint" and (is_placed(link := motion.link(c.owner)) or _moves_seat(link, q)):
+        elif c.kind == "joint" and ((link := motion.link(c.owner)).is_placed or _moves_seat(link, q)):
             found[i] = _work(motion, c.effects, q)
         elif c.kind == "constraint" and c.bilateral_friction is None and (c.owner, c.number) in rows:
             found[i] = _left_out(balance, rows, rows[c.owner, c.number], q)

@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import degrees_of_freedom, generic_state, holds_identically
+from eomgen.mechanics.constraints import Closure, Rank, holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import (
     DIRECTIONS,
@@ -439,7 +439,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
         if not system.symbols.u or all(map(holds_identically, left)):  # residuals at rest are tested elsewhere
             return
     else:
-        motions = degrees_of_freedom(system.constraints)
+        motions = Rank(system.constraints).degrees_of_freedom()
         if len(left) <= motions or sum(not holds_identically(x) for x in left) <= motions:
             return
         if not system.symbols.u:
@@ -517,7 +517,7 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
     """Velocities along the rows: a basis of those that no reaction resists, and those of the coordinates."""
     system = balance.system
     rows, columns = len(balance.equations), len(balance.components)
-    state = generic_state(system.constraints)
+    state = Closure(system.constraints).generic()
 
     numbers = Numbers(state).of
     G = np.zeros((rows, columns))

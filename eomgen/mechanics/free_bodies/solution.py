@@ -8,7 +8,7 @@ from functools import cache
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints import generic_state, holds_identically, rank_of_constraints
+from eomgen.mechanics.constraints import Closure, Rank, holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import (
     Balance,
@@ -206,13 +206,9 @@ def _generic_state(system: System, seed: int) -> dict[Node, Any]:
 
     Two cranks are a parallelogram only where they have one length: then the values are the model's.
     """
-    own = generic_state(system.constraints, seed)
+    own = Closure(system.constraints).generic(seed)
     try:
-        shaken = generic_state(system.constraints, seed, shaken=True)
-        return (
-            shaken
-            if rank_of_constraints(system.constraints, shaken) == rank_of_constraints(system.constraints, own)
-            else own
-        )
+        shaken = Closure(system.constraints).generic(seed, shaken=True)
+        return shaken if Rank(system.constraints).rank(shaken) == Rank(system.constraints).rank(own) else own
     except (DerivationError, NoValue):
         return own

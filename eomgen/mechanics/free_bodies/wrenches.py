@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, generic_state, is_placed
+from eomgen.mechanics.constraints import Closure, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import (
     GROUND,
@@ -524,7 +524,7 @@ def placements_of(system: System, axes: Axes, others: Sequence[Component]) -> tu
     given = {link.name: ways for link in axes.motion.links if (ways := _free_of_work(system, link))}
     if not given:
         return ()
-    numbers = _Numbers(axes, generic_state(system.constraints))
+    numbers = _Numbers(axes, Closure(system.constraints).generic())
     held = numbers.columns([(*c.effects, *c.friction_effects) for c in others])
     found: list[Component] = []
     for name, ways in given.items():
@@ -537,7 +537,7 @@ def _free_of_work(system: System, link: BodyLink) -> list[SparseRow]:
 
     They are eliminated by slopes that are numbers: what other slopes would say of a variable is left out.
     """
-    if link.joint is None or not is_placed(link):
+    if link.joint is None or not link.is_placed:
         return []
     driven, symbols = driven_coordinates(system.scope.model), system.symbols
     clocks = (symbols.t, *(q for q in symbols.q if q.name in driven))

@@ -8,7 +8,6 @@ from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import is_particle
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.instant.mechanism import FoundPoint, Mechanism, PointPair, constructed
 from eomgen.mechanics.instant.motion_kind import Kind, Kinds, instant_kind
@@ -104,7 +103,7 @@ class KinematicState:
     def turning(self) -> dict[str, VelocityField]:
         """Velocity fields of the bodies that are no point masses."""
         links = self.system.motion.links
-        points = {link.name for link in links if is_particle(self.system.motion, link)}
+        points = {link.name for link in links if self.system.motion.is_particle(link)}
         return {name: field for name, field in self.fields.items() if name not in points}
 
     @cached_property

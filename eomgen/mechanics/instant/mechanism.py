@@ -11,7 +11,7 @@ from functools import cached_property
 from itertools import combinations
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import holds_identically, is_particle
+from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Component, components_of
 from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
@@ -288,7 +288,7 @@ class _Search:
     def _is_point(self, block: str) -> bool:
         """True for a point mass without a spin: as a body it translates."""
         link = self.mechanism.system.motion.link(block)
-        return is_particle(self.mechanism.system.motion, link) and all(is_zero(x) for x in link.twist.w)
+        return self.mechanism.system.motion.is_particle(link) and all(is_zero(x) for x in link.twist.w)
 
     def _line(self, axes: Axes, component: Component) -> tuple[PointPair | None, Vector]:
         """The two blocks on which it pushes with opposite wrenches, and the line; None where there are no such two."""

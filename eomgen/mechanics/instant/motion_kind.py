@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import degrees_of_freedom, generic_state
+from eomgen.mechanics.constraints import Closure, Rank
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import VelocityField
 from eomgen.mechanics.state import Numbers
@@ -437,7 +437,7 @@ class Possible:
 
     def _state(self, rng: Random) -> State:
         constraints, symbols = self.system.constraints, self.system.symbols
-        state = generic_state(constraints, rng, shaken=self.shaken)
+        state = Closure(constraints).generic(rng, shaken=self.shaken)
         state |= {node: of_50_digits(rng.uniform(-1, 1)) for node in self.jerks}
         rows = tuple(row.velocity for row in constraints.closing)
         J = tuple(x for row in constraints.J for x in row)
@@ -541,7 +541,7 @@ def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
 
 def parameters(kinds: Kinds) -> int:
     """Number of parameters that move a system: its degrees of freedom by rank, plus 1 if something moves with time."""
-    return degrees_of_freedom(kinds.system.constraints, kinds.possible.states[0]) + moves_by_itself(kinds.system)
+    return Rank(kinds.system.constraints).degrees_of_freedom(kinds.possible.states[0]) + moves_by_itself(kinds.system)
 
 
 def moves_by_itself(system: System) -> bool:

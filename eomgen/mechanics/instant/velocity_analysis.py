@@ -18,7 +18,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import fixed_by_position, holds_identically
+from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.start import start_state, values_where_at_rest
@@ -277,7 +277,7 @@ def instant_kinematics_of(model: Model, *, by_coordinates: bool = False) -> Inst
     """
     free = free_system_of(freed(model))
     places, numbers = _places(free)
-    located = {q: numbers[q.name] for q in fixed_by_position(free.constraints) if numbers and q not in places}
+    located = {q: numbers[q.name] for q in free.constraints.fixed_by_position if numbers and q not in places}
     exact = by_coordinates or not located
     still = (
         _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
@@ -298,7 +298,7 @@ def instant_kinematics_of(model: Model, *, by_coordinates: bool = False) -> Inst
 def _places(free: System) -> tuple[State, Mapping[str, float]]:
     """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
     system = reduced_system(free)
-    sought, found = fixed_by_position(system.constraints), State()
+    sought, found = system.constraints.fixed_by_position, State()
     if not sought:
         return {}, {}
     try:

@@ -9,7 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import hold_identically, on_unit_norms, scattered_state
+from eomgen.mechanics.constraints import Closure, hold_identically
 from eomgen.mechanics.dynamics import (
     EVERYWHERE,
     NOWHERE,
@@ -224,9 +224,9 @@ def _alone(rate: Scalar, vanishes: bool, others: Sequence[Node]) -> Scalar | Non
 
 def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[bool]:
     """True for each rate that 50 digits show to change when the other coordinates change and t does not."""
-    state, rng = scattered_state(system.constraints), Random(2)
+    state, rng = Closure(system.constraints).scattered(), Random(2)
     moved = state | {x: state[x] + of_50_digits(rng.uniform(0.1, 0.4)) for x in others}
-    moved |= on_unit_norms(system.scope.quaternions, moved)
+    moved |= system.scope.on_unit_norms(moved)
     try:
         here, there = (evaluate(rates, each, fifty_digits()) for each in (state, moved))
     except NoValue:

@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import generic_state
+from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import EVERYWHERE, EquationsOfMotion, Extent, System
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals, where_momenta_hold
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
@@ -328,11 +328,11 @@ def _solved(
     Parameters are off any special value, m1 - m2 is 0 at m1 = m2 alone, unless the rows determine less for these.
     """
     try:
-        own = general_solution(LinearSystem(rows, right, unknowns, digits_at(generic_state(system.constraints))))
+        own = general_solution(LinearSystem(rows, right, unknowns, digits_at(Closure(system.constraints).generic())))
     except (DerivationError, MissingValues):
         return None
     with suppress(DerivationError, MissingValues):
-        shaken = generic_state(system.constraints, shaken=True)
+        shaken = Closure(system.constraints).generic(shaken=True)
         found = general_solution(LinearSystem(rows, right, unknowns, digits_at(shaken)))
         return found if len(found.free) == len(own.free) else own
     return own

@@ -29,6 +29,7 @@ from eomgen.symbolic.expression import (
     derivative,
     dot,
     function,
+    is_zero,
     jacobian,
     matrix_of,
     minus,
@@ -107,6 +108,11 @@ class BodyLink:
         if self.angle is not None:
             return (0, 0, rates[0])
         return spin_between(self.pose.R, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
+
+    @property
+    def is_placed(self) -> bool:
+        """True if a body stands where the model places it, without a joint that carries a reaction."""
+        return self.joint is None or not self.joint.carries_reaction
 
 
 @dataclass(frozen=True)
@@ -259,6 +265,22 @@ class Motion:
         rate = self.link(body).s_rate[variable]
         speeds = {u: k for k, u in enumerate(self.scope.symbols.u)}
         return {speeds[s]: derivative(rate, s) for s in symbols_of((rate,)) if s in speeds}
+
+    def slide_power(self, push: PointForce) -> Scalar:
+        """Power of a push on a point that moves in its body: F . R r'."""
+        return dot(self.in_ground_axes(push.force, push.axes), self.slide(push.place))
+
+    def is_particle(self, link: BodyLink) -> bool:
+        """A point mass that its joint does not turn."""
+        shape = self.scope.model.bodies[link.name].shape
+        turns = any(not is_zero(x) for w, _ in self.joint_columns(link) for x in w)
+        return shape is not None and shape.is_point and (link.is_placed or not turns)
+
+    def joint_columns(self, link: BodyLink) -> tuple[tuple[Vector, Vector], ...]:
+        """The columns of S along which the joint moves."""
+        if len(link.S) != len(link.s):  # of a quaternion
+            return link.S
+        return tuple(column for column, s in zip(link.S, link.s, strict=True) if self.moves((s,)))
 
 
 def motion_of(scope: Scope) -> Motion:

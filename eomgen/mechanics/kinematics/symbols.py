@@ -43,6 +43,7 @@ from eomgen.symbolic.expression import (
     Sampled,
     Scalar,
     ScalarRow,
+    State,
     Symbols,
     Vector,
     as_expression,
@@ -206,6 +207,14 @@ class Scope:
             found |= {e: over(start[e], norm) for e in four}
         return found
 
+    def on_unit_norms(self, state: State) -> State:
+        """The symbols of quaternions, whose squares add up to 1, over their norm."""
+        found: State = {}
+        for four in self.quaternions:
+            (norm,) = evaluate((sqrt(sum((x * x for x in four), start=0)),), state, fifty_digits())
+            found |= {x: state[x] / norm for x in four}
+        return found
+
     def let_go(self, name: str) -> Coordinate:
         """A driven coordinate without what drives it: one like others, which starts where it is driven from."""
         part = self.model.coordinates[name]
@@ -339,6 +348,11 @@ class Scope:
         rates = self.with_accelerations(tuple(found.values()))
         found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
         return replace(self, names={**names, **found})
+
+    @property
+    def dependent(self) -> tuple[str, ...]:
+        """The names of the coordinates that are eliminated, in the model's order."""
+        return tuple(name for name, part in self.model.coordinates.items() if part.dependent)
 
 
 def scope_of(model: Model, *, with_laws: bool = False) -> Scope:

@@ -10,7 +10,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Row, fixed_by_position
+from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_equilibrium, over_rates, static_equations
 from eomgen.mechanics.integrals import position_equations
@@ -154,7 +154,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
     state = start_state(system, parameters, given)
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
-    sought = fixed_by_position(system.constraints)
+    sought = system.constraints.fixed_by_position
     exact = {symbols.t: 0} | scope.start_values(q for q in symbols.q if q not in sought)
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start

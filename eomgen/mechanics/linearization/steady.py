@@ -11,7 +11,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import movable, nearest_root
+from eomgen.mechanics.constraints import nearest_root
 from eomgen.mechanics.equilibrium import StaticEquations, places_of_rest
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.first_order import Choice, FirstOrder, choice_of
@@ -237,7 +237,7 @@ class Here:
             symbols.u[k]: state[symbols.u[k]] + number * d
             for k, d in zip(self.choice.speeds.free, step[n:], strict=True)
         }
-        moved = movable(self.first.system.constraints)
+        moved = self.first.system.constraints.movable
         following = [q for q in (symbols.q[k] for k in self.choice.places.following) if q in moved]
         found = nearest_root(self.first.relations, state, following) if following else state
         if found is None:

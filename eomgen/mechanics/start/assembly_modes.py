@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import dependent_coordinates, gaps_of, is_guess, movable
+from eomgen.mechanics.constraints import is_guess
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.state import Doubles, Split
@@ -177,9 +177,9 @@ def _plain(x: float) -> float:
 
 
 def _search(system: System, start: Mapping[str, float]) -> _Search | None:
-    gaps, symbols = gaps_of(system.constraints), system.symbols
+    gaps, symbols = system.constraints.gaps, system.symbols
     standing = set(symbols_of(gaps))
-    free = [q for q in movable(system.constraints) if q in standing]
+    free = [q for q in system.constraints.movable if q in standing]
     if not gaps or not free or system.scope.quaternions:
         return None
     p = numeric_parameters(system.scope.model)
@@ -206,7 +206,7 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
 
 def _split(system: System, free: Sequence[Node], J: np.ndarray) -> Split:
     """The coordinates that follow from the others: dependent ones, then those without a given start, then others."""
-    dependent = dependent_coordinates(system.scope)
+    dependent = system.scope.dependent
 
     def place(k: int) -> tuple[bool, bool, int]:
         return free[k].name not in dependent, not is_guess(system.scope.model, free[k].name), -k

@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import SEEDS, fixed_by_position, gaps_of, hold_identically, is_guess
+from eomgen.mechanics.constraints import SEEDS, hold_identically, is_guess
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
@@ -157,7 +157,7 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
     Args:
         at_rest: all speeds are 0, whatever the model says.
     """
-    scope, sought = system.scope, set(fixed_by_position(system.constraints))
+    scope, sought = system.scope, set(system.constraints.fixed_by_position)
     given = {scope.symbols.t: 0} | scope.start_values(q for q in scope.symbols.q if q not in sought)
     start = scope.with_unit_quaternions(given)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(system)
@@ -344,7 +344,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     dq |= {q: Fraction(1) for q in symbols.q if q.name == own}
     rows = [row for row in system.constraints.rows if row.gap is not None and not row.identical]
     gaps = [row.gap for row in rows if row.gap is not None]
-    sought = fixed_by_position(system.constraints)
+    sought = system.constraints.fixed_by_position
     given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
     silent = [q for q in symbols.q if q in sought or (q.name != own and is_guess(scope.model, q.name))]
     silent = [q for q in silent if q not in given]
@@ -415,7 +415,7 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
         DerivationError: the constraints do not close at the start, or not in closed form.
     """
     symbols, scope = system.symbols, system.scope
-    sought = fixed_by_position(system.constraints)
+    sought = system.constraints.fixed_by_position
     given = scope.with_unit_quaternions(scope.start_values(q for q in symbols.q if q not in sought))
     state = system.standing({**given, **(places or {})})
     left = [q for q in sought if q not in state]
@@ -430,7 +430,7 @@ def _closed_in(system: System, state: State, sought: list[Node]) -> State:
         for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
     }
     located = Located(numbers, system.scope.positive)
-    found = located.places(substituted(gaps_of(system.constraints), state), sought)
+    found = located.places(substituted(system.constraints.gaps, state), sought)
     missing = [q.name for q in sought if q not in found]
     if missing:
         raise DerivationError(

@@ -13,20 +13,14 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
+    Closure,
     Fork,
     Row,
-    closed,
-    dependent_coordinates,
-    fixed_by_position,
     fork_at,
-    gaps_of,
     is_at_rest,
     is_guess,
     is_typed,
     leads_on,
-    movable,
-    nearest_speeds,
-    norms_of,
     open_at,
     open_by,
     speeds_along,
@@ -164,8 +158,8 @@ def start_of_motion(
     if all(row.identical for row in system.constraints.rows):
         return Start(values)
     before = _numbers(system, values, parameters)
-    sought = fixed_by_position(system.constraints)
-    state = (closed(system.constraints, before, sought) or before) if sought else before
+    sought = system.constraints.fixed_by_position
+    state = (Closure(system.constraints).closed(before, sought) or before) if sought else before
     called = _called(system, start or {})
     state, open_gaps = with_gaps_closed(system.constraints, state, called)
     refuse_open_gaps(system, state)
@@ -191,7 +185,7 @@ def _with_rates_closed(
     if not opened:
         return state, ()
     M = _inertia(system, state, parameters)
-    return nearest_speeds(constraints, state, _tiers(system, called), M) or state, opened
+    return Closure(constraints).nearest_speeds(state, _tiers(system, called), M) or state, opened
 
 
 def _tiers(system: System, called: frozenset[str]) -> tuple[list[Node], ...]:
@@ -202,7 +196,7 @@ def _tiers(system: System, called: frozenset[str]) -> tuple[list[Node], ...]:
 
 def following_rates(system: System) -> list[Node]:
     """The speeds of a system over all rates that are those of dependent coordinates."""
-    names = {f"{q}'" for q in dependent_coordinates(system.scope)}
+    names = {f"{q}'" for q in system.scope.dependent}
     return [u for u in system.symbols.u if u.name in names]
 
 
@@ -220,7 +214,7 @@ def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | 
     broken = [row for _, row in rows if open_by(row.velocity, u, state)]
     hit = tuple(row.constraint for row in broken if evaluate((row.velocity,), state, fifty_digits())[0] < 0)
     M = _inertia(system, state, parameters) if hit and len(hit) == len(broken) else None
-    after = None if M is None else nearest_speeds(system.constraints, state, [(), u], M)
+    after = None if M is None else Closure(system.constraints).nearest_speeds(state, [(), u], M)
     if M is None or after is None:
         return state, ()
     J = Numbers(state).array(system.constraints.J, len(u))
@@ -278,7 +272,7 @@ def _changes(
     system: System, before: Mapping[str, float], after: Mapping[str, float], called: frozenset[str]
 ) -> tuple[Change, ...]:
     """Changes between two starts, without those of dependent coordinates."""
-    follow = {*dependent_coordinates(system.scope), *(u.name for u in following_rates(system))}
+    follow = {*system.scope.dependent, *(u.name for u in following_rates(system))}
     own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in follow]
     return tuple(
         _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in called)
@@ -336,7 +330,7 @@ def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[
         raise UsageError(f"no coordinate or speed '{unknown[0]}'", fix=f"one of {', '.join(names)}")
     q, u = start_values(system.scope.model, parameters)
     guesses = first_guesses(system.scope.model, parameters)
-    sought = {node.name for node in fixed_by_position(system.constraints)}
+    sought = {node.name for node in system.constraints.fixed_by_position}
     values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
     values |= _normed(system, values)
     values |= {name: x for name, x in _by_coordinates(system, values, parameters).items() if name not in start}
@@ -451,7 +445,7 @@ def _in_full(system: System, row: Row, size: float, state: State) -> float:
 
 def _fix(system: System, gap: Scalar) -> str:
     """Advice to close a gap: another guess, a coordinate marked dependent, other start values."""
-    dependent = dependent_coordinates(system.scope)
+    dependent = system.scope.dependent
     standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
     sought = [name for name in standing if name in dependent]
     if sought:
@@ -517,9 +511,9 @@ class Miss:
 
 def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
     """The place where the gaps are least, of those that close the nearest; None where nothing moves them."""
-    gaps = gaps_of(system.constraints)
+    gaps = system.constraints.gaps
     standing = set(symbols_of(gaps))
-    free = [q for q in movable(system.constraints) if q in standing]
+    free = [q for q in system.constraints.movable if q in standing]
     if not free:
         return None
     search = _Search(system, {node: float(x) for node, x in state.items()}, tuple(free))
@@ -545,7 +539,7 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
 def _closes(system: System, state: Mapping[Node, Any], place: Mapping[Node, float]) -> bool:
     """True if all constraints can be satisfied near a place to 50 digits."""
     there = {node: of_50_digits(float(x)) for node, x in {**state, **place}.items()}
-    return closed(system.constraints, there, movable(system.constraints)) is not None
+    return Closure(system.constraints).closed(there, system.constraints.movable) is not None
 
 
 @dataclass(frozen=True)
@@ -557,7 +551,7 @@ class _Search:
     @cached_property
     def gaps(self) -> tuple[Scalar, ...]:
         """phi, and e . e - 1 of each quaternion."""
-        return (*gaps_of(self.system.constraints), *norms_of(self.system.constraints))
+        return (*self.system.constraints.gaps, *self.system.constraints.norms)
 
     @cached_property
     def slopes(self) -> tuple[Scalar, ...]:

@@ -13,7 +13,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import counted
+from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import (
     Effect,
@@ -286,7 +286,7 @@ class StaticReactions:
     @property
     def count(self) -> tuple[int, str]:
         """3 Nb + 2 Np - components - unknown loads, and as text."""
-        number, text = counted(self.system.constraints)
+        number, text = Rank(self.system.constraints).counted()
         loads = len(self.structure.unknowns)
         return (number - loads, f"{text} - {loads} (unknown loads)") if loads else (number, text)
 
