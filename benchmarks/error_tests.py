@@ -7,6 +7,7 @@ it, or its room; so many as run in LONGEST, the nearest first. What they do not 
 from __future__ import annotations
 
 import ast
+import gc
 import json
 import multiprocessing
 import os
@@ -83,6 +84,7 @@ class Requested:
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         from error_runs import Server
 
+        gc.unfreeze()  # else the functions that an error is put into are not found
         server, place = Server(), Path(os.environ[ERRORS])
         by_file: dict[str, list[pytest.Item]] = {}
         for item in session.items:
