@@ -29,6 +29,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
+from eomgen.questions.of_a_run import WholeRun
 from eomgen.sweeps import workers
 from eomgen.sweeps import workers as kernel
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
@@ -550,6 +551,19 @@ def test_runs_between_the_first_and_the_last_are_proven_too(spring):
         other = SimpleNamespace(plan=found.plan, ledger=SimpleNamespace(rows=lambda rows=rows: rows))
         (check,) = _answers_proven(other, runs, {})
         assert check.ok is False and f"{name} of run 1" in check.detail
+
+
+@pytest.mark.slow
+def test_an_instant_that_is_read_wrongly_everywhere_is_no_sensitive_motion(spring, monkeypatch):
+    """x at t = 0.5, read at the end: the table and the run made anew agree, and their samples contradict both."""
+    found = eomgen.sweep(spring, over={"k": "10:30:2"}, ask=["x at t = 0.5", "x at t = 1"], time=1)
+    rows = [(*row[:-2], row[-1], row[-1]) for row in found.ledger.rows()]
+    other = SimpleNamespace(plan=found.plan, ledger=SimpleNamespace(rows=lambda: rows))
+    monkeypatch.setattr(
+        WholeRun, "_at", lambda self, output, k, t: self._number(output.value, self.runs[k], self.runs[k].run.end)
+    )
+    (check,) = _answers_proven(other, SweepKernel(found.plan), {})
+    assert check.ok is False and "x at t = 0.5 of run 0" in check.detail
 
 
 def test_a_million_runs_are_planned_by_their_numbers():
