@@ -44,12 +44,14 @@ class ReportedArrow:
         role: "force" or "reaction".
         of: the force, joint or constraint that it stands for.
         begin, tip: its ends, d.
+        head: places of its head, n x d; None where it is not read.
     """
 
     role: str
     of: str
     begin: np.ndarray
     tip: np.ndarray
+    head: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -378,6 +380,8 @@ class _Shown(InNumbers):
                 > tolerances.SAME_ARROW * size * length + tolerances.COMPUTED
             ):
                 return f"that of {arrow.of} goes another way"
+            if arrow.head is not None and np.max((arrow.head - arrow.tip) @ along) > self.near * length:
+                return f"that of {arrow.of} has its head the other way round"
             scales.append((arrow.of, length / size if size else 0.0))
         if not scales:
             raise NoValue("their forces are not known apart")

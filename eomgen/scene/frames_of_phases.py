@@ -322,7 +322,7 @@ def _arrows(drawing: Drawing, scene: Scene, frame: int) -> list[ReportedArrow]:
     for shaft, head in zip(strokes[::2], strokes[1::2], strict=True):
         begin, tip = shaft.path[frame].reshape(-1, shaft.path.shape[-1])[0], _tip(head, frame)
         if np.isfinite(begin).all() and np.isfinite(tip).all():
-            found.append(ReportedArrow(shaft.role, shaft.of, begin, tip))
+            found.append(ReportedArrow(shaft.role, shaft.of, begin, tip, head.path[frame].reshape(-1, len(tip))))
     return found
 
 
