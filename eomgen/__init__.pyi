@@ -35,12 +35,12 @@ from eomgen.model import constraints as constraints
 from eomgen.model import forces as forces
 from eomgen.model import joints as joints
 from eomgen.model import shapes as shapes
+from eomgen.model.model import Model as Model
 from eomgen.model.parts import Body as Body
 from eomgen.model.parts import Coordinate as Coordinate
 from eomgen.model.parts import Given as Given
 from eomgen.model.parts import Input as Input
 from eomgen.model.parts import Linearize as Linearize
-from eomgen.model.parts import Model as Model
 from eomgen.model.parts import Output as Output
 from eomgen.model.parts import Parameter as Parameter
 from eomgen.model.parts import Piece as Piece

@@ -18,7 +18,7 @@ from eomgen.frozen import dataclass
 from eomgen.identification import Regressor, groups_checked, regressor_of
 from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.mechanics.free_bodies import named_reactions
-from eomgen.model import Model, ModelOrPath, Values, contacts_of, model_at
+from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import (
     Certificate,
     Check,
@@ -373,7 +373,7 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
     """
     if "c" not in targets:
         raise UsageError("an integrator is written in C", fix="ask for --target c too")
-    changing = [*(contact.name for contact in contacts_of(model)), *paths_of(model)]
+    changing = [*(contact.name for contact in model.contacts), *paths_of(model)]
     if changing:
         names = ", ".join(f"'{name}'" for name in changing)
         raise UsageError(f"no integrator for what changes its equations: {names}", fix="take eomgen simulate")

@@ -14,7 +14,7 @@ from eomgen.frozen import recalled
 from eomgen.mechanics.constraints import limits_passed
 from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, left_tables, model_at, refuse_motion, with_inputs
+from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, left_tables, model_at, with_inputs
 from eomgen.study import Study, study_of, study_of_modes
 from eomgen.symbolic.numeric import doing, growing, tolerances
 
@@ -51,7 +51,7 @@ def derive(
     model = with_nodes_balanced(model_at(model, parameters, start))
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", fix=f"one of {', '.join(METHODS)}")
-    refuse_motion(model)
+    model.refuse_motion()
     if contacts is not None:
         return _derived(model, method, study_of_modes(model, contacts))
     return recalled(model, method, lambda: _derived(model, method, study_of(model)))

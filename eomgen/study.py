@@ -41,7 +41,7 @@ from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, start_state
 from eomgen.mechanics.statics import contacts_at_start
-from eomgen.model import BALANCE, MASSES, Model, in_loads, refuse_motion
+from eomgen.model import BALANCE, MASSES, Model
 from eomgen.symbolic.exact import legible, readable_all
 from eomgen.symbolic.expression import (
     Call,
@@ -105,7 +105,7 @@ class Study:
             ModelError: a free coordinate moves no mass.
             DerivationError: a load contains an unknown.
         """
-        refuse_motion(self.model)
+        self.model.refuse_motion()
         refuse_massless(self.derived)
         return self.derived
 
@@ -443,7 +443,7 @@ class Study:
         """The state with accelerations, multipliers and inputs, as far as they are needed and determined."""
         given, inputs = state, {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
-        if in_loads(self.model):
+        if self.model.unknowns_in_loads():
             return {**state, **still(self.system)}
         if formula is not None and not self.needs_equations(formula):
             return state

@@ -11,7 +11,6 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
-from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -56,7 +55,7 @@ CASES = [
 def test_the_exact_text_of_every_quantity_gives_its_number(verb, name):
     """value = exact, read back by the grammar with the parameters put in; a unit of an output scales it."""
     model = eomgen.load(MODELS / f"{name}.toml")
-    values, compared = exact_parameters(model), 0
+    values, compared = model.exact_parameters(), 0
     for key, quantity in document(verb, name).quantities.items():
         found = None if quantity.exact is None else number_of(quantity.exact, values)
         if found is not None and quantity.value is not None:

@@ -24,7 +24,6 @@ from eomgen.identification.fit import _begun_checked, noise_of, numbers_of
 from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressors import Regressor, regressor_of
 from eomgen.model.replaced import with_values
-from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import substituted
 from tests.helpers.rx90 import PUBLISHED, rx90
@@ -258,10 +257,10 @@ def test_formulas_of_groups_hold_for_other_lengths(name):
     """Put at other lengths they are the factors that elimination in numbers finds there."""
     model = eomgen.load(MODELS / f"{name}.toml")
     formulas = {g.name: g.terms for g in eomgen.regressor(model).base.groups}
-    other = {p: 1.07 * float(x) for p, x in exact_parameters(model).items() if p.lower() in ("a", "b", "l", "r")}
+    other = {p: 1.07 * float(x) for p, x in model.exact_parameters().items() if p.lower() in ("a", "b", "l", "r")}
     assert other
     changed = eomgen.regressor(with_values(model, other, {}).model).base
-    values = {sympy.Symbol(p): float(x) for p, x in {**exact_parameters(model), **other}.items()}
+    values = {sympy.Symbol(p): float(x) for p, x in {**model.exact_parameters(), **other}.items()}
     for group in changed.groups:
         assert formulas[group.name].keys() == group.numbers.keys()
         for parameter, text in formulas[group.name].items():

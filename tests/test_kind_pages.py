@@ -11,7 +11,6 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.model.part import slots_of
 from eomgen.page.figure import rest_figure
 from eomgen.scene.scene import Mark, Scene, drawn_start, frame_at
 
@@ -84,8 +83,8 @@ def test_every_field_is_explained(kind):
     """By the docstrings of the class and its bases, and by its rule; its first line says what it is."""
     cls = kinds.class_of(kind)
     known = reference.meanings(cls)
-    assert not [slot.key for slot in slots_of(cls) if not known.get(slot.name)]
-    assert all(reference.value_of(slot.rule) for slot in slots_of(cls))
+    assert not [slot.key for slot in cls.slots() if not known.get(slot.name)]
+    assert all(reference.value_of(slot.rule) for slot in cls.slots())
     assert reference.gist(cls)
 
 

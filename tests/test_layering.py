@@ -243,7 +243,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "simulation": 35,
     "documents": 93,
     "proof": 114,
-    "model": 163,
+    "model": 142,
     "mechanics.kinematics": 24,
     "mechanics.constraints": 38,
     "mechanics.dynamics": 43,

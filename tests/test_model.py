@@ -14,10 +14,10 @@ from eomgen.model.fields import Table
 from eomgen.model.forces import Distributed, Gravity
 from eomgen.model.joints import Placed, Revolute
 from eomgen.model.likely_mistakes import unbuilt, unbuilt_constraints
-from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter, Piece
+from eomgen.model.model import Model
+from eomgen.model.parts import Body, Coordinate, Output, Parameter, Piece
 from eomgen.model.reader import loads
 from eomgen.model.shapes import Disc, Rod
-from eomgen.model.values import exact_parameters, numeric_parameters, start_values
 
 TEXT = """
 eomgen = 1
@@ -135,30 +135,30 @@ def test_own_points_may_be_written_with_their_body():
 def test_parameters_are_exact_until_floats_are_asked():
     """l = 2/5, whatever the order in which expressions of parameters stand."""
     model = pendulum(parameters={"a": "2*l", "m": 1.5, "l": Parameter(value=40, unit="cm"), "g": "a*pi"})
-    values = exact_parameters(model)
+    values = model.exact_parameters()
     assert (values["a"], values["l"]) == (Fraction(4, 5), Fraction(2, 5))
-    assert numeric_parameters(model, {"l": 1}) == {"a": 2.0, "m": 1.5, "l": 1.0, "g": pytest.approx(6.283185307179586)}
+    assert model.numeric_parameters({"l": 1}) == {"a": 2.0, "m": 1.5, "l": 1.0, "g": pytest.approx(6.283185307179586)}
 
 
 def test_missing_values_are_all_named_and_only_the_needed_ones():
     """A number that nobody gave is an error; a parameter that depends on one is missing too."""
     model = pendulum(parameters={"m": {}, "l": 1, "g": "2*m", "unused": {}})
     with pytest.raises(MissingValues) as caught:
-        numeric_parameters(model, needed=("m", "l", "g"))
+        model.numeric_parameters(needed=("m", "l", "g"))
     assert caught.value.names == ("m", "g")
-    assert numeric_parameters(model, {"m": 3, "unused": 0})["g"] == 6.0
+    assert model.numeric_parameters({"m": 3, "unused": 0})["g"] == 6.0
 
 
 def test_an_override_of_nothing_is_told():
     with pytest.raises(ModelError, match=r"there is no parameter 'mm'[\s\S]*did you mean 'm'"):
-        numeric_parameters(pendulum(), {"mm": 1})
+        pendulum().numeric_parameters({"mm": 1})
 
 
 def test_starts_are_expressions_of_parameters():
     """theta = pi/2, theta' = 2 l; what is not given is 0."""
-    q, u = start_values(pendulum())
+    q, u = pendulum().start_values()
     assert q == {"theta": pytest.approx(1.5707963267948966)} and u == {"theta'": 0.8}
-    assert start_values(pendulum(), {"l": 3})[1] == {"theta'": 6.0}
+    assert pendulum().start_values({"l": 3})[1] == {"theta'": 6.0}
 
 
 @each(
@@ -172,7 +172,7 @@ def test_starts_are_expressions_of_parameters():
 )
 def test_a_driven_coordinate_starts_where_its_law_says(law, start):
     """q(0) = f(0), q'(0) = f'(0) for a motion f."""
-    q, u = start_values(pendulum(coordinates={"theta": Coordinate(**law)}))
+    q, u = pendulum(coordinates={"theta": Coordinate(**law)}).start_values()
     assert (q["theta"], u["theta'"]) == start
 
 

@@ -103,9 +103,8 @@ def test_columns_are_written_with_their_units(tmp_path: Path):
     run.to_csv(tmp_path / "plain.csv")
     head = next(csv.reader((tmp_path / "plain.csv").open()))
     assert {"theta (output)", "v", "hinge_x"} <= set(head)
-    from eomgen.model.units import units_of
 
-    run.to_csv(tmp_path / "units.csv", units_of(model, run.columns()))
+    run.to_csv(tmp_path / "units.csv", model.units_of(run.columns()))
     head, first, *_ = csv.reader((tmp_path / "units.csv").open())
     assert {"theta (output) [deg]", "v [m/s]", "hinge_x [N]"} <= set(head)
     assert float(first[head.index("theta (output) [deg]")]) == pytest.approx(np.degrees(run["theta"][0]))

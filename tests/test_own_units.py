@@ -12,7 +12,6 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.model.units import units_of
 
 WHEEL = """
 eomgen = 1
@@ -77,7 +76,7 @@ def test_reactions_and_functions_have_units_by_what_they_are():
     """N of a force, N*m of a couple, rad/s of omega; what nobody knows has none."""
     model = eomgen.loads(WHEEL.replace('start = 20, speed = 5, unit = "cm"', "start = 20"))
     names = ("reaction_x(wheel)", "reaction_couple(cart)", "omega(wheel)", "x", "x'", "multiplier(cart)")
-    found = {name: str(unit) for name, unit in units_of(model, names).items()}
+    found = {name: str(unit) for name, unit in model.units_of(names).items()}
     assert found == dict(zip(names, ("N", "N*m", "rad/s", "m", "m/s"), strict=False))
 
 

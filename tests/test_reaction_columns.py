@@ -27,7 +27,6 @@ from eomgen.mechanics.dynamics.accelerations import accelerations_at
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.model.values import numeric_parameters
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -148,7 +147,7 @@ def test_rank_in_numbers_and_elimination_in_symbols_give_the_same(path):
 def test_a_pendulum_is_held_by_its_weight_and_when_it_swings_by_more():
     """O_y = M g at rest; as it passes below with omega, M g + sum m_i s_i omega^2, and O_x = 0."""
     model = eomgen.load(MODELS / "double_pendulum.toml")
-    p = numeric_parameters(model)
+    p = model.numeric_parameters()
     m1, m2, l1, l2, g = (p[name] for name in ("m1", "m2", "l1", "l2", "g"))
     below = {"theta1": 0.0, "theta2": 0.0, "theta1'": 0.0, "theta2'": 0.0}
     rest = eomgen.simulate(model, time=1.0, samples=5, start=below)

@@ -17,8 +17,8 @@ from each import each
 
 import eomgen
 from eomgen.cli import main
+from eomgen.model.model import Model
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.parts import Model
 from eomgen.model.quantities import UNITS
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.symbolic.expression.formula import NAMES

@@ -11,7 +11,6 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.model.values import exact_parameters
 from eomgen.proof.reported_run import ReportedRun, run_reported
 from eomgen.proof.reported_small_motions import small_motions_reported
 from eomgen.questions.of_a_run import WholeRun
@@ -139,7 +138,7 @@ def wrong_modes(change: Callable[[dict[str, Any]], None]) -> str:
 
     entries = small().entries()
     change(entries)
-    checks = small_motions_reported(entries, printed_modes(small().derivation), exact_parameters(model()))
+    checks = small_motions_reported(entries, printed_modes(small().derivation), model().exact_parameters())
     return "; ".join(check.detail for check in checks if check.status == "fails")
 
 

@@ -18,7 +18,6 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.judge import Judge
 from eomgen.judge.truth import Decided
 from eomgen.mechanics.start.exact import ExactStart
-from eomgen.model.values import exact_parameters
 from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -243,14 +242,14 @@ def test_the_start_that_ties_complete_is_one_for_every_verb(text):
     x0 = dict(zip((*equations.graph.symbols.q, *equations.graph.symbols.u), equations.start(), strict=True))
     start = ExactStart(equations.system)
     assert start.is_exact
-    known = {equations.graph.symbols.parameters[n]: float(x) for n, x in exact_parameters(model).items()}
+    known = {equations.graph.symbols.parameters[n]: float(x) for n, x in model.exact_parameters().items()}
     for symbol, value in x0.items():
         assert evaluate((start.exact[symbol],), known, FLOAT)[0] == pytest.approx(value, abs=1e-12)
         assert run[symbol.name][0] == pytest.approx(value, abs=1e-12)
     laws = reported_laws(model)
     assert laws.keys() == model.coordinates.keys()
     for q, law in laws.items():
-        at = {n: float(x) for n, x in exact_parameters(model).items()}
+        at = {n: float(x) for n, x in model.exact_parameters().items()}
         found = parse(law).evaluate({**at, "t": 0.1})
         assert float(found) == pytest.approx(run[q][-1], abs=1e-9)
 

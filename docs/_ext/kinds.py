@@ -23,7 +23,6 @@ import eomgen
 from eomgen.mechanics.free_bodies.wrenches import Axes, components_of
 from eomgen.model import outputs
 from eomgen.model.outputs.base import BALANCE, MASSES, OF_A_RUN, SMALL_MOTIONS, STATE, OutputFunction
-from eomgen.model.units import units_of
 from eomgen.page.figure import rest_figure
 from eomgen.questions.of_a_run import is_of_a_run
 
@@ -167,7 +166,7 @@ def answered(model: eomgen.Model, names: list[str]) -> str:
     """The answers to some of what a model asks."""
     if any(is_of_a_run(model.outputs[name]) for name in names):
         found = eomgen.simulate(model, time=10).quantities
-        units = units_of(model, names)
+        units = model.units_of(names)
         rows = [f"| `{name}` | | {found[name].value / units[name].size:.6g} {units[name]} |" for name in names]
     else:
         answers = eomgen.solve(replace(model, outputs={name: model.outputs[name] for name in names}))

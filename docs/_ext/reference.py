@@ -40,14 +40,14 @@ from eomgen.model.fields import (  # noqa: E402
 from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import ReactionSymbolsRule, Resistance  # noqa: E402
-from eomgen.model.part import PartRule, SeamRule, Slot, slots_of  # noqa: E402
+from eomgen.model.model import Model  # noqa: E402
+from eomgen.model.part import PartRule, SeamRule, Slot  # noqa: E402
 from eomgen.model.parts import (  # noqa: E402
     Body,
     Coordinate,
     Given,
     Input,
     Linearize,
-    Model,
     Output,
     Parameter,
     Piece,
@@ -184,7 +184,7 @@ def _(_rule: FlagRule) -> str:
 
 @value_of.register
 def _(rule: PartRule) -> str:
-    return "table of " + ", ".join(f"`{slot.key}`" for slot in slots_of(rule.cls))
+    return "table of " + ", ".join(f"`{slot.key}`" for slot in rule.cls.slots())
 
 
 @value_of.register
@@ -248,8 +248,8 @@ def law(cls: type[Any]) -> str:
 
 def keys_of(cls: type[Any], seam: str) -> list[str]:
     """The keys that a member has beside those of its whole seam."""
-    common = {slot.key for slot in slots_of(BASES[seam])}
-    return [slot.key for slot in slots_of(cls) if slot.key not in common]
+    common = {slot.key for slot in BASES[seam].slots()}
+    return [slot.key for slot in cls.slots() if slot.key not in common]
 
 
 # -- tables ------------------------------------------------------------------------------------------
@@ -277,7 +277,7 @@ def field_row(slot: Slot, meaning: str) -> str:
 def fields_table(cls: type[Any]) -> str:
     """All fields, those that every such part has last."""
     known, own = meanings(cls), inspect.get_annotations(cls)
-    slots = sorted(slots_of(cls), key=lambda slot: slot.name not in own)
+    slots = sorted(cls.slots(), key=lambda slot: slot.name not in own)
     rows = [field_row(slot, known.get(slot.name, "")) for slot in slots]
     return "\n".join([row("key", "default", "value", "meaning"), row(*["---"] * 4), *rows])
 
@@ -310,14 +310,14 @@ def short_keys(slots: Iterable[Slot]) -> str:
 def short_table(name: str, cls: type[Any]) -> str:
     """One table of the file: its name, what a bare value is, its keys."""
     bare = f"a bare value is its {cls.shorthand}; " if cls.shorthand else ""
-    return f"`{name}` {bare}{short_keys(slots_of(cls))}"
+    return f"`{name}` {bare}{short_keys(cls.slots())}"
 
 
 def short_tables() -> str:
     """Every table of the file with its keys, and the tables in them."""
-    own = [slot for slot in slots_of(Model) if not isinstance(slot.rule, (TableRule, PartRule))]
+    own = [slot for slot in Model.slots() if not isinstance(slot.rule, (TableRule, PartRule))]
     lines = [f"`eomgen = 1` {short_keys(own)}"]
-    for slot in slots_of(Model):
+    for slot in Model.slots():
         cls, item = TABLES.get(slot.key), getattr(slot.rule, "item", None)
         if isinstance(item, SeamRule):
             lines.append(f"`[{slot.key}.NAME]` **kind** and its keys, below")
@@ -332,9 +332,9 @@ def short_tables() -> str:
 
 def short_kinds(seam: str) -> str:
     """Every kind of a seam with its own keys, in one paragraph."""
-    common = {slot.key for slot in slots_of(BASES[seam])}
+    common = {slot.key for slot in BASES[seam].slots()}
     words = [
-        f"`{cls.kind}` {short_keys(slot for slot in slots_of(cls) if slot.key not in common)}".strip()
+        f"`{cls.kind}` {short_keys(slot for slot in cls.slots() if slot.key not in common)}".strip()
         for cls in SEAMS[seam]
     ]
     every = f" Each also: {' '.join(sorted(common))}." if common else ""
@@ -362,7 +362,7 @@ MADE: Mapping[str, Callable[[], str]] = {
     **{name: lambda cls=cls: fields_table(cls) for name, cls in TABLES.items()},
     **{f"all {seam.lower()}": lambda seam=seam: kinds_table(seam) for seam in SEAMS},
     **{f"laws of {seam.lower()}": lambda seam=seam: laws_list(seam) for seam in SEAMS},
-    **{f"every {seam.lower()[:-1]}": lambda cls=cls: fields_table(cls) for seam, cls in BASES.items() if slots_of(cls)},
+    **{f"every {seam.lower()[:-1]}": lambda cls=cls: fields_table(cls) for seam, cls in BASES.items() if cls.slots()},
     "functions": functions_table,
     "cheat sheet": cheat_sheet,
 }

@@ -25,7 +25,6 @@ from eomgen.model import (
     TypedNumbers,
     are_several,
     nearest,
-    numeric_parameters,
     time_law,
     typed_values,
     with_values,
@@ -240,7 +239,7 @@ def parameter_vector(model: Model, overrides: Mapping[str, Any] | None = None) -
     """
     if overrides and not all(isinstance(x, (int, float, np.number)) for x in overrides.values()):
         model, overrides = with_values(model, overrides).model, None
-    return np.array(list(numeric_parameters(model, overrides).values()), dtype=float)
+    return np.array(list(model.numeric_parameters(overrides).values()), dtype=float)
 
 
 # -------- accelerations ---------------------------------------------------------------------------------------

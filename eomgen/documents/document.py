@@ -9,7 +9,7 @@ from typing import Any
 from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
 from eomgen.errors import Problem
 from eomgen.frozen import Pickled, dataclass
-from eomgen.model import Model, Taken, constant_parameters
+from eomgen.model import Model, Taken
 from eomgen.proof import Certificate
 from eomgen.symbolic.expression import Graph, Node, Scalar
 from eomgen.symbolic.print import Notation, Symbol
@@ -115,7 +115,7 @@ def quantities_of(entries: Mapping[str, Any]) -> dict[str, Quantity]:
 def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
     """The document of a model, under its name, its remark and its source."""
     about, source = model.about or "", model.source or ""
-    notation, values = notation_of(model), constant_parameters(model, Graph())
+    notation, values = notation_of(model), model.constant_parameters(Graph())
     return Document(model.name, about, source, model.space, method, steps, notation=notation, parameters=values)
 
 
@@ -135,7 +135,7 @@ def plain_document(
     """A document of one section without a head, for results that are no derivation."""
     steps = (Step("", "", statements),)
     document = Document(model.name, steps=steps, entries=entries, notation=notation_of(model))
-    values = constant_parameters(model, Graph())
+    values = model.constant_parameters(Graph())
     return replace(document, failed=failed, notes=notes, parameters=values, answer_code=answer_code)
 
 

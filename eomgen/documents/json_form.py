@@ -18,7 +18,7 @@ from eomgen.documents.text import cell_text, formula_text, prose_text, side_text
 from eomgen.files import json_text
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.model import Taken, exact_parameters
+from eomgen.model import Taken
 from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.print import text_size, to_text, with_definitions
 from eomgen.version import SCHEMA_VERSION
@@ -159,7 +159,7 @@ def equations_payload(equations: EquationsOfMotion, method: str, found: Texts) -
     definitions, rest = found.definitions, iter(found.texts)
     written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in found.fields.items()}
     sides = written.pop("equations")
-    values = exact_parameters(model)
+    values = model.exact_parameters()
     return {
         "name": model.name,
         "space": model.space,

@@ -17,7 +17,7 @@ from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import Coordinate, Input, Parameter, PointForce, exact_parameters, quaternions_of
+from eomgen.model import Coordinate, Input, Parameter, PointForce
 from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, dot, is_zero
 from eomgen.symbolic.print import to_text
 
@@ -97,7 +97,7 @@ def speeds_step(system: System, reader: Reader) -> tuple[Step, ...]:
         if f"{q.name}'" not in own and not model.coordinates[q.name].driven
     ]
     statements: list[Statement] = [prose("The speeds are combinations of the rates:"), *page(reader, meant)]
-    for each in quaternions_of(model):
+    for each in model.quaternions:
         words = f"{', '.join(each.coordinates)} is a unit quaternion, and {', '.join(each.speeds)} "
         statements.append(prose(words, f"is the angular velocity of {each.body} relative to the body that carries it."))
     return (Step("speeds", "Speeds", (*statements, prose("Solved for the rates:"), *page(reader, rates))),)
@@ -211,7 +211,7 @@ def count(number: int, noun: str, plural: str = "") -> str:
 def data_step(system: System) -> Step:
     """Step with the given data."""
     model, symbols = system.scope.model, system.symbols
-    values = exact_parameters(model)
+    values = model.exact_parameters()
     rows = []
     for name, symbol in symbols.parameters.items():
         part = model.parameters[name]
@@ -325,7 +325,7 @@ def _velocities(system: System) -> list[Statement]:
 def _coordinates(system: System) -> Step:
     """Step with the coordinates, their rates and accelerations, and the laws of driven ones."""
     model, symbols, scope = system.scope.model, system.symbols, system.scope
-    values = exact_parameters(model)
+    values = model.exact_parameters()
     begun = _begun(system)
     whole = (system.free or system).symbols
     free = {u.name.removesuffix("'"): (u, a) for u, a in zip(whole.u, whole.a, strict=True)}
@@ -393,7 +393,7 @@ def _begun(system: System) -> dict[str, str]:
 def _speeds(system: System, begun: Mapping[str, str]) -> list[Meaning]:
     """The speeds that are no rates, and their derivatives."""
     model, symbols = system.scope.model, system.symbols
-    values = exact_parameters(model)
+    values = model.exact_parameters()
     rows: list[Meaning] = []
     for u, a in zip(symbols.u, symbols.a, strict=True):
         if u.name in model.speeds:

@@ -36,7 +36,6 @@ from eomgen.identification.constrained_rows import (
     sampled_rows,
 )
 from eomgen.mechanics.dynamics import System
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import exact_state, simplest
 from eomgen.symbolic.expression import (
     IDENTITY,
@@ -143,7 +142,7 @@ def _kept_in_field(system: System, entries: ScalarRow, moving: list[int], seed: 
 
     None: a root, a sign or a curve has no value there. The states are enough where the last adds no independent row.
     """
-    own = {system.symbols.parameters[name]: x for name, x in exact_parameters(system.scope.model).items()}
+    own = {system.symbols.parameters[name]: x for name, x in system.scope.model.exact_parameters().items()}
     given = substituted(entries, {x: Fraction(own[x]) for x in own})
     width = len(moving)
     height = len(entries) // max(width, 1)

@@ -24,7 +24,7 @@ from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.truth import other_models
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
-from eomgen.model import exact_parameters, with_values
+from eomgen.model import with_values
 from eomgen.questions import Answer
 from eomgen.symbolic.expression import Expression, Node, Scalar, is_zero, parse
 from eomgen.symbolic.numeric import tolerances
@@ -126,7 +126,7 @@ def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Ve
     """Verdict on sides that are equal in numbers: right if they are so with other values of the parameters, too."""
     tried = 0
     parts = case.model.parameters  # those that are formulas of others follow them
-    own = {name: x for name, x in exact_parameters(case.model).items() if name in parts and not parts[name].formula}
+    own = {name: x for name, x in case.model.exact_parameters().items() if name in parts and not parts[name].formula}
     for shares in ((1.07, 0.95, 1.02), (0.94, 1.05, 0.99)):
         values = {n: float(x) * shares[k % 3] * (1 + k / 300) for k, (n, x) in enumerate(own.items())}
         try:

@@ -20,7 +20,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System, free_ra
 from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, exact_parameters, inferred, leaves_of
+from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, inferred
 from eomgen.questions import Answer, MotionFromStart, solve
 from eomgen.simulation import has_phases
 from eomgen.study import Study, study_of
@@ -242,7 +242,7 @@ class Case:
     @cached_property
     def names(self) -> Mapping[str, Scalar]:
         """Values of names; a parameter that stands nowhere in the model and is a formula of others is that formula."""
-        leaves = (leaf for leaf in leaves_of(self.model, ()) if leaf.path[0] not in ("parameters", "outputs"))
+        leaves = (leaf for leaf in self.model.leaves(()) if leaf.path[0] not in ("parameters", "outputs"))
         used = {name for leaf in leaves if isinstance(leaf.value, Expression) for name in leaf.value.names}
         return {**self.system.scope.names, **{x.name: y for x, y in self.definitions.items() if x.name not in used}}
 
@@ -277,7 +277,7 @@ class Case:
     @cached_property
     def _values(self) -> dict[str, Any]:
         """Exact values of the parameters, by name; those in doubles left out."""
-        return {name: exact(x) for name, x in exact_parameters(self.model).items() if not isinstance(x, float)}
+        return {name: exact(x) for name, x in self.model.exact_parameters().items() if not isinstance(x, float)}
 
     def _values_in(self, scalars: ScalarRow, values: Mapping[str, Any]) -> dict[Node, Scalar]:
         """Values of the parameters that stand in scalars."""

@@ -19,7 +19,6 @@ from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import NOWHERE, Extent, System, division_of
 from eomgen.mechanics.free_bodies import equations_of_motion
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import exact_state
 from eomgen.symbolic.expression import (
     Fraction,
@@ -396,7 +395,7 @@ def states_of(
         on_ties: coordinates and speeds are such that the constraints hold.
     """
     rng, symbols, arithmetic = Random(seed), system.symbols, fifty_digits()
-    own = {symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
+    own = {symbols.parameters[name]: float(x) for name, x in system.scope.model.exact_parameters().items()}
     known = _start(system, own)
     others = tuple(x for x in symbols_of(flat) if x not in known)
     gaps, timed = _gaps(system, flat), symbols.t in symbols_of(flat)

@@ -20,7 +20,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.contributions import FEW, Contributions
 from eomgen.judge.diagnosis import EXCHANGED, PLACED, PLAINEST, SHARED, SHORTER, Explanation, Mistake, Share
 from eomgen.judge.terms import term_text, wrong_parameters
-from eomgen.model import Body, Coordinate, Leaf, MassProperties, Model, Table, leaves_of, slots_of, whereabouts
+from eomgen.model import Body, Coordinate, Leaf, MassProperties, Model, Table, whereabouts
 from eomgen.symbolic.expression import (
     Expression,
     Fraction,
@@ -126,7 +126,7 @@ class _Editor:
     parts: Contributions
 
     def edits(self) -> Iterator[ModelEdit]:
-        for leaf in leaves_of(self.model, ()):
+        for leaf in self.model.leaves(()):
             if leaf.path[0] in EDITED and isinstance(leaf.value, Expression):
                 yield from self._of_formula(leaf)
             elif leaf.path[0] in EDITED and isinstance(leaf.value, str):
@@ -299,7 +299,7 @@ def _with_leaf(part: Any, path: Sequence[Any], value: Any) -> Any:
         return (*part[:key], _with_leaf(part[key], rest, value), *part[key + 1 :])
     if isinstance(part, Table):
         return Table({**part, key: _with_leaf(part[key], rest, value)})
-    for slot in slots_of(type(part)):
+    for slot in type(part).slots():
         inner = getattr(part, slot.name)
         if slot.key == key:
             return replace(part, **{slot.name: _with_leaf(inner, rest, value)})

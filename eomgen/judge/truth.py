@@ -20,7 +20,7 @@ from eomgen.judge.model_edits import ModelEdits
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG, short_text
 from eomgen.mechanics.dynamics import EVERYWHERE, NOWHERE, Extent
-from eomgen.model import AtRest, WrittenEquation, exact_parameters
+from eomgen.model import AtRest, WrittenEquation
 from eomgen.symbolic.exact import legible
 from eomgen.symbolic.expression import (
     Call,
@@ -428,7 +428,7 @@ def _signs(case: Case, inside: Scalar) -> tuple[int, ...]:
     """The sign of x at the start, where coordinates and values decide it; else either."""
     if depends_on(inside, (*case.system.symbols.u, *case.system.symbols.a)):
         return (1, -1)
-    values = {case.system.symbols.parameters[n]: float(x) for n, x in exact_parameters(case.model).items()}
+    values = {case.system.symbols.parameters[n]: float(x) for n, x in case.model.exact_parameters().items()}
     try:
         (value,) = evaluate(substituted((inside,), case.start), values, FLOAT)
     except (NoValue, ZeroDivisionError, DerivationError):

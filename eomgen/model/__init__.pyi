@@ -82,15 +82,6 @@ from eomgen.model.constraints.strand import Strand as Strand
 # A constraint, or the joint of a body on a path
 from eomgen.model.contacts import Contact as Contact
 
-# Every constraint that can end or has friction, and every body with friction on its path
-from eomgen.model.contacts import contacts_of as contacts_of
-
-# The pieces of the path on which a body is; () where it is on none
-from eomgen.model.contacts import pieces_of as pieces_of
-
-# Every constraint with dry friction, and every body on a path of which a piece has it
-from eomgen.model.contacts import rough_contacts as rough_contacts
-
 # {speed: the rates that go with it} of those that have a `start`, or share rates with one that has
 from eomgen.model.declared_speeds import begun_speeds as begun_speeds
 
@@ -105,12 +96,6 @@ from eomgen.model.dimensions import inferred as inferred
 
 # {name: unit} of what has none in the file, where the expressions say what it must be
 from eomgen.model.dimensions import inferred_units as inferred_units
-
-# The names of all coordinates that move as given functions of time
-from eomgen.model.driven import driven_coordinates as driven_coordinates
-
-# {coordinate: the constraints that give it as a function of time}, of those that have one
-from eomgen.model.driven import driving_constraints as driving_constraints
 
 # A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
 from eomgen.model.driven import law_of as law_of
@@ -233,6 +218,9 @@ from eomgen.model.likely_mistakes import unbuilt_constraints as unbuilt_constrai
 # Warnings: what a user should look at again
 from eomgen.model.likely_mistakes import warnings_of as warnings_of
 
+# A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order
+from eomgen.model.model import Model as Model
+
 # The functions of the motion, by name
 from eomgen.model.outputs import FUNCTIONS as FUNCTIONS
 
@@ -264,18 +252,6 @@ from eomgen.model.outputs.masses import polar as polar
 # P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus
 from eomgen.model.outputs.masses import second_moments as second_moments
 
-# The part with some fields changed to values that were read already
-from eomgen.model.part import altered as altered
-
-# Every value of a part and of the parts in it, with its path and its rule
-from eomgen.model.part import leaves_of as leaves_of
-
-# A part from values that were read already
-from eomgen.model.part import part_of_values as part_of_values
-
-# The fields of a part's class, in order
-from eomgen.model.part import slots_of as slots_of
-
 # A rigid body: its mass (`shape`; or `mass`, `center`, `inertia`; or `mass` and `parts`), its points, its joint
 from eomgen.model.parts import Body as Body
 
@@ -287,9 +263,6 @@ from eomgen.model.parts import Given as Given
 
 # A known function of time that a caller may replace
 from eomgen.model.parts import Input as Input
-
-# A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order
-from eomgen.model.parts import Model as Model
 
 # A requested result, by name
 from eomgen.model.parts import Output as Output
@@ -434,41 +407,5 @@ from eomgen.model.unassembled import freed as freed
 # after the name of an output's column, where another column has that name
 from eomgen.model.units import OUTPUT as OUTPUT
 
-# The value with its unit, where the coordinate has one that is not of SI; a number alone elsewhere
-from eomgen.model.units import in_own_unit as in_own_unit
-
-# The unit of each name or function of the motion that has one: as the file declares it, else that of SI
-from eomgen.model.units import units_of as units_of
-
-# The unit of every name, of the equation of motion along each speed, and of every output; "?" is not known
-from eomgen.model.units import units_of_model as units_of_model
-
-# The unit of each output: the one that is declared, else that of SI, where the model says which that is
-from eomgen.model.units import units_of_outputs as units_of_outputs
-
-# The unknowns that stand in loads, in the model's order
-from eomgen.model.unknowns import in_loads as in_loads
-
-# Refuse equations of motion in which a force is unknown
-from eomgen.model.unknowns import refuse_motion as refuse_motion
-
-# The parameters that have values, each as an exact constant: 1/3, pi/6, sqrt(2); nothing is rounded
-from eomgen.model.values import constant_parameters as constant_parameters
-
-# The parameters that have values: exact where they can be, a float where pi or a root comes in
-from eomgen.model.values import exact_parameters as exact_parameters
-
-# Start of the search for each dependent coordinate that gives one by `near`
-from eomgen.model.values import first_guesses as first_guesses
-
 # The error of a quaternion that is 0 at the start
 from eomgen.model.values import no_orientation as no_orientation
-
-# The value of each parameter, in the model's order, as floats
-from eomgen.model.values import numeric_parameters as numeric_parameters
-
-# The quaternions of the joints that have one, in the model's order
-from eomgen.model.values import quaternions_of as quaternions_of
-
-# Coordinates, rates and declared speeds at the start; what is not given is 0
-from eomgen.model.values import start_values as start_values

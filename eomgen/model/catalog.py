@@ -7,7 +7,6 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS, TIME, Leaf, WrittenEquation
-from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression
 
@@ -25,7 +24,7 @@ class Catalog:
     @cached_property
     def leaves(self) -> tuple[Leaf, ...]:
         """Every value of the model, with its path and rule."""
-        return tuple(leaves_of(self.model, ()))
+        return tuple(self.model.leaves(()))
 
     @cached_property
     def broken(self) -> frozenset[DocumentPath]:

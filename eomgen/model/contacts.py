@@ -1,13 +1,14 @@
-"""Model -> its contacts: what can end, or has friction."""
+"""Model -> its contacts: what can end, or has friction; and what moves as a function of time."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Any
 
 from eomgen.frozen import dataclass
+from eomgen.model.constraints import Constraint
+from eomgen.model.fields import Table
 from eomgen.model.kinds import Resistance
-from eomgen.model.parts import Body, Model
+from eomgen.model.parts import Body, Coordinate
 from eomgen.symbolic.expression import Expression
 
 
@@ -50,38 +51,57 @@ class Contact:
         return None if self.friction is None else self.friction.coulomb
 
 
-def contacts_of(model: Model) -> tuple[Contact, ...]:
-    """Every constraint that can end or has friction, and every body with friction on its path."""
-    laws = ((name, getattr(body.joint, "friction", None)) for name, body in model.bodies.items())
-    return (*_constraints(model), *(_on_path(model, name, law) for name, law in laws if law is not None))
+class Connections:
+    """Contacts of a model, and coordinates that move as functions of time: a base of `Model`."""
 
+    space: str
+    coordinates: Table[Coordinate]
+    bodies: Table[Body]
+    constraints: Table[Constraint]
 
-def rough_contacts(model: Model) -> tuple[Contact, ...]:
-    """Every constraint with dry friction, and every body on a path of which a piece has it."""
-    pieces = (_on_path(model, name, piece.friction) for name, body in model.bodies.items() for piece in pieces_of(body))
-    return tuple(contact for contact in (*_constraints(model), *pieces) if contact.mu is not None)
+    @property
+    def contacts(self) -> tuple[Contact, ...]:
+        """Every constraint that can end or has friction, and every body with friction on its path."""
+        laws = ((name, getattr(body.joint, "friction", None)) for name, body in self.bodies.items())
+        return (*self._touching(), *(self._on_path(name, law) for name, law in laws if law is not None))
 
+    @property
+    def rough_contacts(self) -> tuple[Contact, ...]:
+        """Every constraint with dry friction, and every body on a path of which a piece has it."""
+        pieces = (
+            self._on_path(name, piece.friction) for name, body in self.bodies.items() for piece in body.path_pieces
+        )
+        return tuple(contact for contact in (*self._touching(), *pieces) if contact.mu is not None)
 
-def pieces_of(body: Body) -> tuple[Any, ...]:
-    """The pieces of the path on which a body is; () where it is on none."""
-    return getattr(body.joint, "pieces", None) or ()
+    def _touching(self) -> Iterator[Contact]:
+        for name, constraint in self.constraints.items():
+            friction, unilateral = getattr(constraint, "friction", None), bool(getattr(constraint, "unilateral", False))
+            if unilateral or friction is not None:
+                rough = self.space == "space" and friction is not None
+                yield Contact(
+                    name,
+                    constraint.kind,
+                    unilateral,
+                    friction,
+                    pulls=constraint.pulls,
+                    surface=rough and not constraint.on_line,
+                    round=rough and constraint.on_line,
+                )
 
+    def _on_path(self, body: str, law: Resistance | None) -> Contact:
+        return Contact(body, "path", False, law, of_joint=True, round=self.space == "space")
 
-def _on_path(model: Model, body: str, law: Resistance | None) -> Contact:
-    return Contact(body, "path", False, law, of_joint=True, round=model.space == "space")
+    @property
+    def driving_constraints(self) -> dict[str, tuple[str, ...]]:
+        """{coordinate: the constraints that give it as a function of time}, of those that have one."""
+        found: dict[str, tuple[str, ...]] = {}
+        for name, constraint in self.constraints.items():
+            if coordinate := constraint.drives():
+                found[coordinate] = (*found.get(coordinate, ()), name)
+        return found
 
-
-def _constraints(model: Model) -> Iterator[Contact]:
-    for name, constraint in model.constraints.items():
-        friction, unilateral = getattr(constraint, "friction", None), bool(getattr(constraint, "unilateral", False))
-        if unilateral or friction is not None:
-            rough = model.space == "space" and friction is not None
-            yield Contact(
-                name,
-                constraint.kind,
-                unilateral,
-                friction,
-                pulls=constraint.pulls,
-                surface=rough and not constraint.on_line,
-                round=rough and constraint.on_line,
-            )
+    @property
+    def driven_coordinates(self) -> frozenset[str]:
+        """The names of all coordinates that move as given functions of time."""
+        own = (name for name, part in self.coordinates.items() if part.driven)
+        return frozenset((*own, *self.driving_constraints))

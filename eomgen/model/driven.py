@@ -1,7 +1,4 @@
-"""Prescribed quantities of a model: driven coordinates, laws of inputs, speeds at the start.
-
-Model -> the coordinates that move as functions of time: driven by themselves, or by a constraint that says so.
-"""
+"""Model, laws of inputs over the state -> the model in which they stand in place of the inputs: feedback."""
 
 from __future__ import annotations
 
@@ -14,29 +11,10 @@ from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.catalog import Catalog
 from eomgen.model.diagnostics import nearest
 from eomgen.model.fields import MOTION, Table, WrittenEquation
-from eomgen.model.part import Part, altered, part_of_values, slots_of
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
+from eomgen.model.part import Part
 from eomgen.symbolic.expression import Call, Expression, Instruction, Reference, as_expression
 
-
-def driving_constraints(model: Model) -> dict[str, tuple[str, ...]]:
-    """{coordinate: the constraints that give it as a function of time}, of those that have one."""
-    found: dict[str, tuple[str, ...]] = {}
-    for name, constraint in model.constraints.items():
-        if coordinate := constraint.drives():
-            found[coordinate] = (*found.get(coordinate, ()), name)
-    return found
-
-
-def driven_coordinates(model: Model) -> frozenset[str]:
-    """The names of all coordinates that move as given functions of time."""
-    own = (name for name, part in model.coordinates.items() if part.driven)
-    return frozenset((*own, *driving_constraints(model)))
-
-
-# -------- feedback --------------------------------------------------------------------------------------------
-# Model, laws of inputs over the state -> the model in which they stand in place of the inputs: feedback.
-#
 # What is put in so is derived, proven and emitted with everything else.
 
 
@@ -72,8 +50,8 @@ def with_feedback(model: Model, laws: Laws) -> Model:
                 what, fix=nearest(strangers[0], allowed) or "coordinates, rates, t, parameters, other inputs"
             )
     left = {name: part for name, part in model.inputs.items() if name not in laws}
-    fields = {slot.name: getattr(model, slot.name) for slot in slots_of(Model) if slot.name != "inputs"}
-    return altered(model, **{name: _put(value, laws) for name, value in fields.items()}, inputs=Table(left))
+    fields = {slot.name: getattr(model, slot.name) for slot in Model.slots() if slot.name != "inputs"}
+    return model.altered(**{name: _put(value, laws) for name, value in fields.items()}, inputs=Table(left))
 
 
 def _put(value: Any, laws: Laws) -> Any:
@@ -83,8 +61,8 @@ def _put(value: Any, laws: Laws) -> Any:
     if isinstance(value, WrittenEquation):
         return replace(value, left=_expression(value.left, laws), right=_expression(value.right, laws))
     if isinstance(value, Part):
-        fields = {slot.name: getattr(value, slot.name) for slot in slots_of(type(value))}
-        return part_of_values(type(value), {name: _put(x, laws) for name, x in fields.items()})
+        fields = {slot.name: getattr(value, slot.name) for slot in type(value).slots()}
+        return type(value).of_values({name: _put(x, laws) for name, x in fields.items()})
     if isinstance(value, tuple):
         return tuple(_put(x, laws) for x in value)
     return Table({name: _put(x, laws) for name, x in value.items()}) if isinstance(value, Table) else value

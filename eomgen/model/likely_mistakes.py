@@ -15,8 +15,7 @@ from eomgen.model.checks.bodies import possible
 from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.dimensions import inferred
 from eomgen.model.fields import Leaf, NameRule, WrittenEquation
-from eomgen.model.part import leaves_of
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
 from eomgen.symbolic.expression import Expression, Fraction
@@ -165,12 +164,10 @@ def _unheld(catalog: Catalog) -> Iterator[Diagnostic]:
         return
     held = set()
     for name, constraint in catalog.table("constraints").items():
-        held |= {
-            _body(leaf) for leaf in leaves_of(constraint, ("constraints", name)) if isinstance(leaf.rule, NameRule)
-        }
+        held |= {_body(leaf) for leaf in constraint.leaves(("constraints", name)) if isinstance(leaf.rule, NameRule)}
         held |= {
             argument.name.partition(".")[0]
-            for leaf in leaves_of(constraint, ("constraints", name))
+            for leaf in constraint.leaves(("constraints", name))
             if isinstance(leaf.value, Expression)
             for call in leaf.value.calls
             for argument in call.args
@@ -192,13 +189,13 @@ def _guessed(catalog: Catalog) -> Iterator[Diagnostic]:
     for name, constraint in catalog.table("constraints").items():
         if constraint is None or not constraint.lies_by_start:
             continue
-        leaves = leaves_of(constraint, ("constraints", name))
+        leaves = constraint.leaves(("constraints", name))
         waiting = [owner_of(x) for leaf in leaves for x in _NAME.findall(_written(leaf.value)) if owner_of(x) in bodies]
         carried: set[str] = set()
         while waiting:
             body = bodies[waiting.pop()]
             if body is not None and body.joint is not None:
-                joint = leaves_of(body.joint, ())
+                joint = body.joint.leaves(())
                 carried |= {x for leaf in joint for x in _NAME.findall(_written(leaf.value))} & guessed
                 waiting += [body.joint.parent] if body.joint.parent in bodies else []
         for q in sorted(carried):

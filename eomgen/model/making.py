@@ -2,17 +2,20 @@
 
 from collections.abc import Mapping
 from itertools import islice
-from typing import Any
+from typing import Any, TypeVar
 
 from eomgen.errors import ModelError, Problem
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.everything import ALL
 from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.fields import Table, WrittenEquation
-from eomgen.model.part import Made, altered, read_part, slots_of
+from eomgen.model.part import Part, read_part
 from eomgen.model.typed import Typing, typing_of
 
 MOST_DIAGNOSTICS = 200  # of one model: more say nothing new
+
+
+Made = TypeVar("Made", bound=Part)
 
 
 def draft_of(cls: Any, raw: Mapping[str, Any], title: str, found: list[Diagnostic]) -> Any:
@@ -34,7 +37,7 @@ def finish(model: Any) -> None:
         ModelError: every problem at once, by path ("bodies.arm.joint.on").
     """
     found: list[Diagnostic] = []
-    for slot in slots_of(type(model)):
+    for slot in type(model).slots():
         raw = getattr(model, slot.name)
         if raw is not slot.default:
             object.__setattr__(model, slot.name, slot.rule.read(raw, (slot.key,), found))
@@ -47,7 +50,7 @@ def finish(model: Any) -> None:
 
 def resolved(model: Made) -> Made:
     """The checked model with the places of its ground joints as coordinates and its own points without their body."""
-    return altered(model, **_resolved_tables(model))
+    return model.altered(**_resolved_tables(model))
 
 
 def _resolved_tables(model: Any) -> dict[str, Any]:
@@ -55,7 +58,7 @@ def _resolved_tables(model: Any) -> dict[str, Any]:
     bodies = Table({name: _resolved_body(model, name, body) for name, body in model.bodies.items()})
     for name, points in centers.items():
         own = bodies[name].points or {}
-        bodies = Table({**bodies, name: altered(bodies[name], points=Table({**own, **points}))})
+        bodies = Table({**bodies, name: bodies[name].altered(points=Table({**own, **points}))})
     forces = {name: _resolved_force(force) for name, force in model.forces.items()}
     outputs = {name: _settled(output, typing_of(model, "outputs"), ("at",)) for name, output in model.outputs.items()}
     typing = typing_of(model, "given")
@@ -82,7 +85,7 @@ def _with_centers(model: Any) -> tuple[Table[Any], dict[str, dict[str, Any]]]:
             while own in (body.points or {}) or own in points.get(constraint.body, {}):
                 own += "_"
             points.setdefault(constraint.body, {})[own] = center
-            found[name] = altered(constraint, center=own)
+            found[name] = constraint.altered(center=own)
     return Table(found), points
 
 
@@ -95,12 +98,12 @@ def _settled(part: Any, typing: Typing, keys: tuple[str, ...]) -> Any:
         return typing.equation(value)[0] if isinstance(value, WrittenEquation) else value
 
     changes = {key: in_si(getattr(part, key)) for key in keys}
-    return part if all(value is None for value in changes.values()) else altered(part, **changes)
+    return part if all(value is None for value in changes.values()) else part.altered(**changes)
 
 
 def _resolved_force(force: Any) -> Any:
     between = getattr(force, "between", None)
-    return force if between is None else altered(force, between=tuple(_own(point) for point in between))
+    return force if between is None else force.altered(between=tuple(_own(point) for point in between))
 
 
 def _resolved_body(model: Any, name: str, body: Any) -> Any:
@@ -112,8 +115,8 @@ def _resolved_body(model: Any, name: str, body: Any) -> Any:
         point = None if joint.point is None else _own(joint.point)
         at = model.place(joint.at) if isinstance(joint.at, str) else joint.at
         if point != joint.point or at is not joint.at:
-            changes["joint"] = altered(joint, point=point, at=at)
-    return altered(body, **changes) if changes else body
+            changes["joint"] = joint.altered(point=point, at=at)
+    return body.altered(**changes) if changes else body
 
 
 def _own(point: str) -> str:

@@ -5,7 +5,7 @@ from dataclasses import MISSING, fields
 from functools import cache
 from inspect import Parameter, Signature
 from types import NoneType, UnionType
-from typing import Any, ClassVar, TypeVar, Union, get_args, get_origin
+from typing import Any, ClassVar, Self, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
 from eomgen.frozen import dataclass
@@ -15,8 +15,6 @@ from eomgen.model.positions import DocumentPath
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Expression, other_words
 from eomgen.symbolic.print import Symbol
-
-Made = TypeVar("Made")
 
 
 @dataclass(frozen=True)
@@ -38,11 +36,6 @@ class Slot:
     required: bool
     inline: bool
     default: Any
-
-
-def slots_of(part: Any) -> tuple[Slot, ...]:
-    """The fields of a part's class, in order."""
-    return _slots_of(part)
 
 
 @cache
@@ -78,7 +71,7 @@ class _Fields:
         own = [Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)]
         fields = [
             Parameter(slot.name, Parameter.KEYWORD_ONLY, default=Parameter.empty if slot.required else slot.default)
-            for slot in slots_of(cls)
+            for slot in cls.slots()
         ]
         cls.__init__.__signature__ = Signature([*own, *fields], return_annotation=None)
         return Signature(fields)
@@ -110,16 +103,41 @@ class Part:
         if "__repr__" not in vars(cls):
             cls.__repr__ = Part.__repr__  # type: ignore[method-assign]
 
+    @classmethod
+    def slots(cls) -> tuple[Slot, ...]:
+        """The fields of the class, in order."""
+        own: Any = cls
+        return _slots_of(own)
+
+    @classmethod
+    def of_values(cls, values: Mapping[str, Any]) -> Self:
+        """A part from values that were read already."""
+        part = object.__new__(cls)
+        for slot in cls.slots():
+            object.__setattr__(part, slot.name, values.get(slot.name, slot.default))
+        return part
+
+    def altered(self, **changes: Any) -> Self:
+        """The part with some fields changed to values that were read already."""
+        return type(self).of_values({slot.name: getattr(self, slot.name) for slot in self.slots()} | changes)
+
+    def leaves(self, path: DocumentPath) -> Iterator[Leaf]:
+        """Every value of the part and of the parts in it, with its path and its rule."""
+        for slot in self.slots():
+            value = getattr(self, slot.name)
+            if value is not None:
+                yield from slot.rule.leaves(value, path if slot.inline else (*path, slot.key), self)
+
     def __repr__(self) -> str:
         """The part as it is written, with its given fields: Revolute(on='cart', angle='theta')."""
-        slots = slots_of(type(self))
+        slots = self.slots()
         given = ((slot.name, getattr(self, slot.name)) for slot in slots if getattr(self, slot.name) != slot.default)
         return f"{type(self).__name__}({', '.join(f'{name}={_shown(value)}' for name, value in given)})"
 
     def __post_init__(self) -> None:
         found: list[Diagnostic] = []
-        raw = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
-        given = [slot for slot in slots_of(type(self)) if raw[slot.name] is not slot.default]
+        raw = {slot.name: getattr(self, slot.name) for slot in self.slots()}
+        given = [slot for slot in self.slots() if raw[slot.name] is not slot.default]
         values = {slot.name: slot.rule.read(raw[slot.name], (slot.key,), found) for slot in given}
         for name, value in _in_si(type(self), values, raw).items():
             object.__setattr__(self, name, value)
@@ -143,14 +161,6 @@ def title_of(cls: Any) -> str:
     return getattr(cls, "title", "") or getattr(cls, "kind", "") or cls.__name__.lower()
 
 
-def part_of_values(cls: type[Made], values: Mapping[str, Any]) -> Made:
-    """A part from values that were read already."""
-    part = object.__new__(cls)
-    for slot in slots_of(cls):
-        object.__setattr__(part, slot.name, values.get(slot.name, slot.default))
-    return part
-
-
 @dataclass(frozen=True)
 class PartRule:
     """A table that is a part of this class (or a part made in Python)."""
@@ -168,11 +178,12 @@ class PartRule:
         return read_part(self.cls, raw, path, found)
 
     def _shorthand(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
-        (slot,) = (s for s in slots_of(self.cls) if s.name == self.cls.shorthand)
-        return part_of_values(self.cls, {slot.name: slot.rule.read(raw, path, found)})
+        (slot,) = (s for s in self.cls.slots() if s.name == self.cls.shorthand)
+        return self.cls.of_values({slot.name: slot.rule.read(raw, path, found)})
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        return leaves_of(value, path)
+        found: Iterator[Leaf] = value.leaves(path)
+        return found
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return part_schema(self.cls, definitions)
@@ -182,7 +193,7 @@ def read_part(
     cls: Any, raw: Mapping[str, Any], path: DocumentPath, found: list[Diagnostic], known: tuple[str, ...] = ()
 ) -> Any:
     """A part from a table: unknown and missing keys are reported; what can be read is used."""
-    slots = slots_of(cls)
+    slots = cls.slots()
     inline = next((slot for slot in slots if slot.inline), None)
     own = [slot for slot in slots if slot is not inline]
     keys = (*known, *(slot.key for slot in own))
@@ -204,7 +215,7 @@ def read_part(
                 Diagnostic(path, f"{whereabouts(path, title_of(cls))} has no '{slot.key}'", f"give '{slot.key}'")
             )
             values[slot.name] = None
-    return part_of_values(cls, _in_si(cls, values, raw))
+    return cls.of_values(_in_si(cls, values, raw))
 
 
 def _read_instead(slot: Slot, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
@@ -214,19 +225,6 @@ def _read_instead(slot: Slot, raw: Any, path: DocumentPath, found: list[Diagnost
     if isinstance(raw, Mapping):
         found += wrong
     return None if wrong and not isinstance(raw, Mapping) else value
-
-
-def altered(part: Made, **changes: Any) -> Made:
-    """The part with some fields changed to values that were read already."""
-    return part_of_values(type(part), {slot.name: getattr(part, slot.name) for slot in slots_of(type(part))} | changes)
-
-
-def leaves_of(part: Any, path: DocumentPath) -> Iterator[Leaf]:
-    """Every value of a part and of the parts in it, with its path and its rule."""
-    for slot in slots_of(type(part)):
-        value = getattr(part, slot.name)
-        if value is not None:
-            yield from slot.rule.leaves(value, path if slot.inline else (*path, slot.key), part)
 
 
 @dataclass(frozen=True)
@@ -288,7 +286,8 @@ class SeamRule:
         return None
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        return leaves_of(value, path)
+        found: Iterator[Leaf] = value.leaves(path)
+        return found
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         branches = [part_schema(member, definitions) for member in self.members]
@@ -305,7 +304,7 @@ def part_schema(cls: Any, definitions: dict[str, Any]) -> dict[str, Any]:
 
 
 def _table_schema(cls: Any, definitions: dict[str, Any]) -> dict[str, Any]:
-    slots = slots_of(cls)
+    slots = cls.slots()
     properties = {slot.key: slot.rule.schema(definitions) for slot in slots if not slot.inline}
     required = [slot.key for slot in slots if slot.required and not slot.inline]
     kind = getattr(cls, "kind", None)

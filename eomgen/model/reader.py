@@ -14,7 +14,7 @@ from eomgen.files import read, read_stdin
 from eomgen.model.diagnostics import TABLES, Decimal, Diagnostic, shown
 from eomgen.model.likely_mistakes import warnings_of
 from eomgen.model.making import MOST_DIAGNOSTICS, diagnostics_of, draft_of, resolved
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
 from eomgen.model.replaced import Values, with_values
 from eomgen.symbolic.expression import invisible

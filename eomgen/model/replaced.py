@@ -21,12 +21,10 @@ from eomgen.model.arithmetic import value_of
 from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.fields import Table, WrittenEquation, is_mixed
-from eomgen.model.part import altered
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
 from eomgen.model.quantities import Typed, Unit, parse_typed_equation
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.model.typed import Settled, Typing, shown
-from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression import Expression
 
 Values = Mapping[str, Typed]
@@ -101,7 +99,7 @@ def with_values(
         found = _settled(typing, name, typed, options[0])
         changed[name] = _with_value(model.parameters[name], "value", found.value)
         settled.append(found)
-    made = altered(model, parameters=Table({**model.parameters, **changed}))
+    made = model.altered(parameters=Table({**model.parameters, **changed}))
     coordinates, speeds = dict(model.coordinates), dict(model.speeds)
     typing = Typing(made, declared)
     for name, typed in (start or {}).items():
@@ -112,9 +110,9 @@ def with_values(
             _warn_of_turns(name, typed, found)
         base, value = name.rstrip("'"), replace(found.value, typed=True)
         if name in speeds:
-            speeds[name] = altered(speeds[name], start=value)
+            speeds[name] = speeds[name].altered(start=value)
         elif name == base:
-            coordinates[name] = altered(_with_value(coordinates[name], "start", value), near=None)
+            coordinates[name] = _with_value(coordinates[name], "start", value).altered(near=None)
         else:
             coordinates[base] = _with_value(coordinates[base], "speed", value)
     changes: dict[str, Any] = {
@@ -127,9 +125,9 @@ def with_values(
     except ModelError as error:
         names = ", ".join(option for option, given in zip(options, (parameters, start), strict=True) if given)
         raise UsageError(f"{names}: {error.problems[0].what}", fix=error.problems[0].fix) from error
-    valued = altered(model, **changes)
+    valued = model.altered(**changes)
     taken = tuple(taken_of(valued, each) for each in settled)
-    numbers = {**exact_parameters(valued), "pi": math.pi}
+    numbers = {**valued.exact_parameters(), "pi": math.pi}
     starts = {each.name: value_of(each.value, numbers) for each in settled if each.name in (start or {})}
     return Valued(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
 
@@ -149,7 +147,7 @@ def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
 def _with_value(part: Any, key: str, value: Expression) -> Any:
     """A part with another value; one with names in it is in SI, and so the part is."""
     in_si = part.unit is not None and is_mixed(value, part.unit)
-    return altered(part, **{key: value}, **({"unit": Unit.parse(part.unit.si)} if in_si else {}))
+    return part.altered(**{key: value}, **({"unit": Unit.parse(part.unit.si)} if in_si else {}))
 
 
 def _settled(typing: Typing, name: str, typed: Typed, option: str) -> Settled:
@@ -163,7 +161,7 @@ def taken_of(model: Model, settled: Settled) -> Taken:
     """A settled value in the unit that is declared, else as it was typed, else in SI."""
     number, unit, dimension = None, settled.unit, settled.dimension
     try:
-        number = value_of(settled.value, {**exact_parameters(model), "pi": math.pi})
+        number = value_of(settled.value, {**model.exact_parameters(), "pi": math.pi})
     except ModelError:  # a parameter without a value: reported by whoever needs it
         number = None
     if number is not None:
@@ -244,7 +242,7 @@ def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
     laws = {name: law for name, value in inputs.items() if (law := law_of(model, value)) is not None}
     values = {name: time_law(model, name, value, "inputs") for name, value in inputs.items() if name not in laws}
     changed = {name: _with_value(model.inputs[name], "value", value) for name, value in values.items()}
-    made = altered(model, inputs=Table({**model.inputs, **changed})) if changed else model
+    made = model.altered(inputs=Table({**model.inputs, **changed})) if changed else model
     if changed:
         replace(model, inputs=made.inputs)  # what is wrong with a model is wrong with this one
     return with_feedback(made, laws)
@@ -328,7 +326,7 @@ class TypedNumbers:
         except (ValueError, TypeError):
             typed = text.strip() if isinstance(text, str) else text
             value = Typing(self.model, self.declared).value(self.name, typed).value
-        found = value_of(value, {**exact_parameters(self.model), "pi": math.pi})
+        found = value_of(value, {**self.model.exact_parameters(), "pi": math.pi})
         if found is None:
             raise ValueError(text)
         return float(found)

@@ -7,7 +7,6 @@ from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Diagnostic, shown, unknown_keys
 from eomgen.model.fields import FormulaRule, Leaf, TextRule
-from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import (
     ENDS,
@@ -116,7 +115,7 @@ def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
 def leaves_of_table(model: Any, table: str) -> Iterator[Leaf]:
     """Every value of a table of a model."""
     for name, part in getattr(model, table).items():
-        yield from leaves_of(part, (table, name))
+        yield from part.leaves((table, name))
 
 
 def _given_ends(ends: str) -> dict[str, str]:

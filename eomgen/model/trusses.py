@@ -8,8 +8,8 @@ the rows of one constraint T.
 from eomgen.model.constraints.link import Members
 from eomgen.model.fields import Table
 from eomgen.model.joints.placed import Placed
-from eomgen.model.part import altered, part_of_values
-from eomgen.model.parts import Body, Model, Truss
+from eomgen.model.model import Model
+from eomgen.model.parts import Body, Truss
 from eomgen.model.shapes.lines import Particle
 from eomgen.symbolic.expression import Expression
 
@@ -20,8 +20,7 @@ def in_parts(model: Model) -> Model:
         return model
     nodes = {f"{name}.{node}": _node(at) for name, truss in model.trusses.items() for node, at in truss.nodes.items()}
     members = {name: _members(name, truss) for name, truss in model.trusses.items() if truss.members}
-    return altered(
-        model,
+    return model.altered(
         bodies=Table({**model.bodies, **nodes}),
         constraints=Table({**model.constraints, **members}),
         trusses=Table(),
@@ -29,12 +28,12 @@ def in_parts(model: Model) -> Model:
 
 
 def _node(at: tuple[Expression, ...]) -> Body:
-    point = part_of_values(Particle, {"mass": Expression.number(0)})
-    return part_of_values(Body, {"shape": point, "joint": part_of_values(Placed, {"at": at})})
+    point = Particle.of_values({"mass": Expression.number(0)})
+    return Body.of_values({"shape": point, "joint": Placed.of_values({"at": at})})
 
 
 def _members(name: str, truss: Truss) -> Members:
-    return part_of_values(Members, {"truss": name, "members": truss.members})
+    return Members.of_values({"truss": name, "members": truss.members})
 
 
 def is_node(body: str) -> bool:

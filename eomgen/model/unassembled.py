@@ -26,8 +26,9 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.joints.placed import Placed
 from eomgen.model.kinds import Coordinates, ValueOf
-from eomgen.model.part import PartRule, altered, part_of_values
-from eomgen.model.parts import Body, Coordinate, Model
+from eomgen.model.model import Model
+from eomgen.model.part import PartRule
+from eomgen.model.parts import Body, Coordinate
 from eomgen.model.trusses import in_parts
 from eomgen.symbolic.expression import (
     Expression,
@@ -115,9 +116,9 @@ def freed(model: Model) -> Model:
     coordinates: dict[str, Coordinate] = dict(model.coordinates)
     for name in loose_bodies(model):
         along, about = _displacements(model, name)
-        bodies[name] = altered(model.bodies[name], joint=_displaced(model.bodies[name].joint, along, about))
-        coordinates |= {each: part_of_values(Coordinate, {"start": Expression.number(0)}) for each in (*along, *about)}
-    return altered(model, bodies=Table(bodies), coordinates=Table(coordinates))
+        bodies[name] = model.bodies[name].altered(joint=_displaced(model.bodies[name].joint, along, about))
+        coordinates |= {each: Coordinate.of_values({"start": Expression.number(0)}) for each in (*along, *about)}
+    return model.altered(bodies=Table(bodies), coordinates=Table(coordinates))
 
 
 def loose_bodies(model: Model) -> tuple[str, ...]:
@@ -144,6 +145,6 @@ def _stands(model: Model, joint: Any) -> bool:
 
 
 def _displaced(joint: Joint | None, along: tuple[str, ...], about: tuple[str, ...]) -> DisplacedJoint:
-    placed: Joint = part_of_values(Placed, {}) if joint is None else joint
+    placed: Joint = Placed.of_values({}) if joint is None else joint
     kept = {"on": placed.on, "point": placed.point, "turned": placed.turned}
-    return part_of_values(DisplacedJoint, {**kept, "placed": placed, "along": along, "about": about})
+    return DisplacedJoint.of_values({**kept, "placed": placed, "along": along, "about": about})

@@ -7,9 +7,10 @@ from collections.abc import Iterable
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Names, inferred
+from eomgen.model.fields import Table
 from eomgen.model.inference import Dimension, dimension_of_unit
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.parts import Model, Output
+from eomgen.model.parts import Coordinate, Output
 from eomgen.model.quantities import Unit
 from eomgen.symbolic.expression import Fraction, parse
 
@@ -17,40 +18,72 @@ ALWAYS = {"t": "s", "energy": "J"}
 OUTPUT = " (output)"  # after the name of an output's column, where another column has that name
 
 
-def in_own_unit(model: Model, name: str, value: float, digits: int = 9) -> str:
-    """The value with its unit, where the coordinate has one that is not of SI; a number alone elsewhere."""
-    rate = name.endswith("'")
-    part = model.coordinates.get(name[:-1] if rate else name)
-    unit = None if part is None else part.unit
-    if unit is None or (unit.factor == 1 and unit.pi_power == 0):
-        return f"{value:.{digits}g}"
-    return f"{float(unit.from_si(value, math.pi)):.{digits}g} {unit.text}{'/s' * rate}"
+class UnitsOfNames:
+    """Units of all that a model names: a base of `Model`."""
 
+    coordinates: Table[Coordinate]
+    outputs: Table[Output]
 
-def units_of(model: Model, names: Iterable[str]) -> dict[str, Unit]:
-    """The unit of each name or function of the motion that has one: as the file declares it, else that of SI.
+    def in_own_unit(self, name: str, value: float, digits: int = 9) -> str:
+        """The value with its unit, where the coordinate has one that is not of SI; a number alone elsewhere."""
+        rate = name.endswith("'")
+        part = self.coordinates.get(name[:-1] if rate else name)
+        unit = None if part is None else part.unit
+        if unit is None or (unit.factor == 1 and unit.pi_power == 0):
+            return f"{value:.{digits}g}"
+        return f"{float(unit.from_si(value, math.pi)):.{digits}g} {unit.text}{'/s' * rate}"
 
-    Args:
-        names: coordinates, rates, speeds, `t`, `energy`, "reaction_x(A)", "omega(bar)", outputs.
-    """
-    known = inferred(Catalog(model, ())).names
-    found = {name: _of_output(model, known, name) or _unit(known, name) for name in names}
-    return {name: unit for name, unit in found.items() if unit is not None}
+    def units_of(self, names: Iterable[str]) -> dict[str, Unit]:
+        """The unit of each name or function of the motion that has one: as the file declares it, else that of SI.
 
+        Args:
+            names: coordinates, rates, speeds, `t`, `energy`, "reaction_x(A)", "omega(bar)", outputs.
+        """
+        known = inferred(Catalog(self, ())).names
+        found = {name: self._of_output(known, name) or _unit(known, name) for name in names}
+        return {name: unit for name, unit in found.items() if unit is not None}
 
-def _of_output(model: Model, known: Names, name: str) -> Unit | None:
-    """The unit of an output's column; None where it is none, or where nobody knows it."""
-    output = name.removesuffix(OUTPUT)
-    if output not in model.outputs or (name == output and name in known.moves):
-        return None
-    return _of_answer(known, model.outputs[output])
+    def _of_output(self, known: Names, name: str) -> Unit | None:
+        """The unit of an output's column; None where it is none, or where nobody knows it."""
+        output = name.removesuffix(OUTPUT)
+        if output not in self.outputs or (name == output and name in known.moves):
+            return None
+        return _of_answer(known, self.outputs[output])
 
+    @property
+    def output_units(self) -> dict[Output, Unit]:
+        """The unit of each output: the one that is declared, else that of SI, where the model says which that is."""
+        known = inferred(Catalog(self, ())).names
+        found = {part: _of_answer(known, part) for part in self.outputs.values()}
+        return {part: unit for part, unit in found.items() if unit is not None}
 
-def units_of_outputs(model: Model) -> dict[Output, Unit]:
-    """The unit of each output: the one that is declared, else that of SI, where the model says which that is."""
-    known = inferred(Catalog(model, ())).names
-    found = {part: _of_answer(known, part) for part in model.outputs.values()}
-    return {part: unit for part, unit in found.items() if unit is not None}
+    def units_of_everything(self, speeds: Iterable[str]) -> dict[str, dict[str, str]]:
+        """The unit of every name, of the equation of motion along each speed, and of every output; "?" is not known.
+
+        An equation of motion is W per unit of its speed: its terms times the speed are powers.
+        """
+        found = inferred(Catalog(self, ()))
+        known, reduced = found.names, found.names.inference.reduced
+
+        def unit_text(dimension: Dimension) -> str:
+            dimension = reduced(dimension)
+            return "?" if dimension.unknowns else str(dimension)
+
+        walk, of_outputs = known.walk(), self.output_units
+        outputs = {
+            name: of_outputs[part].text if part in of_outputs else unit_text(walk.of(part.value))
+            for name, part in self.outputs.items()
+        }
+        names = {
+            name: known.declared[name].text if name in known.declared else unit_text(x)
+            for name, x in found.found.items()
+        }
+        power = dimension_of_unit(Unit.parse("W"))
+        return {
+            "names": names,
+            "equations": {u: unit_text(power.times(known.of(u), -1)) for u in speeds},
+            "outputs": outputs,
+        }
 
 
 def _of_answer(known: Names, part: Output) -> Unit | None:
@@ -62,34 +95,6 @@ def _of_answer(known: Names, part: Output) -> Unit | None:
     if function is not None and not function.per and function.like is None:
         return Unit.parse(function.unit)
     return _in_si(known.inference.reduced(known.walk().of(part.value)))
-
-
-def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, str]]:
-    """The unit of every name, of the equation of motion along each speed, and of every output; "?" is not known.
-
-    An equation of motion is W per unit of its speed: its terms times the speed are powers.
-    """
-    found = inferred(Catalog(model, ()))
-    known, reduced = found.names, found.names.inference.reduced
-
-    def unit_text(dimension: Dimension) -> str:
-        dimension = reduced(dimension)
-        return "?" if dimension.unknowns else str(dimension)
-
-    walk, of_outputs = known.walk(), units_of_outputs(model)
-    outputs = {
-        name: of_outputs[part].text if part in of_outputs else unit_text(walk.of(part.value))
-        for name, part in model.outputs.items()
-    }
-    names = {
-        name: known.declared[name].text if name in known.declared else unit_text(x) for name, x in found.found.items()
-    }
-    power = dimension_of_unit(Unit.parse("W"))
-    return {
-        "names": names,
-        "equations": {u: unit_text(power.times(known.of(u), -1)) for u in speeds},
-        "outputs": outputs,
-    }
 
 
 def _unit(known: Names, name: str) -> Unit | None:

@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 from eomgen.errors import DerivationError
-from eomgen.model.part import leaves_of
-from eomgen.model.parts import Model
+from eomgen.model.fields import Table
+from eomgen.model.part import Part
+from eomgen.model.parts import Unknown
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression
 
@@ -14,45 +15,48 @@ EFFORTS = ("torque", "force")
 """Loads at a joint."""
 
 
-def uses(model: Model) -> Iterator[tuple[DocumentPath, str]]:
-    """(path, unknown) of every place in which an unknown stands, except in the tables REQUESTED."""
-    if not model.unknowns:
-        return
-    for leaf in leaves_of(model, ()):
-        if leaf.path[0] not in REQUESTED and isinstance(leaf.value, Expression):
-            yield from ((leaf.path, name) for name in sorted(leaf.value.names & model.unknowns.keys()))
+class Unknowns(Part):
+    """Places where the unknowns of a model stand: a base of `Model`."""
 
+    unknowns: Table[Unknown]
 
-def in_loads(model: Model) -> tuple[str, ...]:
-    """The unknowns that stand in loads, in the model's order.
+    def _uses(self) -> Iterator[tuple[DocumentPath, str]]:
+        """(path, unknown) of every place in which an unknown stands, except in the tables REQUESTED."""
+        if not self.unknowns:
+            return
+        for leaf in self.leaves(()):
+            if leaf.path[0] not in REQUESTED and isinstance(leaf.value, Expression):
+                yield from ((leaf.path, name) for name in sorted(leaf.value.names & self.unknowns.keys()))
 
-    Raises:
-        DerivationError: one stands elsewhere, where no balance can be solved for it.
-    """
-    found = set()
-    for path, name in uses(model):
-        if not _is_load(path):
+    def unknowns_in_loads(self) -> tuple[str, ...]:
+        """The unknowns that stand in loads, in the model's order.
+
+        Raises:
+            DerivationError: one stands elsewhere, where no balance can be solved for it.
+        """
+        found = set()
+        for path, name in self._uses():
+            if not _is_load(path):
+                where = ".".join(map(str, path))
+                what = f"the unknown '{name}' stands where no balance gives it ({where})"
+                fix = "an unknown may stand in forces, couples and drives, and in [given]"
+                raise DerivationError(what, f"unknowns.{name}", fix)
+            found.add(name)
+        return tuple(name for name in self.unknowns if name in found)
+
+    def refuse_motion(self) -> None:
+        """Refuse equations of motion in which a force is unknown.
+
+        Raises:
+            DerivationError: it is named.
+        """
+        for path, name in self._uses():
             where = ".".join(map(str, path))
-            what = f"the unknown '{name}' stands where no balance gives it ({where})"
-            fix = "an unknown may stand in forces, couples and drives, and in [given]"
-            raise DerivationError(what, f"unknowns.{name}", fix)
-        found.add(name)
-    return tuple(name for name in model.unknowns if name in found)
-
-
-def refuse_motion(model: Model) -> None:
-    """Refuse equations of motion in which a force is unknown.
-
-    Raises:
-        DerivationError: it is named.
-    """
-    for path, name in uses(model):
-        where = ".".join(map(str, path))
-        raise DerivationError(
-            f"the unknown '{name}' stands in {where}: a motion does not follow from it",
-            where,
-            "make it a parameter or an input; at rest `eomgen solve` and `eomgen statics` find it",
-        )
+            raise DerivationError(
+                f"the unknown '{name}' stands in {where}: a motion does not follow from it",
+                where,
+                "make it a parameter or an input; at rest `eomgen solve` and `eomgen statics` find it",
+            )
 
 
 def _is_load(path: DocumentPath) -> bool:

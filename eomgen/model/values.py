@@ -1,5 +1,7 @@
 """Model -> numbers: the values of its parameters and the start values of its coordinates."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable, Mapping
 from typing import Any
@@ -8,92 +10,127 @@ from eomgen.errors import ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.diagnostics import nearest
-from eomgen.model.parts import Model
+from eomgen.model.fields import Table
+from eomgen.model.parts import Body, Coordinate, Parameter, Speed
 from eomgen.symbolic.expression import Expression, Graph, as_expression
 
 
-def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
-    """The parameters that have values: exact where they can be, a float where pi or a root comes in.
+class Numbers:
+    """Values of the parameters and of the start that a model declares: a base of `Model`."""
 
-    Raises:
-        ModelError: an expression without a value (1/0), an override that names no parameter or is no number.
-    """
-    given = {name: part.value for name, part in model.parameters.items() if part is not None}
-    given |= _overridden(model, overrides or {})
-    plain = {name: x.literal for name, x in given.items() if x is not None}
-    values: dict[str, AnyNumber] = {"pi": math.pi, **{name: x for name, x in plain.items() if x is not None}}
-    others = {name: x for name, x in given.items() if x is not None and name not in values}
-    for name in in_order(others)[0]:
-        if others[name].names <= values.keys():
-            values[name] = _value(others[name], values, f"parameters.{name}")
-    del values["pi"]
-    return values
+    parameters: Table[Parameter]
+    coordinates: Table[Coordinate]
+    speeds: Table[Speed]
+    bodies: Table[Body]
 
+    def exact_parameters(self, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
+        """The parameters that have values: exact where they can be, a float where pi or a root comes in.
 
-def constant_parameters(model: Model, graph: Graph) -> dict[str, Any]:
-    """The parameters that have values, each as an exact constant: 1/3, pi/6, sqrt(2); nothing is rounded.
+        Raises:
+            ModelError: an expression without a value (1/0), an override that names no parameter or is no number.
+        """
+        given = {name: part.value for name, part in self.parameters.items() if part is not None}
+        given |= self._overridden(overrides or {})
+        plain = {name: x.literal for name, x in given.items() if x is not None}
+        values: dict[str, AnyNumber] = {"pi": math.pi, **{name: x for name, x in plain.items() if x is not None}}
+        others = {name: x for name, x in given.items() if x is not None and name not in values}
+        for name in in_order(others)[0]:
+            if others[name].names <= values.keys():
+                values[name] = _value(others[name], values, f"parameters.{name}")
+        del values["pi"]
+        return values
 
-    Raises:
-        ModelError: as of `exact_parameters`.
-    """
-    values = exact_parameters(model)
-    found: dict[str, Any] = {}
-    for name, value in values.items():  # those that another needs come before it
-        part = model.parameters[name]
-        formula = None if part is None or not isinstance(value, float) else part.value
-        found[name] = value if formula is None else formula.evaluate({**found, "pi": graph.pi})
-    return found
+    def constant_parameters(self, graph: Graph) -> dict[str, Any]:
+        """The parameters that have values, each as an exact constant: 1/3, pi/6, sqrt(2); nothing is rounded.
 
+        Raises:
+            ModelError: as of `exact_parameters`.
+        """
+        values = self.exact_parameters()
+        found: dict[str, Any] = {}
+        for name, value in values.items():  # those that another needs come before it
+            part = self.parameters[name]
+            formula = None if part is None or not isinstance(value, float) else part.value
+            found[name] = value if formula is None else formula.evaluate({**found, "pi": graph.pi})
+        return found
 
-def numeric_parameters(
-    model: Model, overrides: Mapping[str, Any] | None = None, *, needed: Iterable[str] | None = None
-) -> dict[str, float]:
-    """The value of each parameter, in the model's order, as floats.
+    def numeric_parameters(
+        self, overrides: Mapping[str, Any] | None = None, *, needed: Iterable[str] | None = None
+    ) -> dict[str, float]:
+        """The value of each parameter, in the model's order, as floats.
 
-    Args:
-        overrides: values in place of the model's own: numbers or expressions.
-        needed: the parameters that must have one (None: all).
-    Raises:
-        MissingValues: some have none; names them all.
-        ModelError: as of `exact_parameters`.
-    """
-    values = exact_parameters(model, overrides)
-    wanted = set(model.parameters) if needed is None else set(needed)
-    missing = tuple(name for name in model.parameters if name in wanted and name not in values)
-    if missing:
-        raise MissingValues(missing)
-    return {name: float(values[name]) for name in model.parameters if name in values}
+        Args:
+            overrides: values in place of the model's own: numbers or expressions.
+            needed: the parameters that must have one (None: all).
+        Raises:
+            MissingValues: some have none; names them all.
+            ModelError: as of `exact_parameters`.
+        """
+        values = self.exact_parameters(overrides)
+        wanted = set(self.parameters) if needed is None else set(needed)
+        missing = tuple(name for name in self.parameters if name in wanted and name not in values)
+        if missing:
+            raise MissingValues(missing)
+        return {name: float(values[name]) for name in self.parameters if name in values}
 
+    def start_values(self, parameters: Mapping[str, Any] | None = None) -> tuple[dict[str, float], dict[str, float]]:
+        """Coordinates, rates and declared speeds at the start; what is not given is 0.
 
-def start_values(
-    model: Model, parameters: Mapping[str, Any] | None = None
-) -> tuple[dict[str, float], dict[str, float]]:
-    """Coordinates, rates and declared speeds at the start; what is not given is 0.
+        A dependent coordinate without `start` begins at `near`. A driven one begins where its law says: f(0) for
+        `motion`, f(0) as rate for `rate`.
 
-    A dependent coordinate without `start` begins at `near`. A driven one begins where its law says: f(0) for
-    `motion`, f(0) as rate for `rate`.
+        Args:
+            parameters: values in place of the model's own (None: those).
+        Returns:
+            {"theta": value} of the coordinates; {"theta'": rate, "w1": value} of their rates and the declared speeds.
+        Raises:
+            MissingValues: a start needs parameters without values.
+        """
+        lookup = {**self.exact_parameters(parameters), "t": 0, "pi": math.pi}
+        q: dict[str, float] = {}
+        u: dict[str, float] = {}
+        for name, part in self.coordinates.items():
+            where = f"coordinates.{name}"
+            at = part.motion if part.motion is not None else part.start if part.start is not None else part.near
+            q[name] = _float(at, lookup, where)
+            rate = part.rate if part.rate is not None else part.speed
+            u[name + "'"] = _float(rate, lookup, where) if part.motion is None else _slope(part.motion, lookup, where)
+        for name, speed in self.speeds.items():
+            u[name] = _float(speed.start, lookup, f"speeds.{name}")
+        for each in self.quaternions:
+            q |= dict(zip(each.coordinates, _normed([q[name] for name in each.coordinates], each.body), strict=True))
+        return q, u
 
-    Args:
-        parameters: values in place of the model's own (None: those).
-    Returns:
-        {"theta": value} of the coordinates and {"theta'": rate, "w1": value} of their rates and the declared speeds.
-    Raises:
-        MissingValues: a start needs parameters without values.
-    """
-    lookup = {**exact_parameters(model, parameters), "t": 0, "pi": math.pi}
-    q: dict[str, float] = {}
-    u: dict[str, float] = {}
-    for name, part in model.coordinates.items():
-        where = f"coordinates.{name}"
-        at = part.motion if part.motion is not None else part.start if part.start is not None else part.near
-        q[name] = _float(at, lookup, where)
-        rate = part.rate if part.rate is not None else part.speed
-        u[name + "'"] = _float(rate, lookup, where) if part.motion is None else _slope(part.motion, lookup, where)
-    for name, speed in model.speeds.items():
-        u[name] = _float(speed.start, lookup, f"speeds.{name}")
-    for each in quaternions_of(model):
-        q |= dict(zip(each.coordinates, _normed([q[name] for name in each.coordinates], each.body), strict=True))
-    return q, u
+    def first_guesses(self, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:
+        """Start of the search for each dependent coordinate that gives one by `near`.
+
+        Raises:
+            MissingValues: a guess needs parameters without values.
+        """
+        guessed = {
+            name: part.near for name, part in self.coordinates.items() if part.dependent and part.near is not None
+        }
+        lookup = {**self.exact_parameters(parameters), "pi": math.pi} if guessed else {}
+        return {name: _float(near, lookup, f"coordinates.{name}.near") for name, near in guessed.items()}
+
+    @property
+    def quaternions(self) -> tuple[Quaternion, ...]:
+        """The quaternions of the joints that have one, in the model's order."""
+        joints = ((name, body.joint) for name, body in self.bodies.items() if body.joint is not None)
+        return tuple(
+            Quaternion(name, tuple(e.text for e in joint.turns()), joint.spins) for name, joint in joints if joint.spins
+        )
+
+    def _overridden(self, overrides: Mapping[str, Any]) -> dict[str, Expression]:
+        read = {}
+        for name, value in overrides.items():
+            if name not in self.parameters:
+                raise ModelError(f"there is no parameter '{name}'", "parameters", nearest(name, self.parameters))
+            try:
+                read[name] = as_expression(value.item() if hasattr(value, "item") else value)
+            except ExpressionError as error:
+                raise ModelError(error.what, f"parameters.{name}", error.fix) from error
+        return read
 
 
 def _normed(e: list[float], body: str) -> list[float]:
@@ -115,29 +152,6 @@ def no_orientation(body: str) -> ModelError:
         f"bodies.{body}.joint.quaternion",
         "start = 1 of its first coordinate: no turn",
     )
-
-
-def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> dict[str, float]:
-    """Start of the search for each dependent coordinate that gives one by `near`.
-
-    Raises:
-        MissingValues: a guess needs parameters without values.
-    """
-    guessed = {name: part.near for name, part in model.coordinates.items() if part.dependent and part.near is not None}
-    lookup = {**exact_parameters(model, parameters), "pi": math.pi} if guessed else {}
-    return {name: _float(near, lookup, f"coordinates.{name}.near") for name, near in guessed.items()}
-
-
-def _overridden(model: Model, overrides: Mapping[str, Any]) -> dict[str, Expression]:
-    read = {}
-    for name, value in overrides.items():
-        if name not in model.parameters:
-            raise ModelError(f"there is no parameter '{name}'", "parameters", nearest(name, model.parameters))
-        try:
-            read[name] = as_expression(value.item() if hasattr(value, "item") else value)
-        except ExpressionError as error:
-            raise ModelError(error.what, f"parameters.{name}", error.fix) from error
-    return read
 
 
 def _value(expression: Expression, values: Mapping[str, Any], where: str) -> AnyNumber:
@@ -187,11 +201,3 @@ class Quaternion:
     body: str
     coordinates: tuple[str, ...]
     speeds: tuple[str, ...]
-
-
-def quaternions_of(model: Model) -> tuple[Quaternion, ...]:
-    """The quaternions of the joints that have one, in the model's order."""
-    joints = ((name, body.joint) for name, body in model.bodies.items() if body.joint is not None)
-    return tuple(
-        Quaternion(name, tuple(e.text for e in joint.turns()), joint.spins) for name, joint in joints if joint.spins
-    )

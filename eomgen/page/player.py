@@ -19,7 +19,7 @@ from eomgen.codegen import TestVector, compiled, javascript_expression, vectors
 from eomgen.documents import notation_of
 from eomgen.errors import ToolMissing, UsageError, visible
 from eomgen.frozen import dataclass
-from eomgen.model import Model, Unit, contacts_of, pieces_of, units_of
+from eomgen.model import Model, Unit
 from eomgen.page.live import Live, live_of, single_reactions
 from eomgen.page.markup import in_a_script, mathml, packed
 from eomgen.page.packing import packed_columns
@@ -146,7 +146,7 @@ class PlayedRun:
         moves = self.moves
         columns = self.live.columns if self.live else {name: ("x", k) for k, name in enumerate(names)}
         plotted = [name for name in columns if not name.endswith("'") or name in names]
-        units = units_of(self.model, [*plotted, "energy"])
+        units = self.model.units_of([*plotted, "energy"])
         energy = self.live is not None
         shown = [
             {"name": name, **_unit(units.get("energy" if name in ("T", "V", "E") else name))}
@@ -239,7 +239,7 @@ class PlayedRun:
         unknown = [name for name in requested if name not in values]
         if unknown:
             raise UsageError(f"there is no slider for '{unknown[0]}'", fix=f"there are {', '.join(values)}")
-        units = units_of(self.model, values)
+        units = self.model.units_of(values)
         chosen = {name: values[name] for name in requested} if requested else values
         return [
             self._slider(name, *reported, units.get(name), requested.get(name)) for name, reported in chosen.items()
@@ -536,8 +536,8 @@ def _compared(played: PlayedRun, reported: Mapping[str, Any]) -> Iterator[tuple[
 def _otherwise_moved(played: PlayedRun, reported: Mapping[str, Any]) -> str:
     """Message if a page says that contacts change where none is declared, or moves by itself where they do; else ""."""
     model, requested = played.model, played.options.moves
-    paths = [name for name in played.phase.configuration.pieces if pieces_of(model.bodies[name])]
-    could = bool(contacts_of(model) or paths)  # the model of a phase has the one piece on which a body is
+    paths = [name for name in played.phase.configuration.pieces if model.bodies[name].path_pieces]
+    could = bool(model.contacts or paths)  # the model of a phase has the one piece on which a body is
     if requested and "contacts" in reported["rests"] and not could:
         return "it says that contacts change, and none is declared"
     alone = len(played.run.phases) == 1

@@ -29,7 +29,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
 from eomgen.mechanics.free_bodies import frictions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import start_of_motion
-from eomgen.model import Contact, Resistance, contacts_of, exact_parameters
+from eomgen.model import Contact, Resistance
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
@@ -370,8 +370,8 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
     """
     system = equations.system
     model, modes = system.scope.model, system.modes
-    ending = [c.name for c in contacts_of(model) if c.unilateral and modes.get(c.name, ContactMode()) == ContactMode()]
-    if not ending or not model.coordinates or len(exact_parameters(model)) < len(model.parameters):
+    ending = [c.name for c in model.contacts if c.unilateral and modes.get(c.name, ContactMode()) == ContactMode()]
+    if not ending or not model.coordinates or len(model.exact_parameters()) < len(model.parameters):
         return ""
     try:
         free = system_of(model, {**modes, **dict.fromkeys(ending, OPEN)})
@@ -405,9 +405,7 @@ def pushing_otherwise(equations: EquationsOfMotion, start: State, moving: Callab
         NoValue: something has no value there.
     """
     system = equations.system
-    named = [
-        c.name for c in contacts_of(system.scope.model) if c.friction is not None and not (c.unilateral or c.round)
-    ]
+    named = [c.name for c in system.scope.model.contacts if c.friction is not None and not (c.unilateral or c.round)]
     modes = {name: system.modes.get(name, ContactMode()) for name in named}
     for name, mode in modes.items():
         if not mode.closed or mode.sense is not None:  # a phase of a motion: its own start is another

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.model import Model, exact_parameters, leaves_of
+from eomgen.model import Model
 from eomgen.proof.check import Check, checked, first_wrong
 from eomgen.symbolic.expression import DeclaredSamples, Expression, Fraction, Sampled
 from eomgen.symbolic.numeric import tolerances
@@ -47,7 +47,7 @@ def numbers_otherwise(data: bytes, model: Model) -> str:
 
 
 def _parameters(found: Mapping[str, Any], model: Model) -> Iterator[str]:
-    known = {name: float(x) for name, x in exact_parameters(model).items()}
+    known = {name: float(x) for name, x in model.exact_parameters().items()}
     for name, entry in _table(found, "parameters"):
         value, unit = (entry.get("value"), entry.get("unit", "1")) if isinstance(entry, dict) else (entry, "1")
         due, size = _value(value, known), _size(unit)
@@ -149,7 +149,7 @@ def other_functions(model: Model) -> Iterator[Check]:
 def _expressions(model: Model) -> Iterator[Expression]:
     parts = (*model.coordinates.values(), *model.inputs.values())
     for part in parts:
-        leaves = (part,) if isinstance(part, Expression) else (leaf.value for leaf in leaves_of(part, ()))
+        leaves = (part,) if isinstance(part, Expression) else (leaf.value for leaf in part.leaves(()))
         yield from (value for value in leaves if isinstance(value, Expression))
 
 

@@ -29,7 +29,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
 from eomgen.mechanics.start import start_of_motion
-from eomgen.model import Model, exact_parameters
+from eomgen.model import Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
 from eomgen.symbolic.expression import Node, Scalar, State, Vector, jacobian, symbols_of
@@ -273,7 +273,7 @@ def pulled_at_start(system: System) -> str:
     except (DerivationError, MissingValues, ModelError) as error:
         raise NoValue(str(error).splitlines()[0]) from None
     symbols = system.symbols
-    known = exact_parameters(system.scope.model)
+    known = system.scope.model.exact_parameters()
     state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     state |= {node: start.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
     for applied in springs_of_the_start(system):

@@ -14,7 +14,7 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization import NAME, SmallMotions
-from eomgen.model import quaternions_of, rotation_of
+from eomgen.model import rotation_of
 from eomgen.proof.degrees_of_freedom import Going, Nearby, Numbers50
 from eomgen.proof.in_numbers import STEP
 from eomgen.symbolic.expression import Matrix, Node, apply, cross, plus, transposed, vector_of
@@ -96,7 +96,7 @@ class Differences:
     def _named(self, labels: Sequence[Node], prime: str) -> dict[Node, SmallTurn]:
         system, known = self.small.reference.system, dict[str, SmallTurn]()
         speeds = {u.name: u for u in system.symbols.u}
-        for four, part in zip(system.scope.quaternions, quaternions_of(system.scope.model), strict=True):
+        for four, part in zip(system.scope.quaternions, system.scope.model.quaternions, strict=True):
             own = tuple(speeds[name] for name in part.speeds if name in speeds)
             for axis, name in enumerate(part.speeds):
                 known[f"{NAME}{name}{prime}"] = SmallTurn(four, own, axis, standing=False)

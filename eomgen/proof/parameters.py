@@ -6,7 +6,6 @@ import math
 from collections.abc import Iterator
 
 from eomgen.mechanics.kinematics import Motion, Scope
-from eomgen.model import exact_parameters
 from eomgen.proof.check import Check, checked
 from eomgen.proof.declared_numbers import other_functions
 from eomgen.proof.masses import other_masses
@@ -22,7 +21,7 @@ def other_data(motion: Motion) -> Iterator[Check]:
 
 def other_parameters(scope: Scope) -> Iterator[Check]:
     """A failing check where the numbers used by all other checks are not those of the file; else none."""
-    known, found = exact_parameters(scope.model), scope.values_of_parameters(None)
+    known, found = scope.model.exact_parameters(), scope.values_of_parameters(None)
     there = {x.name: float(value) for x, value in found.items()}
     pairs = [(name, there.get(name, math.nan), float(right)) for name, right in known.items()]
     wrong = [

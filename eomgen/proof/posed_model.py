@@ -39,7 +39,6 @@ from eomgen.model import (
     TouchingPoint,
     TurnAbout,
     WayAlongPieces,
-    exact_parameters,
 )
 from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
@@ -83,7 +82,7 @@ class PosedModel:
 
     def values_of(self, symbols: Symbols) -> dict[Node, float]:
         """Parameters, coordinates and the time as symbols of a graph, with their numbers."""
-        known = exact_parameters(self.model)
+        known = self.model.exact_parameters()
         return {
             **{node: float(known[name]) for name, node in symbols.parameters.items() if name in known},
             **{node: self.values[node.name] for node in symbols.q},

@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, exact_accelerations
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import BALANCE, FUNCTIONS, exact_parameters
+from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
@@ -250,7 +250,7 @@ class ReadBack:
     def _declared_start(self) -> dict[Node, Any]:
         """Values of t, parameters (random without a value), coordinates and speeds at the start, as declared."""
         scope, symbols = self.equations.system.scope, self.equations.symbols
-        known, parts = exact_parameters(scope.model), scope.model.coordinates
+        known, parts = scope.model.exact_parameters(), scope.model.coordinates
         values: dict[Node, Any] = {symbols.t: precise(0), **dict.fromkeys(symbols.inputs.values(), precise(0))}
         for k, (name, node) in enumerate(symbols.parameters.items()):
             values[node] = precise(float(known.get(name, 1 + Fraction(1, k + 2))))

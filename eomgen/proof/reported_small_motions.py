@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.model import Model, Unit, exact_parameters
+from eomgen.model import Model, Unit
 from eomgen.proof.check import Check, Tally, attempted, checked, differing, first_wrong
 from eomgen.proof.reports_read import ColouredPoints, DrawnPanel, said_of
 from eomgen.symbolic.expression import LONGEST, Expression, parse
@@ -408,7 +408,7 @@ class _Drawn:
         begun = {complex(*x) for curve in panel.curves for x in curve.places}
         values = list(dict.fromkeys(points.values.tolist()))
         for value in values[:: 1 + (len(values) - 1) // MOST_VALUES]:
-            known = exact_parameters(model, {name: value * (Unit.parse(unit).size if unit else 1.0)})
+            known = model.exact_parameters({name: value * (Unit.parse(unit).size if unit else 1.0)})
             roots = _roots(points, value)
             found = self.pencil(lambda x, known=known: self._exact(x, known))  # type: ignore[misc]
             if wrong := _no_roots(found, roots):

@@ -16,7 +16,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import start_state
-from eomgen.model import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.symbolic.expression import Scalar, State, is_zero
 from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, of_50_digits, switches_of, tolerances
@@ -189,13 +188,13 @@ def own_start(system: System) -> State | None:
 
 def _own_state(system: System, rng: Random) -> State | None:
     model, symbols = system.scope.model, system.symbols
-    known = exact_parameters(model)
+    known = model.exact_parameters()
     drawn = {name: round(rng.uniform(0.7, 1.3), 6) for name in symbols.parameters if name not in known}
     try:
         values = start_state(system, drawn)
     except (DerivationError, ModelError, UsageError):
         return None
-    known = {**exact_parameters(model, drawn), **values}
+    known = {**model.exact_parameters(drawn), **values}
     given = {node: known[name] for name, node in symbols.parameters.items()}
     given |= {node: known[node.name] for node in (*symbols.q, *symbols.u)}
     state = {

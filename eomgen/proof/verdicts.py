@@ -25,7 +25,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, free_rates, with_accelerations
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import start_state
-from eomgen.model import BALANCE, FUNCTIONS, exact_parameters
+from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
@@ -175,7 +175,7 @@ class _Again:
 
     def _along(self) -> Iterator[NumericState]:
         """States of the motion from the start, with the model's parameters; for a wrong verdict with others too."""
-        own = exact_parameters(self.judged.equations.system.scope.model)
+        own = self.judged.equations.system.scope.model.exact_parameters()
         missing = [name for name in self.judged.equations.system.symbols.parameters if name not in own]
         if missing:
             raise NoValue(f"{', '.join(missing)} has no value")
@@ -193,7 +193,7 @@ class _Again:
         """
         equations = self.judged.equations
         system, symbols = equations.system, equations.symbols
-        known = exact_parameters(system.scope.model, changed)
+        known = system.scope.model.exact_parameters(changed)
         parameters = {node: Fraction(float(known[name])) for name, node in symbols.parameters.items()}
         begun = start_state(system, changed, {u.name: 0.0 for u in symbols.u} if self.judged.at_rest else {})
         moving = (*symbols.q, *symbols.u)

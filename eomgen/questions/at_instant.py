@@ -11,7 +11,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.integrals import ClosedInstant
 from eomgen.mechanics.kinematics import Located
-from eomgen.model import exact_parameters, numeric_parameters
 from eomgen.simulation import FirstTime
 from eomgen.study import Study
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, substituted
@@ -112,7 +111,7 @@ def _still(system: System) -> dict[Node, Scalar]:
 
 def parameters_of(phase: Study) -> dict[Node, float]:
     """The values of the parameters."""
-    values = numeric_parameters(phase.model)
+    values = phase.model.numeric_parameters()
     return {phase.system.symbols.parameters[name]: float(x) for name, x in values.items()}
 
 
@@ -161,7 +160,7 @@ def _search(phase: Study, condition: Scalar, start: Mapping[Node, Scalar]) -> _S
 
 
 def _values(phase: Study) -> State:
-    parameters, known = phase.system.symbols.parameters, exact_parameters(phase.model)
+    parameters, known = phase.system.symbols.parameters, phase.model.exact_parameters()
     return {node: float(known[name]) for name, node in parameters.items() if name in known}
 
 

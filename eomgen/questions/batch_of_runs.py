@@ -24,7 +24,6 @@ from eomgen.model import (
     Table,
     Typed,
     TypedNumbers,
-    altered,
     are_several,
     nearest,
     seconds,
@@ -164,7 +163,7 @@ def _inputs_as_parameters(model: Model, inputs: Mapping[str, np.ndarray]) -> tup
         added[own], found[own] = Parameter(), values
     if not added:
         return model, found
-    model = altered(model, parameters=Table({**model.parameters, **added}))
+    model = model.altered(parameters=Table({**model.parameters, **added}))
     return with_inputs(model, dict(zip(inputs, added, strict=True))), found
 
 

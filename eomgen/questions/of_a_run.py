@@ -30,7 +30,6 @@ from eomgen.model import (
     WrittenEquation,
     equation_typed,
     formula_at,
-    numeric_parameters,
     parse_typed_equation,
 )
 from eomgen.proof import Check, Tally, differing
@@ -260,7 +259,7 @@ class WholeRun:
             when.extend(t)
             return found
 
-        names = {**numeric_parameters(self.model, self.parameters), "pi": math.pi}
+        names = {**self.model.numeric_parameters(self.parameters), "pi": math.pi}
         strangers = sorted(name for name in formula.names - names.keys() if not self._stands_inside(formula, name))
         if strangers:
             what = f"'{strangers[0]}' is a function of a state, next to functions of a whole run"

@@ -48,7 +48,6 @@ from eomgen.model import (
     Unit,
     Values,
     model_at,
-    units_of_outputs,
 )
 from eomgen.proof import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
@@ -153,7 +152,7 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
 
 def _solver_of(model: Model) -> _Solver:
     motions = {at_rest: MotionFromStart(model, at_rest) for at_rest in (False, True)}
-    return _Solver(model, motions, units_of_outputs(model))
+    return _Solver(model, motions, model.output_units)
 
 
 @dataclass(frozen=True)

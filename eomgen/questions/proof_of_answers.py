@@ -24,7 +24,7 @@ from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
 from eomgen.mechanics.linearization import MATRICES
 from eomgen.mechanics.start import start_state
-from eomgen.model import FUNCTIONS, SMALL_MOTIONS, AtRest, Model, Output, WrittenEquation, exact_parameters, names_of
+from eomgen.model import FUNCTIONS, SMALL_MOTIONS, AtRest, Model, Output, WrittenEquation, names_of
 from eomgen.proof import (
     Certificate,
     Check,
@@ -412,10 +412,10 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
     nodes = (*symbols.q, *symbols.u)
     if not symbols.parameters or any(node not in moment.exact for node in nodes):
         return ""
-    own = {name: float(x) for name, x in exact_parameters(model).items()}
+    own = {name: float(x) for name, x in model.exact_parameters().items()}
     parts = {name: model.parameters[name] for name in own}
     free = [name for name, part in parts.items() if part.value is not None and part.value.literal is not None]
-    known = exact_parameters(model, {name: own[name] * (1 + rng.uniform(0.2, 1) * ASIDE) for name in free})
+    known = model.exact_parameters({name: own[name] * (1 + rng.uniform(0.2, 1) * ASIDE) for name in free})
     if len(known) < len(symbols.parameters):
         return ""
     p = {symbols.parameters[name]: Fraction(float(x)) for name, x in known.items()}

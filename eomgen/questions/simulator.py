@@ -29,10 +29,8 @@ from eomgen.model import (
     Valued,
     Values,
     WrittenEquation,
-    altered,
     law_of,
     nearest,
-    part_of_values,
     seconds,
     with_values,
 )
@@ -138,7 +136,7 @@ class Simulator:
             return self._own
         if self.keeps_start:
             return self._found(valued)
-        return self._found(replace(valued, model=altered(self.model, parameters=valued.model.parameters)))
+        return self._found(replace(valued, model=self.model.altered(parameters=valued.model.parameters)))
 
     @cached_property
     def _own(self) -> tuple[Equations, PhaseModels]:
@@ -372,8 +370,8 @@ def with_controlled(model: Model, names: Sequence[str]) -> Model:
     """Model in which the inputs that controllers set are parameters."""
     left = {name: part for name, part in model.inputs.items() if name not in names}
     zero = Expression.number(0)
-    more = {name: part_of_values(Parameter, {"value": zero, "unit": model.inputs[name].unit}) for name in names}
-    return altered(model, inputs=Table(left), parameters=Table({**model.parameters, **more}))
+    more = {name: Parameter.of_values({"value": zero, "unit": model.inputs[name].unit}) for name in names}
+    return model.altered(inputs=Table(left), parameters=Table({**model.parameters, **more}))
 
 
 @dataclass(frozen=True)

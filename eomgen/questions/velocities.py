@@ -22,11 +22,8 @@ from eomgen.model import (
     ModelOrPath,
     Values,
     WrittenEquation,
-    altered,
     equation_typed,
-    exact_parameters,
     model_at,
-    part_of_values,
 )
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.motion_from_start import MotionFromStart
@@ -128,7 +125,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     moving = dict(exact) if whole else exact_numbers(numbers)
     if not moving and (symbols.q or symbols.u):
         model = phase.system.scope.model
-        known = exact_parameters(model)
+        known = model.exact_parameters()
         names = ", ".join(f"'{name}'" for name in model.parameters if name not in known) or "all parameters"
         raise DerivationError(
             f"the state has no closed form, and without values of {names} no number",
@@ -225,5 +222,5 @@ def _with_given(model: Model, equations: Sequence[WrittenEquation]) -> Model:
     """Model with these given velocities added, checked as a whole."""
     if not equations:
         return model
-    own = model.given or part_of_values(Given, {})
-    return dataclasses.replace(model, given=altered(own, velocity=(*(own.velocity or ()), *equations)))
+    own = model.given or Given.of_values({})
+    return dataclasses.replace(model, given=own.altered(velocity=(*(own.velocity or ()), *equations)))

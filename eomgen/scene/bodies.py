@@ -15,7 +15,6 @@ from eomgen.model import (
     LineForm,
     MassProperties,
     PolygonForm,
-    exact_parameters,
     is_node,
     pose_of,
 )
@@ -199,7 +198,7 @@ def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> f
 
 def parameters_as_drawn(system: System) -> dict[Node, float]:
     """The parameters in numbers; one without a value is 1, as in pictures."""
-    known = exact_parameters(system.scope.model)
+    known = system.scope.model.exact_parameters()
     return {node: float(known.get(name, 1)) for name, node in system.symbols.parameters.items()}
 
 

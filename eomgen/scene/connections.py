@@ -29,8 +29,6 @@ from eomgen.model import (
     Strand,
     TouchingPoint,
     TouchingRound,
-    driven_coordinates,
-    driving_constraints,
     unit,
 )
 from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, shaft_of, wedge_of
@@ -406,7 +404,7 @@ def drive_marks(system: System) -> list[Mark]:
     """An arrow at the first joint that turns or slides as a driven coordinate says, and the coordinate's name."""
     if system.scope.model.space == "space":
         return []
-    driven, constraints = driven_coordinates(system.scope.model), driving_constraints(system.scope.model)
+    driven, constraints = system.scope.model.driven_coordinates, system.scope.model.driving_constraints
     waiting = [q for q in system.symbols.q if q.name in driven]
     found = []
     for k, link in enumerate(system.motion.links, start=1):

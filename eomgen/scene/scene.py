@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.start import start_state
-from eomgen.model import Form, exact_parameters, start_values
+from eomgen.model import Form
 from eomgen.scene.symbols import symbols_used
 from eomgen.symbolic.expression import Node, Pose, Scalar, Vector, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate
@@ -257,12 +257,12 @@ def drawn_start(system: System) -> DrawnState:
     """State at which the model starts; a parameter without a value is taken as 1, and constraints that then do not
     close stay open."""
     model, symbols = system.scope.model, system.symbols
-    known = exact_parameters(model)
+    known = model.exact_parameters()
     assumed = {name: 1 for name in model.parameters if name not in known}
     try:
         values = start_state(system, assumed)
     except DerivationError:
-        q, u = start_values(model, assumed)
+        q, u = model.start_values(assumed)
         values = {**q, **u}
     x = [float(values[node.name]) for node in (*symbols.q, *symbols.u)]
     p = [float(known.get(name, 1)) for name in symbols.parameters]

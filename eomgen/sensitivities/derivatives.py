@@ -37,9 +37,7 @@ from eomgen.model import (
     Values,
     model_at,
     names_of,
-    numeric_parameters,
     seconds,
-    units_of,
 )
 from eomgen.proof import Certificate, Check, Tally, checked, differing
 from eomgen.questions import requested_of
@@ -149,7 +147,7 @@ class Sensitivity(Result):
 
     def _misread(self, text: str, due: float) -> str:
         """The text at the parameters, and where the motion starts."""
-        formula, known = parse(text), {**numeric_parameters(self.model), "pi": math.pi, "t": 0.0}
+        formula, known = parse(text), {**self.model.numeric_parameters(), "pi": math.pi, "t": 0.0}
         if formula.names - known.keys():
             known |= _Asking(self.model).phase.state_at_start
         if missing := formula.names - known.keys():
@@ -214,12 +212,12 @@ def unit_of_slope(model: Model, of: str, to: str) -> Unit:
 def _unit_of(model: Model, text: str) -> Unit | None:
     """The unit of a name or formula."""
     output = requested_of(model, text)
-    own = units_of(model, [text]).get(text) if text in (*model.coordinates, *model.parameters) else None
+    own = model.units_of([text]).get(text) if text in (*model.coordinates, *model.parameters) else None
     if own is not None or text in model.parameters:
         return own
     if output.at is not None and output.value.text in model.coordinates and output.unit is None:
-        return units_of(model, [output.value.text]).get(output.value.text)
-    return units_of(replace(model, outputs=Table({"asked": output})), ["asked"]).get("asked")
+        return model.units_of([output.value.text]).get(output.value.text)
+    return replace(model, outputs=Table({"asked": output})).units_of(["asked"]).get("asked")
 
 
 @doing("the sensitivities")
@@ -405,7 +403,7 @@ class _Asking:
     def _numbers(self) -> dict[Node, Any]:
         """t, parameters, inputs, q and u at the start, with 50 digits."""
         system, number = self.phase.system, fifty_digits().number
-        symbols, p = system.symbols, numeric_parameters(self.model)
+        symbols, p = system.symbols, self.model.numeric_parameters()
         given = {symbols.t: 0.0} | {symbols.parameters[name]: x for name, x in p.items()}
         state = start_state(system)
         given |= {x: state[x.name] for x in (*symbols.q, *symbols.u)}

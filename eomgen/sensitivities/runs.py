@@ -16,7 +16,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import CORNERS
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model, Output, Table, model_at, numeric_parameters, start_values
+from eomgen.model import Model, Output, Table, model_at
 from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import requested_of, solve
@@ -314,8 +314,8 @@ def _worst(own: np.ndarray, right: np.ndarray, trust: np.ndarray) -> str:
 def _value(model: Model, name: str) -> float:
     """Value of a parameter, or of a coordinate or speed at the start [SI]."""
     if name in model.parameters:
-        return numeric_parameters(model)[name]
-    places, speeds = start_values(model)
+        return model.numeric_parameters()[name]
+    places, speeds = model.start_values()
     return {**places, **speeds}[name]
 
 

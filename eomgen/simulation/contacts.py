@@ -16,7 +16,7 @@ from eomgen.mechanics.constraints import Rank, Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions, reactions_of
 from eomgen.mechanics.kinematics import ContactMode
-from eomgen.model import Contact, Model, Table, altered, contacts_of, pieces_of
+from eomgen.model import Contact, Model, Table
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -427,7 +427,7 @@ class Configuration:
 
     def by_the_law(self, model: Model) -> Configuration:
         """The same where friction on a surface is along v/|v|, which has no value where v is 0."""
-        surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
+        surfaces = {contact.name for contact in model.contacts if contact.surface}
         modes = {
             name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
             for name, mode in self.modes.items()
@@ -442,12 +442,12 @@ def has_phases(model: Model) -> bool:
 
 def changing(model: Model) -> tuple[str, ...]:
     """Names of the contacts, and of the bodies on a path of several pieces, that can change as the model moves."""
-    return tuple(dict.fromkeys((*(contact.name for contact in contacts_of(model)), *paths_of(model))))
+    return tuple(dict.fromkeys((*(contact.name for contact in model.contacts), *paths_of(model))))
 
 
 def paths_of(model: Model) -> tuple[str, ...]:
     """The bodies on a path of several pieces."""
-    return tuple(name for name, body in model.bodies.items() if len(pieces_of(body)) > 1)
+    return tuple(name for name, body in model.bodies.items() if len(body.path_pieces) > 1)
 
 
 def bounds_of(model: Model, body: str) -> tuple[tuple[Expression, Expression], ...]:
@@ -464,13 +464,13 @@ def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:
     bodies = dict(model.bodies)
     for name, k in pieces.items():
         joint: Any = bodies[name].joint
-        bodies[name] = altered(bodies[name], joint=joint.piece(k))
-    return altered(model, bodies=Table(bodies))
+        bodies[name] = bodies[name].altered(joint=joint.piece(k))
+    return model.altered(bodies=Table(bodies))
 
 
 def changed(model: Model, before: Configuration, after: Configuration) -> tuple[str, ...]:
     """Changes from one configuration to another, a phrase each: "the support 'wall' opens"."""
-    contacts = {contact.name: contact for contact in contacts_of(on_pieces(model, after.pieces))}
+    contacts = {contact.name: contact for contact in on_pieces(model, after.pieces).contacts}
     phrases = [_moved_on(model, name, k) for name, k in after.pieces.items() if before.pieces.get(name, k) != k]
     for name, mode in after.modes.items():
         old = before.modes.get(name)

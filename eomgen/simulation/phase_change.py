@@ -18,7 +18,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Indeterminate
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.mechanics.start import Start
-from eomgen.model import Contact, Model, Table, contacts_of
+from eomgen.model import Contact, Model, Table
 from eomgen.simulation.contacts import Configuration, bounds_of, has_phases, on_pieces, paths_of, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
@@ -163,7 +163,7 @@ def _closed_or_open(
 
 def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
     """Some contacts open, all others closed, sliding without a sense yet."""
-    contacts = contacts_of(on_pieces(model, pieces))
+    contacts = on_pieces(model, pieces).contacts
     return Configuration(Table({c.name: ContactMode(closed=c.name not in away) for c in contacts}), Table(pieces))
 
 
@@ -176,7 +176,7 @@ def _length(values: Values) -> float:
 
 
 def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
-    contacts = {contact.name: contact for contact in contacts_of(models.model)}
+    contacts = {contact.name: contact for contact in models.model.contacts}
     for name, (gap, _) in models.without_contacts.gaps(t, values).items():
         if gap < -_length(values):
             what = "is too short" if contacts[name].pulls else "is passed through"
@@ -274,7 +274,7 @@ def settled(
     Raises:
         Indeterminate: something moves, and the balance does not determine how the contacts share the load.
     """
-    contacts = contacts_of(on_pieces(phase_models.model, pieces))
+    contacts = on_pieces(phase_models.model, pieces).contacts
     sliding = _sliding(phase_models, contacts, t, values, pieces=pieces, apart=apart)
     last: Configuration | None = None
     apart_one_by_one: Configuration | None = None

@@ -20,7 +20,7 @@ from eomgen.mechanics.constraints import (
 from eomgen.mechanics.dynamics import EquationsOfMotion, PullBack, System, assembled_by_recursion, stabilized, system_of
 from eomgen.mechanics.free_bodies import equations_of_motion, released, stays_straight, with_friction
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
-from eomgen.model import Contact, Model, contacts_of
+from eomgen.model import Contact, Model
 from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, has_phases, on_pieces, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
@@ -141,7 +141,7 @@ class PhaseModels:
             self._slides[configuration] = self._origin[0].slides(configuration).with_parameters(self.p)
         if configuration not in self._slides:
             model = on_pieces(self.model, configuration.pieces)
-            with_friction = [c for c in contacts_of(model) if c.mu is not None and configuration.modes[c.name].closed]
+            with_friction = [c for c in model.contacts if c.mu is not None and configuration.modes[c.name].closed]
             self._slides[configuration] = Slides(self._system(model, configuration), tuple(with_friction), self.p)
         return self._slides[configuration]
 
@@ -164,7 +164,7 @@ class PhaseModels:
     @cached_property
     def ends(self) -> tuple[str, ...]:
         """The contacts that can end."""
-        return tuple(contact.name for contact in contacts_of(self.model) if contact.unilateral)
+        return tuple(contact.name for contact in self.model.contacts if contact.unilateral)
 
     def _phase(self, configuration: Configuration) -> PhaseModel:
         model = on_pieces(self.model, configuration.pieces)
@@ -172,7 +172,7 @@ class PhaseModels:
         system = integrated_system(declared)
         equations = self._equations(system)
         lengths = {body: self._length(system, body, k) for body, k in configuration.pieces.items()}
-        watch = ContactEvents(configuration, contacts_of(model), lengths, system)
+        watch = ContactEvents(configuration, model.contacts, lengths, system)
         return PhaseModel(watch, declared, equations, self.p, self.target)
 
     def _equations(self, system: System) -> EquationsOfMotion:

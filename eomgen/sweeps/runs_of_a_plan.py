@@ -29,7 +29,6 @@ from eomgen.model import (
     refuse_what_is_not_set,
     seconds,
     typed_values,
-    units_of,
 )
 from eomgen.questions import requested_of
 from eomgen.sensitivities import unit_of_slope
@@ -123,9 +122,9 @@ class Sweep:
         model = self.plan.model
         slopes, texts = self.plan.slopes, self.plan.requested
         requested = {f"asked{k}": requested_of(model, text) for k, text in enumerate(texts) if text not in slopes}
-        found = units_of(replace(model, outputs=Table(requested)), requested)
+        found = replace(model, outputs=Table(requested)).units_of(requested)
         found |= {f"asked{k}": unit_of_slope(model, *slopes[text]) for k, text in enumerate(texts) if text in slopes}
-        units = units_of(model, self.plan.runs.names)
+        units = model.units_of(self.plan.runs.names)
         columns = enumerate(self.columns[-len(texts) :])
         units |= {column: found[f"asked{k}"] for k, column in columns if f"asked{k}" in found}
         sizes = {name: unit.size for name, unit in units.items()}

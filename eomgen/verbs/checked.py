@@ -15,7 +15,7 @@ from eomgen.mechanics.instant import mobility_of
 from eomgen.mechanics.kinematics import ContactModes, SystemScene, motion_of, scope_of
 from eomgen.mechanics.start import Branches, Start, branches_of_loops, start_of_motion
 from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
-from eomgen.model import Catalog, Model, Table, exact_parameters, unbuilt, value_of
+from eomgen.model import Catalog, Model, Table, unbuilt, value_of
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ class Checked:
     @property
     def missing(self) -> list[str]:
         """The parameters without a value."""
-        known = exact_parameters(self.model)
+        known = self.model.exact_parameters()
         return [name for name in self.model.parameters if name not in known]
 
     @property
@@ -132,7 +132,7 @@ def _unhung(model: Model) -> Iterator[Problem]:
     """Problems with bodies that have mass and no joint in a model that moves: they stand still."""
     for name, body in model.bodies.items() if model.coordinates else ():
         mass = body.mass if body.shape is None else body.shape.mass
-        if body.joint is None and mass is not None and value_of(mass, exact_parameters(model)) != 0:
+        if body.joint is None and mass is not None and value_of(mass, model.exact_parameters()) != 0:
             what = f"body '{name}' has no joint, and stands still in the ground's frame"
             yield Problem(f"bodies.{name}", what, fix="hang it by a joint; what is to stand still needs no mass")
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
-from eomgen.model import Coordinate, Input, Model, Table, altered, samples
+from eomgen.model import Coordinate, Input, Model, Table, samples
 from eomgen.symbolic.expression import Expression
 from eomgen.verbs.assignments import assignments, nearest_name
 
@@ -32,7 +32,7 @@ def following(model: Model, given: Sequence[str]) -> Model:
     coordinates, inputs = dict(model.coordinates), dict(model.inputs)
     for name, path in assignments(given, EXAMPLE):
         if name in inputs:
-            inputs[name] = altered(inputs[name], value=_read(path, name))
+            inputs[name] = inputs[name].altered(value=_read(path, name))
         elif name in coordinates:
             coordinates[name] = _driven(coordinates[name], name, _read(path, name))
         else:
@@ -43,7 +43,7 @@ def following(model: Model, given: Sequence[str]) -> Model:
         replace(model, **changes)  # what is wrong with a model is wrong with this one
     except ModelError as error:
         raise UsageError(f"--follow: {error.problems[0].what}", fix=error.problems[0].fix) from error
-    followed: Model = altered(model, **changes)
+    followed: Model = model.altered(**changes)
     return followed
 
 
@@ -54,7 +54,7 @@ def _driven(part: Coordinate, name: str, law: Expression) -> Coordinate:
         )
     (way,) = [way for way in LAWS if getattr(part, way) is not None] or ["motion"]
     own = {} if way != "motion" else {"start": None, "speed": None}
-    driven: Coordinate = altered(part, **{way: law}, **own)
+    driven: Coordinate = part.altered(**{way: law}, **own)
     return driven
 
 

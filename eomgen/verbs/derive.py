@@ -9,7 +9,7 @@ from eomgen.documents import Document, Grid, Step, proven
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
-from eomgen.model import Model, load, units_of_model
+from eomgen.model import Model, load
 from eomgen.verbs.outcome import with_constraints_closed
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
@@ -46,7 +46,7 @@ def derive_document(
 
 def _with_units(equations: Equations, document: Document) -> Document:
     """Adds a section of units to a document, for people and for machines."""
-    found = units_of_model(equations.model, equations.speeds)
+    found = equations.model.units_of_everything(equations.speeds)
     found = {**found, "reactions": {named.name: named.unit for named in _reacting(equations)}}
     grids = tuple(Grid((HEADS[key], "unit"), tuple(found[key].items())) for key in HEADS if found[key])
     entries = document.entries

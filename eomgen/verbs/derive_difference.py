@@ -11,7 +11,7 @@ from eomgen.documents import Document, Formula, Grid, Statement, Step, document_
 from eomgen.equations import Equations
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.model import Model, exact_parameters
+from eomgen.model import Model
 from eomgen.proof import Certificate
 from eomgen.symbolic.exact import book_form, equal_at_random_states
 from eomgen.symbolic.expression import Graph, Scalar, symbols_of
@@ -132,7 +132,7 @@ def _declared(first: Model, second: Model) -> dict[str, tuple[list[str], list[st
 
 
 def _values(first: Model, second: Model) -> dict[str, tuple[float | None, float | None]]:
-    own, other = (exact_parameters(model) for model in (first, second))
+    own, other = (model.exact_parameters() for model in (first, second))
     shared = [name for name in first.parameters if name in second.parameters]
     pairs = {name: (own.get(name), other.get(name)) for name in shared}
     return {

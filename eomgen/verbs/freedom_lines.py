@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from eomgen.mechanics.constraints import Freedom, RowName, VelocityRow
 from eomgen.mechanics.start import AssemblyMode, Branches
-from eomgen.model import Model, in_own_unit
+from eomgen.model import Model
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.outcome import listed
 
@@ -134,4 +134,4 @@ def _keys(model: Model, branches: Branches, sided: tuple[str, ...]) -> list[str]
 
 def _number(model: Model, name: str, value: float) -> str:
     """A guess as it stands in the model file, in the unit of the coordinate."""
-    return in_own_unit(model, name, value, 4).split()[0]
+    return model.in_own_unit(name, value, 4).split()[0]

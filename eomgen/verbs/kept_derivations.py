@@ -31,7 +31,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import system_of
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.model import Model, contacts_of
+from eomgen.model import Model
 from eomgen.symbolic.expression import Scalar, inner, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate
 
@@ -142,7 +142,7 @@ def _linear(A: Sequence[Sequence[Scalar]], x: Sequence[Scalar], b: Sequence[Scal
 
 def _modes(model: Model) -> ContactModes | None:
     """Contact modes at the start; None if the model has no contacts."""
-    if not contacts_of(model):
+    if not model.contacts:
         return None
     from eomgen.mechanics.statics import contacts_at_start
 

@@ -46,7 +46,6 @@ from eomgen.model import (
     Values,
     WrittenEquation,
     equation_typed,
-    in_loads,
     model_at,
     with_values,
 )
@@ -120,7 +119,7 @@ def reactions(
         DerivationError: a body is unsupported; a force acts at no place.
     """
     model = with_nodes_balanced(model_at(model, parameters, start))
-    held = bool(in_loads(model))
+    held = bool(model.unknowns_in_loads())
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system
     requested = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]

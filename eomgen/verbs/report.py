@@ -31,7 +31,7 @@ from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.generated import Generated
 from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import Model, ModelOrPath, Typed, Values, bytes_at, loads, model_at, seconds, units_of
+from eomgen.model import Model, ModelOrPath, Typed, Values, bytes_at, loads, model_at, seconds
 from eomgen.page import (
     FORMATS,
     PLAYER,
@@ -398,7 +398,7 @@ def _outputs(subject: Subject) -> ReportSection | None:
 
 def _plots(subject: Subject) -> ReportSection | None:
     run = subject.run
-    drawings = motion_drawings(run, units_of(subject.model, run.coordinates))
+    drawings = motion_drawings(run, subject.model.units_of(run.coordinates))
     ended = "" if run.ok else f"The run ended early: {run.message.rstrip('.')}."
     words = " ".join(filter(None, (ended, subject.followed[1], run.still)))
     return ReportSection("plots", drawings=drawings, remark=words)

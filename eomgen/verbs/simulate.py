@@ -18,7 +18,7 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
 from eomgen.mechanics.constraints import limits_passed
-from eomgen.model import Model, Unit, WrittenEquation, left_tables, units_of
+from eomgen.model import Model, Unit, WrittenEquation, left_tables
 from eomgen.proof import ReportedRun, run_reported
 from eomgen.questions import run as simulated
 from eomgen.simulation import Accuracy, Stepping, Trajectory
@@ -54,11 +54,11 @@ def simulate_document(
     )
     files = [path for path in (output, plot) if path]
     if output:
-        _write_run(run, output, units_of(model, run.columns()) if units else None)
+        _write_run(run, output, model.units_of(run.columns()) if units else None)
     if plot:
         from eomgen.documents import run_picture
 
-        run_picture(run, view, title=model.name, units=units_of(model, run.columns())).save(plot)
+        run_picture(run, view, title=model.name, units=model.units_of(run.columns())).save(plot)
     assembled = f"The start was {run.assembled}." if run.assembled else ""
     cut = {"interrupted": "it was interrupted", "out of patience": "there was no time left"}.get(run.status, "")
     unproven = f"Nothing of it is proven: {cut}." if certify and cut else ""
@@ -132,7 +132,7 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     shown = run.phases[:MOST_REPORTED] if len(run.phases) > 1 else ()
     lines = [f"from {phase.start:.6g} s: {phase.ended_by}" for phase in shown]
     lines += [f"and {len(run.phases) - MOST_REPORTED} phases more"] if len(run.phases) > MOST_REPORTED else []
-    units, columns = units_of(model, run.columns()), run.columns()
+    units, columns = model.units_of(run.columns()), run.columns()
     columns = {name: x / units[name].size if name in units else x for name, x in columns.items()}
     heads = {name: f"{name} [{units[name]}]" if name in units else name for name in columns}
     rows = tuple((heads[name], f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in columns.items() if len(x))
@@ -155,7 +155,7 @@ def _accuracy(run: Trajectory) -> Accuracy | None:
 
 def _whole(model: Model, run: Trajectory) -> tuple[tuple[str, str, str], ...]:
     """A row for each output of the whole run; of every event one."""
-    units = units_of(model, run.quantities)
+    units = model.units_of(run.quantities)
     rows: list[tuple[str, str, str]] = []
     for name, found in run.quantities.items():
         unit = units.get(name)
@@ -170,7 +170,7 @@ def _whole(model: Model, run: Trajectory) -> tuple[tuple[str, str, str], ...]:
 def _quantities(model: Model, run: Trajectory) -> dict[str, Any]:
     """The same for machines, in the output's unit."""
     reported: dict[str, Any] = {}
-    units = units_of(model, run.quantities)
+    units = model.units_of(run.quantities)
     for name, found in run.quantities.items():
         unit = units.get(name)
         size = 1.0 if unit is None else unit.size

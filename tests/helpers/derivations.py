@@ -20,7 +20,7 @@ from eomgen.equations import Equations
 from eomgen.mechanics.dynamics.formulations import METHODS
 from eomgen.mechanics.dynamics.system import System
 from eomgen.model.likely_mistakes import unbuilt
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
 from eomgen.model.reader import load, loads
 from eomgen.pipeline import derive
 from eomgen.questions.outputs_answered import Answers

@@ -19,7 +19,6 @@ from each import each
 from slow_run import usual
 
 import eomgen
-from eomgen.model.values import numeric_parameters, start_values
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import as_expression, parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -55,7 +54,7 @@ def derived_by_hand(system: str) -> dict[str, Any]:
 
 
 def numbers_of(system: str, other: bool = False) -> dict[str, float]:
-    return numeric_parameters(model_of(system, other))
+    return model_of(system, other).numeric_parameters()
 
 
 def states(system: str) -> list[dict[str, float]]:
@@ -121,7 +120,7 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
 def test_the_number_is_the_one_of_newton_and_euler(system, output, other):
     """At the file's parameters and at others; a function of the place at the start."""
     model, answer = model_of(system, other), answers(system, other)[output]
-    start, _ = start_values(model)
+    start, _ = model.start_values()
     expected = oracle_value(derived_by_hand(system)[output], start | numbers_of(system, other))
     assert answer.value is not None, answer.message
     assert answer.value == pytest.approx(float(expected), rel=1e-9, abs=1e-9)

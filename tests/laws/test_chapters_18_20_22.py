@@ -19,7 +19,6 @@ from each import each
 from slow_run import usual
 
 import eomgen
-from eomgen.model.values import start_values
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import as_expression, parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -134,7 +133,7 @@ def test_the_number_is_the_one_of_newton_and_euler(system, output, other):
     """At the file's parameters and at others; a function of the place at the start."""
     model, answer = model_of(system, other), answers(system, other)[output]
     state = parameters_of(model_of(system), other)
-    for values in start_values(model):
+    for values in model.start_values():
         state |= {name: Fraction(x) for name, x in values.items()}
     expected = value_of(ANSWERS[system][output], state)
     assert answer.value is not None, answer.message
@@ -194,7 +193,7 @@ def test_a_system_answers_the_same_however_it_is_written(name, output):
     """With free bodies, dependent coordinates or multipliers: the number, and the exact text where there is one."""
     model, answer, text = alternative(name), alternative_answers(name)[output], ANSWERS[ALTERNATIVES[name][0]][output]
     state = parameters_of(model, False)
-    for values in start_values(model):
+    for values in model.start_values():
         state |= {symbol: Fraction(x) for symbol, x in values.items()}
     assert answer.value is not None, answer.message
     assert answer.value == pytest.approx(float(value_of(text, state)), rel=1e-8, abs=1e-8)

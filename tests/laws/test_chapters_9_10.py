@@ -17,7 +17,6 @@ from oracle_of_chapters_9_10 import DIGITS, ORACLES, OTHER, STATEMENT
 from other_units import grown
 
 import eomgen
-from eomgen.model.values import numeric_parameters, start_values
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import as_expression, parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -78,7 +77,7 @@ def close(a: Any, b: Any) -> bool:
 
 def test_the_files_have_the_numbers_of_the_statements():
     for system, texts in STATEMENT.items():
-        file = numeric_parameters(model_of(system))
+        file = model_of(system).numeric_parameters()
         assert file == pytest.approx({name: float(value_of(text, {})) for name, text in texts.items()}, rel=1e-15)
         assert all(value_of(OTHER[system][name], {}) != value_of(text, {}) for name, text in texts.items())
 
@@ -123,7 +122,7 @@ def test_the_exact_answer_is_the_one_by_hand(system, output, numbers):
 def test_the_number_is_the_one_of_the_positions(system, output, numbers):
     """A function of the state at the start."""
     model, answer = model_of(system, numbers), answers(system, numbers)[output]
-    starts = [value for values in start_values(model) for value in values.items()]
+    starts = [value for values in model.start_values() for value in values.items()]
     state = {**state_of(system, numbers), **dict(starts)}
     expected = in_unit(system, output, value_of(ANSWERS[system][output], state))
     assert answer.value is not None, answer.message

@@ -17,7 +17,6 @@ from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.kinematics.scene import ContactMode
 from eomgen.mechanics.start import state as open_constraints
 from eomgen.mechanics.start.state import start_of_motion
-from eomgen.model.contacts import contacts_of
 from eomgen.proof.contact_phases import leaving_at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.verbs.reactions import reactions_document
@@ -128,7 +127,7 @@ def test_derive_runs_no_simulation_and_no_compiler(monkeypatch):
     monkeypatch.setattr(PhaseModels, "of", refused)
     monkeypatch.setattr(RightHandSide, "__init__", refused)
     monkeypatch.setattr(subprocess, "run", refused)
-    touched = [model for path in sorted(MODELS.rglob("*.toml")) if contacts_of(model := eomgen.load(path))]
+    touched = [model for path in sorted(MODELS.rglob("*.toml")) if (model := eomgen.load(path)).contacts]
     for model in touched:
         eomgen.derive(model)
     assert len(touched) > 8

@@ -17,7 +17,7 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.reactions import holding_of
 from eomgen.mechanics.equilibrium.search import Equilibria, Equilibrium
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
 from eomgen.study import Study
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions_document

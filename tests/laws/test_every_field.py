@@ -10,7 +10,7 @@ import pytest
 import eomgen
 from eomgen.mechanics.free_bodies.friction import has_friction
 from eomgen.model import constraints, forces, joints
-from eomgen.model.part import Part, slots_of
+from eomgen.model.part import Part
 from eomgen.proof import identities
 from eomgen.proof.trials import Trials
 
@@ -392,7 +392,7 @@ def parts_in(value: Any) -> Iterator[Part]:
     """Every part of a model, those in lists and tables included."""
     if isinstance(value, Part):
         yield value
-        value = tuple(getattr(value, slot.name) for slot in slots_of(type(value)))
+        value = tuple(getattr(value, slot.name) for slot in type(value).slots())
     for x in value.values() if hasattr(value, "values") else value if isinstance(value, tuple) else ():
         yield from parts_in(x)
 
@@ -405,7 +405,7 @@ def test_no_field_of_a_joint_a_constraint_or_a_force_is_left_out():
     used: set[tuple[type, str]] = set()
     for text in SAMPLES.values():
         for part in parts_in(eomgen.loads(text)):
-            used |= {(type(part), s.key) for s in slots_of(type(part)) if getattr(part, s.name) != s.default}
+            used |= {(type(part), s.key) for s in type(part).slots() if getattr(part, s.name) != s.default}
     kinds = (*joints.ALL, *constraints.ALL, *forces.ALL)
-    fields = [(kind, s.key) for kind in kinds for s in slots_of(kind) if s.key != "symbol"]
+    fields = [(kind, s.key) for kind in kinds for s in kind.slots() if s.key != "symbol"]
     assert [f"{kind.kind}: {key}" for kind, key in fields if (kind, key) not in used] == []

@@ -14,7 +14,7 @@ from slow_run import usual
 import eomgen
 from eomgen.mechanics.start.assembly_modes import branches_of_loops
 from eomgen.mechanics.start.state import start_of_motion
-from eomgen.model.parts import Model
+from eomgen.model.model import Model
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.integration import integrate
 

@@ -20,7 +20,6 @@ from eomgen.mechanics.integrals.laws import position_equations
 from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.start.exact import declared_start
 from eomgen.mechanics.start.state import start_state
-from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant, reached
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
@@ -185,7 +184,7 @@ def requested(text: str, condition: str) -> tuple[Study, StateAtInstant]:
 def exact_places(each: Study, start: dict, numbers: dict) -> dict:
     """Dependent coordinates at the start in closed form."""
     symbols = each.system.symbols
-    values = numeric_parameters(each.model)
+    values = each.model.numeric_parameters()
     located = Located({symbols.parameters[n]: x for n, x in values.items()} | numbers, each.system.scope.positive)
     gaps = [*position_equations(each.system, start), *(q - start[q] for q in symbols.q if q in start)]
     return located.places(gaps, [q for q in symbols.q])
@@ -331,7 +330,7 @@ def test_the_instant_in_closed_form_is_the_one_located(name):
     """exact = number, of every coordinate and speed."""
     text, condition, _, _ = KNOWN[name]
     each, instant = requested(text, condition)
-    values = {each.system.symbols.parameters[n]: x for n, x in numeric_parameters(each.model).items()}
+    values = {each.system.symbols.parameters[n]: x for n, x in each.model.numeric_parameters().items()}
     for node, x in instant.exact.items():
         number = instant.numbers[node]
         assert math.isnan(number) or evaluate((x,), values, FLOAT)[0] == pytest.approx(number, rel=1e-8, abs=1e-8)
@@ -344,7 +343,7 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     each, instant = requested(text, condition)
     symbols = each.system.symbols
     nodes = (*symbols.q, *symbols.u)
-    values = {symbols.parameters[n]: x for n, x in numeric_parameters(each.model).items()}
+    values = {symbols.parameters[n]: x for n, x in each.model.numeric_parameters().items()}
     first = start_state(each.system)
     for integral in energy_integral(each.equations):
         known = {u: 0 for u in symbols.u if first[u.name] == 0}  # where all hinges are in line, T needs u = 0

@@ -17,7 +17,6 @@ from eomgen.mechanics.integrals import first_integrals as integrals
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
 from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.integrals.speeds import rates_of
-from eomgen.model.values import numeric_parameters, start_values
 from eomgen.study import Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import depends_on, substituted
@@ -235,9 +234,9 @@ def motion(each: Study, end: float) -> tuple[np.ndarray, list[dict]]:
     """(times, states by node with the parameters) of a run by scipy, to 1e-11."""
     system = each.system
     rhs = compiled(right_hand_side(with_accelerations(each.equations)), "numpy")
-    parameters = numeric_parameters(each.model)
+    parameters = each.model.numeric_parameters()
     p = np.array(list(parameters.values()))
-    q, u = start_values(each.model)
+    q, u = each.model.start_values()
     nodes = (*system.symbols.q, *system.symbols.u)
     x0 = [(q | u)[node.name] for node in nodes]
     times = np.linspace(0.0, end, 7)

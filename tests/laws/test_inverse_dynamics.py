@@ -23,7 +23,6 @@ from eomgen.codegen.right_answers import vectors
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.dynamics import formulations as projection
 from eomgen.model.fields import Table
-from eomgen.model.part import altered
 
 pytestmark = pytest.mark.slow
 
@@ -41,7 +40,7 @@ def pushed(model: eomgen.Model, coordinates: list[str]) -> eomgen.Model:
     """The model with an input for the force along each of the coordinates."""
     inputs = {f"push_{q}": eomgen.Input(value=0) for q in coordinates}
     forces = {f"push_{q}": eomgen.forces.Generalized(coordinate=q, value=f"push_{q}") for q in coordinates}
-    return altered(model, inputs=Table({**model.inputs, **inputs}), forces=Table({**model.forces, **forces}))
+    return model.altered(inputs=Table({**model.inputs, **inputs}), forces=Table({**model.forces, **forces}))
 
 
 # -- trees ----------------------------------------------------------------------------------------
@@ -236,7 +235,7 @@ def test_the_work_of_a_drive_in_a_loop_is_the_energy_that_it_brings(text, driven
     """int drive dq = change of T + V, less the work of the gas on the piston; inverse dynamics gives the same drive."""
     free = eomgen.loads(text)
     law = eomgen.Coordinate(motion="1 + 4*t + sin(3*t)/5")
-    model = altered(free, coordinates=Table({**free.coordinates, driven: law}))
+    model = free.altered(coordinates=Table({**free.coordinates, driven: law}))
     run = eomgen.simulate(model, time=1, samples=2001)
     rate = 4 + 3 * np.cos(3 * run.t) / 5
     power = run[f"drive({driven})"] * rate

@@ -8,7 +8,6 @@ from known_answers import MODELS
 from scipy.linalg import eigh
 
 import eomgen
-from eomgen.model.values import numeric_parameters
 
 pytestmark = pytest.mark.slow
 
@@ -19,7 +18,7 @@ def motion(name: str, time: float, **options):
     trajectory = eomgen.simulate(model, time=time, **options)
     assert trajectory.status == "finished", trajectory.message
     named = dict(zip((*trajectory.coordinates, *trajectory.speeds), trajectory.x.T, strict=True))
-    return trajectory.t, named, numeric_parameters(model)
+    return trajectory.t, named, model.numeric_parameters()
 
 
 def test_a_thrown_particle_follows_its_parabola():

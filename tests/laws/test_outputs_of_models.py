@@ -17,7 +17,6 @@ from derivations import model_path
 from slow_run import usual_models
 
 import eomgen
-from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -91,7 +90,7 @@ def value_of(text: str, state: dict[str, Any]) -> Any:
 def states(model: eomgen.Model) -> list[dict[str, Any]]:
     """Parameters near those of the file, coordinates and rates at random."""
     rng = Random(model.name)
-    own = {name: Fraction(x) for name, x in numeric_parameters(model).items()}
+    own = {name: Fraction(x) for name, x in model.numeric_parameters().items()}
     near = [{name: x * Fraction(rng.randint(950, 1050), 1000) for name, x in own.items()} for _ in range(3)]
     return [
         state
@@ -114,7 +113,7 @@ def test_an_answer_is_the_textbooks(name, output):
 def test_the_ladder_takes_its_time_to_the_wall():
     """t = integral of dtheta/theta' from theta_0 to where N = 0, theta'^2 = 3 g/l (cos theta_0 - cos theta)."""
     model, answers = loaded("sliding_ladder")
-    l, g, start = (numeric_parameters(model)[name] for name in ("l", "g", "theta_0"))
+    l, g, start = (model.numeric_parameters()[name] for name in ("l", "g", "theta_0"))
     end = mpmath.sqrt(mpmath.acos(2 * mpmath.cos(start) / 3) - start)
 
     def slowness(x: Any) -> Any:

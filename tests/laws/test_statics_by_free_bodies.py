@@ -20,7 +20,6 @@ from each import each
 from float_statics import Numbers, Structure
 
 import eomgen
-from eomgen.model.values import numeric_parameters
 from eomgen.symbolic.expression.text import as_expression
 
 pytestmark = pytest.mark.slow
@@ -258,7 +257,7 @@ def answers(name: str, other: bool = False) -> dict[str, Any]:
 def test_a_structure_of_the_classics_balances(name, other):
     """Every output that equilibrium knows, at two sets of numbers; all of them exact."""
     model = model_of(name, other)
-    expected, found = KNOWN[name](numeric_parameters(model)), answers(name, other)
+    expected, found = KNOWN[name](model.numeric_parameters()), answers(name, other)
     requested = {output: expected[output] for output in model.outputs}
     assert all(found[output].exact is not None for output in requested)
     scale = max(map(abs, requested.values()))

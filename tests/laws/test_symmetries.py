@@ -30,7 +30,6 @@ from transformed_models import (
 )
 
 import eomgen
-from eomgen.model.values import exact_parameters
 
 pytestmark = pytest.mark.slow
 
@@ -45,7 +44,7 @@ def with_motion() -> Iterable[Path]:
         if "coordinates" in tables_of(path):
             model = eomgen.load(path)
             free = any(not (part.driven or part.dependent) for part in model.coordinates.values())
-            if free and exact_parameters(model).keys() == model.parameters.keys():
+            if free and model.exact_parameters().keys() == model.parameters.keys():
                 yield path
 
 

@@ -212,7 +212,7 @@ FORM = FileForm(
 def rust_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """The crate: Cargo.toml, lib.rs, math.rs, a module a function, and the test."""
     folder, about = f"{stem}_rhs", RUST.harmless(emitted[0][1].origin)
-    modules = "".join(f"pub mod {reported.role.name};\n" for _, reported in emitted)
+    modules = "".join(f"pub mod {reported.role.word};\n" for _, reported in emitted)
     return {
         f"{folder}/Cargo.toml": _CARGO.format(stem=stem, about=in_quotes(about)),
         f"{folder}/src/lib.rs": f"// {about}\n#![no_std]\n\nmod math;\n{modules}",

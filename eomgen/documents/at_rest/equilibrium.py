@@ -47,7 +47,7 @@ from eomgen.mechanics.equilibrium import (
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.linearization import first_order_of
 from eomgen.mechanics.start import shown_numbers
-from eomgen.model import Model, Unit, in_own_unit
+from eomgen.model import Model, Unit
 from eomgen.proof import (
     BY_MOTION,
     NOTHING_ACCELERATED,
@@ -334,7 +334,7 @@ def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
     points = curve.points[:, : len(names)]
     moved = np.max(points, axis=0) - np.min(points, axis=0)
     first = int(np.flatnonzero(moved >= np.max(moved) / 2)[0])
-    low, high = (in_own_unit(model, names[first], float(end(points[:, first])), 4) for end in (np.min, np.max))
+    low, high = (model.in_own_unit(names[first], float(end(points[:, first])), 4) for end in (np.min, np.max))
     reported = [
         f"{names[first]} may be anything" if curve.closed else f"{names[first]} was followed from {low} to {high}"
     ]
@@ -342,11 +342,11 @@ def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
         if k == first:
             continue
         if moved[k] <= tolerances.SAME_PLACE:
-            reported.append(f"{name} = {in_own_unit(model, name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
+            reported.append(f"{name} = {model.in_own_unit(name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
             continue
         offsets = {sign: points[:, k] - sign * points[:, first] for sign in (1, -1)}
         sign = next((s for s, x in offsets.items() if np.ptp(x) <= tolerances.SAME_PLACE), 0)
-        away = in_own_unit(model, name, float(abs(offsets[sign or 1][0])), 9)
+        away = model.in_own_unit(name, float(abs(offsets[sign or 1][0])), 9)
         plus = "+" if float(offsets[sign or 1][0]) >= 0 else "-"
         other = f"{'-' if sign < 0 else ''}{names[first]} {plus} {away}"
         reported.append(f"{name} = {other}" if sign else f"{name} follows it")

@@ -38,7 +38,7 @@ from eomgen.mechanics.statics import (
     StaticReactions,
     loads_at_rest,
 )
-from eomgen.model import Couple, Model, PointForce, SpreadLoad, exact_parameters
+from eomgen.model import Couple, Model, PointForce, SpreadLoad
 from eomgen.symbolic.expression import ZERO, Node, Scalar
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import to_text
@@ -70,7 +70,7 @@ class StaticScene:
     @cached_property
     def sketch(self) -> Sketch:
         system, at = self.statics.system, self.statics.structure.at
-        values = exact_parameters(system.scope.model)
+        values = system.scope.model.exact_parameters()
         numbers = {node: float(values.get(name, 1)) for name, node in system.symbols.parameters.items()}
         numbers |= {p: 1.0 for p in system.symbols.unknowns.values()}
         plain = Sketch(system, numbers)
@@ -250,7 +250,7 @@ def height_of(scene: StaticScene) -> float:
 
 def missing_values(model: Model) -> list[str]:
     """The parameters without a value."""
-    values = exact_parameters(model)
+    values = model.exact_parameters()
     return [name for name in model.parameters if name not in values]
 
 

@@ -36,7 +36,7 @@ from eomgen.mechanics.statics import (
     influence_line,
     static_reactions_of,
 )
-from eomgen.model import Model, ModelOrPath, Values, contacts_of, exact_parameters, model_at
+from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import (
     Certificate,
     Check,
@@ -139,7 +139,7 @@ class Statics(Result):
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
         checks = structure_checks(self.found, self.sections.found, self.influence)
         reported = reported_sections(self.sections, self.derivation.steps, section_payload(self.sections))
-        sections = sections_reported(self.sections.found, reported, exact_parameters(self.model))
+        sections = sections_reported(self.sections.found, reported, self.model.exact_parameters())
         works = works_reported(self.found, state_of(self.found), self._reported_works())
         return Certificate((*checks, *other_data(self.found.system.motion), *sections, *works))
 
@@ -223,7 +223,7 @@ def why_not_at_rest(model: Model, system: System) -> str:
     Raises:
         DerivationError: bodies can move.
     """
-    if model.coordinates or not contacts_of(model):
+    if model.coordinates or not model.contacts:
         return ""
     return "; ".join(Statics(model, static_reactions_of(system)).broken)
 

@@ -44,7 +44,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.mechanics.start import start_state
-from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest, numeric_parameters
+from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest
 from eomgen.proof import Certificate, Stated, mass_checks, other_parameters, tried
 from eomgen.scene import ROLES, LabelForm, Mark, PointForm, Scene, SceneFrame, ordered, scene_of_system
 from eomgen.study import study_of
@@ -413,7 +413,7 @@ def _vector(v: Iterable[float]) -> Vector:
 
 def values_at_start(system: System) -> dict[Node, float]:
     """Parameters, coordinates and time at the start."""
-    symbols, numbers = system.scope.symbols, numeric_parameters(system.scope.model)
+    symbols, numbers = system.scope.symbols, system.scope.model.numeric_parameters()
     state = start_state(system) if symbols.q else {}
     moving = {q: state[q.name] for q in symbols.q}
     return {symbols.t: 0.0} | moving | {node: numbers[name] for name, node in symbols.parameters.items()}

@@ -15,7 +15,7 @@ from eomgen.documents.figures import Picture, mathtext
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import LinearEquations, Mode, Modes, SmallMotions, state_matrix_of
-from eomgen.model import Range, exact_parameters
+from eomgen.model import Range
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
 
@@ -256,7 +256,7 @@ def _matrix_over(small: SmallMotions, parameter: str) -> MatrixOf:
     flat = [x for name in names for row in getattr(exact, name) for x in row]
 
     def at(value: float) -> np.ndarray:
-        known = exact_parameters(scope.model, {parameter: value})  # and those that are expressions of it
+        known = scope.model.exact_parameters({parameter: value})  # and those that are expressions of it
         state = {scope.symbols.parameters[name]: float(x) for name, x in known.items()}
         numbers = iter(evaluate(flat, state, FLOAT))
         found: dict[str, Any] = {

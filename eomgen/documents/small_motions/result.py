@@ -43,11 +43,9 @@ from eomgen.model import (
     ModelOrPath,
     Range,
     Values,
-    exact_parameters,
     model_at,
     names_of,
     range_of,
-    rough_contacts,
 )
 from eomgen.proof import (
     Certificate,
@@ -201,7 +199,7 @@ class Linearization(Result):
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
         first = self.small.first
-        entries, values = self.entries(), exact_parameters(self.model)
+        entries, values = self.entries(), self.model.exact_parameters()
         reported = linear_entries(entries, self.A, self.B) if self.valued else ()
         printed = small_motions_reported(entries, printed_modes(self.derivation), values)
         begun = certify(first.equations, begins=self.small.reference.about != EQUILIBRIUM)
@@ -479,7 +477,7 @@ def linearize(
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", fix=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
-    study = study_at_rest(model) if about == EQUILIBRIUM and not rough_contacts(model) else study_of(model)
+    study = study_at_rest(model) if about == EQUILIBRIUM and not model.rough_contacts else study_of(model)
     modes = Modes(small_motions_of(study.system, about, wanted))
     return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *study.assumptions))
 

@@ -24,7 +24,7 @@ from eomgen.mechanics.constraints.rank import Rank
 from eomgen.mechanics.constraints.rows import Constraints, Row
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model, contacts_of, exact_parameters
+from eomgen.model import Model
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -62,7 +62,7 @@ def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
     if not rows:
         return {}
     declared = scope.with_unit_quaternions(scope.start_values()) | {scope.symbols.t: 0}
-    drawn = any(name not in exact_parameters(scope.model) for name in scope.symbols.parameters)
+    drawn = any(name not in scope.model.exact_parameters() for name in scope.symbols.parameters)
     states = [_assembled(constraints, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
     moved = [q for q in scope.symbols.q if any(_differs(declared[q], q, state) for state in states)]
     if not moved:
@@ -134,7 +134,7 @@ def open_at(pairs: Iterable[tuple[Row, Scalar | None]], symbols: Sequence[Node],
 
 def that_stay(constraints: Constraints, apart: Sequence[str]) -> Constraints:
     """All constraints but the contacts that are open and may be so."""
-    ending = [contact.name for contact in contacts_of(constraints.motion.scope.model) if contact.unilateral]
+    ending = [contact.name for contact in constraints.motion.scope.model.contacts if contact.unilateral]
     return bilateral(constraints, ending, [name for name in ending if name not in apart])
 
 

@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, OpenConst
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model, exact_parameters, first_guesses, start_values
+from eomgen.model import Model
 from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian
 from eomgen.symbolic.numeric import (
     Newton,
@@ -63,7 +63,7 @@ class Closure:
             if found is not None:
                 with suppress(NoValue, ZeroDivisionError):  # a strand into a pulley: nearer then
                     return self.with_speeds(_with_laws(self.constraints, found))
-        raise _open(self.constraints, exact_parameters(self.constraints.motion.scope.model))
+        raise _open(self.constraints, self.constraints.motion.scope.model.exact_parameters())
 
     def begun(self) -> State:
         """Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given.
@@ -74,13 +74,13 @@ class Closure:
         model, symbols = self.constraints.motion.scope.model, self.constraints.motion.scope.symbols
         state, q = self.still(Random(1))
         numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
-        speeds = start_values(model, numbers)[1]
+        speeds = model.start_values(numbers)[1]
         given = {node: of_50_digits(q[node.name]) for node in symbols.q}
         given |= {u: of_50_digits(speeds.get(u.name, 0.0)) for u in symbols.u}
         given |= self.constraints.motion.scope.on_unit_norms(state | given)
         found = self.closed(state | given, self.constraints.movable)
         if found is None:
-            raise _open(self.constraints, exact_parameters(model))
+            raise _open(self.constraints, model.exact_parameters())
         return self.with_speeds(_with_laws(self.constraints, found))
 
     def scattered(self) -> State:
@@ -93,7 +93,7 @@ class Closure:
         """(values of every symbol but the coordinates, where the coordinates start)."""
         scope = self.constraints.motion.scope
         model, symbols = scope.model, scope.symbols
-        known = exact_parameters(model)
+        known = model.exact_parameters()
         p = {name: float(known[name]) if name in known else rng.uniform(0.7, 1.3) for name in symbols.parameters}
         if shaken:
             p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
@@ -105,7 +105,7 @@ class Closure:
                 state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
             except NoValue:  # at t = 0, as 1/t: of another instant then
                 state[node] = of_50_digits(rng.uniform(-1, 1))
-        return state, start_values(model, p)[0] | first_guesses(model, p)
+        return state, model.start_values(p)[0] | model.first_guesses(p)
 
     def rows_at(self, state: State) -> np.ndarray:
         """J of the constraint rows at a state in which they hold, k x nu; entries that vanish there are exactly 0.

@@ -22,7 +22,7 @@ from eomgen.mechanics.kinematics import (
     motion_of,
     scope_of,
 )
-from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, exact_parameters, unbuilt_constraints
+from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, unbuilt_constraints
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
 from eomgen.symbolic.expression import (
     Fraction,
@@ -330,7 +330,7 @@ def _holds(motion: Motion, scalar: Scalar) -> bool:
 def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
     """States near the start, at parameters near the model's; none where a value is missing."""
     scope, rng, digits = motion.scope, Random(5), fifty_digits()
-    known = exact_parameters(scope.model)
+    known = scope.model.exact_parameters()
     symbols = scope.symbols
     if known.keys() < symbols.parameters.keys():
         return
@@ -441,7 +441,7 @@ def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, 
     if not len(t) or not any(constraint.thread() for constraint in model.constraints.values()):
         return ()
     motion, found = motion_of(scope_of(model)), []
-    symbols, known = motion.scope.symbols, exact_parameters(model)
+    symbols, known = motion.scope.symbols, model.exact_parameters()
     p = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     looked = np.unique(np.linspace(0, len(t) - 1, LOOKED).round().astype(int))
     for name, constraint in model.constraints.items():

@@ -12,7 +12,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import readable
 from eomgen.symbolic.expression import (
     Fraction,
@@ -441,7 +440,7 @@ def refuse_jump(system: System, state: Mapping[Node, Any]) -> None:
         DerivationError: the rate is 0 there, with the values that parameters and inputs have.
     """
     signs = signs_of_rates(system)
-    known = exact_parameters(system.scope.model) if signs else {}
+    known = system.scope.model.exact_parameters() if signs else {}
     inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
     values = {system.symbols.parameters[name]: Fraction(x) for name, x in known.items()}
     for x in signs:

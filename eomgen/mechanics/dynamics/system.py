@@ -28,7 +28,7 @@ from eomgen.mechanics.kinematics import (
     scope_of,
     shorter,
 )
-from eomgen.model import Model, quaternions_of, rate_matrix_of
+from eomgen.model import Model, rate_matrix_of
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -360,7 +360,7 @@ def _rates_solved(
 def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
     """e' = 1/2 e o (0, w), one row for each of its rates."""
     rows: SpeedRows = {}
-    for four, each in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
+    for four, each in zip(scope.quaternions, scope.model.quaternions, strict=True):
         for e, factors in zip(four, rate_matrix_of(four), strict=True):
             row: list[Scalar] = [0] * len(place)
             for name, factor in zip(each.speeds, factors, strict=True):

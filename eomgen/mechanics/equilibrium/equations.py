@@ -16,7 +16,7 @@ from eomgen.mechanics.constraints import Rank, constraints_of
 from eomgen.mechanics.dynamics import System, reduced_system, system_of
 from eomgen.mechanics.kinematics import Scope, loads_of, motion_of
 from eomgen.mechanics.state import Doubles
-from eomgen.model import Table, altered, exact_parameters, quaternions_of, rough_contacts
+from eomgen.model import Table
 from eomgen.symbolic.exact import readable_all, simplest
 from eomgen.symbolic.expression import (
     Fraction,
@@ -113,7 +113,7 @@ class StaticEquations:
     def at_the_values(self) -> StaticEquations:
         """The same where a force is 0 that vanishes everywhere for the model's values of the parameters."""
         scope = self.system.scope
-        known = {scope.symbols.parameters[name]: x for name, x in exact_parameters(scope.model).items()}
+        known = {scope.symbols.parameters[name]: x for name, x in scope.model.exact_parameters().items()}
         values = {node: Fraction(x) for node, x in known.items() if isinstance(x, Fraction | int)}
         sought = [k for k, force in enumerate(self.Q) if not is_zero(force) and depends_on(force, values)]
         digits, rng = fifty_digits(), Random(5)
@@ -241,7 +241,7 @@ def with_norms(statics: StaticEquations) -> StaticEquations:
     scope, indifferent = statics.system.scope, statics.indifferent
     turning = [
         (four, part)
-        for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True)
+        for four, part in zip(scope.quaternions, scope.model.quaternions, strict=True)
         if not all(e in indifferent for e in four)
     ]
     rows = tuple(tuple(2 * q if q in four else 0 for q in statics.q) for four, _ in turning)
@@ -305,8 +305,8 @@ def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
             what = f"'{name}' moves at a constant rate: there is no equilibrium"
             raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
         place = as_expression(to_text(starts[name]))
-        table[name] = altered(table[name], motion=place, rate=None, acceleration=None, start=None, speed=None)
-    model = altered(scope.model, coordinates=Table(table))
+        table[name] = table[name].altered(motion=place, rate=None, acceleration=None, start=None, speed=None)
+    model = scope.model.altered(coordinates=Table(table))
     return system_of(model, system.modes), tuple(moved)
 
 
@@ -316,7 +316,7 @@ def _refuse_dry_friction(system: System) -> None:
     Raises:
         DerivationError: the contact is named.
     """
-    rough = rough_contacts(system.scope.model)
+    rough = system.scope.model.rough_contacts
     if rough:
         what = f"'{rough[0].name}' has friction: it rests in a range of places, not in single ones"
         raise DerivationError(
@@ -390,7 +390,7 @@ def standing_system(system: System) -> System:
 
 def _made_of(free: System, scope: Scope) -> System:
     """The system of another scope over the rates, dependent coordinates eliminated."""
-    scope = replace(scope, model=altered(scope.model, speeds=Table({})))
+    scope = replace(scope, model=scope.model.altered(speeds=Table({})))
     motion = motion_of(scope)
     made = System(motion, loads_of(motion, free.loads.begun), constraints_of(motion, modes=free.modes), free.modes)
     return reduced_system(made) if scope.dependent else made

@@ -11,7 +11,7 @@ from eomgen.mechanics.equilibrium.equations import static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
-from eomgen.model import Model, Table, altered, contacts_of, rough_contacts
+from eomgen.model import Model, Table
 from eomgen.symbolic.numeric import NoValue
 
 # A one-sided contact is closed at rest and pushes, or is open and has a gap:
@@ -32,8 +32,8 @@ def contacts_at_rest(model: Model) -> tuple[ContactModes, tuple[str, ...]]:
 
     As at the start let go, where every choice contradicts something. Without coordinates nothing is open.
     """
-    ending = [contact.name for contact in contacts_of(model) if contact.unilateral]
-    if not model.coordinates or not ending or rough_contacts(model):
+    ending = [contact.name for contact in model.contacts if contact.unilateral]
+    if not model.coordinates or not ending or model.rough_contacts:
         return modes_at_rest(model), ()
     begun = contacts_at_start(_let_go(model))
     tried: list[frozenset[str]] = []
@@ -72,8 +72,8 @@ def _place(model: Model, modes: ContactModes) -> Equilibrium | None:
 def _let_go(model: Model) -> Model:
     """The model with no speed at its start."""
     coordinates = {
-        name: part if part.driven or part.speed is None else altered(part, speed=None)
+        name: part if part.driven or part.speed is None else part.altered(speed=None)
         for name, part in model.coordinates.items()
     }
-    speeds = {name: part if part.start is None else altered(part, start=None) for name, part in model.speeds.items()}
-    return altered(model, coordinates=Table(coordinates), speeds=Table(speeds))
+    speeds = {name: part if part.start is None else part.altered(start=None) for name, part in model.speeds.items()}
+    return model.altered(coordinates=Table(coordinates), speeds=Table(speeds))

@@ -15,7 +15,6 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.kinematics import Located, Motion
-from eomgen.model import first_guesses, in_own_unit, start_values
 from eomgen.symbolic.exact import readable, readable_all, simplest
 from eomgen.symbolic.expression import (
     Fraction,
@@ -264,7 +263,7 @@ class _Search:
         lengths = [name for name in names if name not in angles]
         parts = [f"{', '.join(angles)} within one turn of the start"] if angles else []
         model = self.statics.system.scope.model
-        parts += [f"{name} within {in_own_unit(model, name, REACH)} of the start" for name in lengths]
+        parts += [f"{name} within {model.in_own_unit(name, REACH)} of the start" for name in lengths]
         return " and ".join(parts) if parts else "in one turn"
 
     def _scattered(self) -> np.ndarray:
@@ -564,7 +563,7 @@ class Guess:
         if unknown:
             raise UsageError(f"no coordinate '{unknown[0]}'", fix=f"one of {', '.join(model.coordinates)}")
         trial = {name: float(self.values[x]) for name, x in self.system.symbols.parameters.items()}
-        return {**start_values(model, trial)[0], **first_guesses(model, trial), **self._near, **self.requested}
+        return {**model.start_values(trial)[0], **model.first_guesses(trial), **self._near, **self.requested}
 
     @property
     def _near(self) -> dict[str, float]:

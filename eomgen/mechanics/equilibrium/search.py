@@ -23,7 +23,6 @@ from eomgen.mechanics.free_bodies import Indeterminate, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, Located, Lock, Motion
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.state import Doubles
-from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Fraction, Node, Scalar, ScalarRows, State, depends_on_any, jacobian, symbols_of
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, rank, tolerances
 
@@ -229,7 +228,7 @@ class _Search:
     @cached_property
     def valued(self) -> bool:
         """True if all parameters on which the equilibria depend have values."""
-        known = exact_parameters(self.system.scope.model)
+        known = self.system.scope.model.exact_parameters()
         needed = [x for name, x in self.system.symbols.parameters.items() if name not in known]
         return not depends_on_any((*self.whole.equations, *self._fixed.values()), needed)
 
@@ -406,7 +405,7 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
     """
     names = [
         contact.name
-        for contact in contacts_of(system.scope.model)
+        for contact in system.scope.model.contacts
         if contact.unilateral and system.modes.get(contact.name, ContactMode()).closed
     ]
     if not names:

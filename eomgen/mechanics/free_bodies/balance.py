@@ -20,7 +20,7 @@ from eomgen.mechanics.free_bodies.wrenches import (
     seen_by_carriers,
 )
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemInertia
-from eomgen.model import PointForce, driven_coordinates, driving_constraints, in_loads
+from eomgen.model import PointForce
 from eomgen.symbolic.exact import readable_all
 from eomgen.symbolic.expression import (
     Matrix,
@@ -108,7 +108,7 @@ class Balance:
     def unknowns(self) -> tuple[Node, ...]:
         """Unknowns in the loads; the equilibrium of the bodies determines them together with the reactions."""
         symbols = self.system.symbols.unknowns
-        return tuple(symbols[name] for name in in_loads(self.system.scope.model))
+        return tuple(symbols[name] for name in self.system.scope.model.unknowns_in_loads())
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -172,7 +172,7 @@ def _refuse_placeless_forces(system: System) -> None:
 
 def _refuse_placeless_constraints(system: System) -> None:
     drives = {
-        constraint for constraints in driving_constraints(system.scope.model).values() for constraint in constraints
+        constraint for constraints in system.scope.model.driving_constraints.values() for constraint in constraints
     }  # whose place is a joint
     idle = _idle_rows(system)
     for row in (row for row in system.constraints.rows if row.constraint not in drives and row.label not in idle):
@@ -240,7 +240,7 @@ def _pushes_along(system: System, power: Scalar) -> bool:
 
 def _seat_moves_others(system: System, link: BodyLink) -> bool:
     """True if a free coordinate moves the seat of a joint and something else, so that their coupling has no place."""
-    given = driven_coordinates(system.scope.model)
+    given = system.scope.model.driven_coordinates
     free = [q for q in system.symbols.q if q.name not in given]
     seat = (*link.before.p, *link.point)
     for q in free:

@@ -37,7 +37,7 @@ from eomgen.mechanics.free_bodies.friction import frictions, has_friction
 from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
-from eomgen.model import Table, altered, driving_constraints, nearest
+from eomgen.model import Table, nearest
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -239,7 +239,7 @@ def drive(system: System, coordinate: str) -> Scalar:
 
 def _drive(system: System, coordinate: str) -> Scalar:
     model = system.scope.model
-    part, constraints = model.coordinates[coordinate], driving_constraints(model).get(coordinate, ())
+    part, constraints = model.coordinates[coordinate], model.driving_constraints.get(coordinate, ())
     if not part.driven and constraints:
         return sum((multiplier(system, constraint) for constraint in constraints), start=0)
     if not part.driven:
@@ -260,8 +260,7 @@ def with_drive_let_go(system: System, coordinate: str) -> System:
     """
     key = (with_drive_let_go, coordinate)
     if key not in system.found:
-        model = altered(
-            system.scope.model,
+        model = system.scope.model.altered(
             coordinates=Table({**system.scope.model.coordinates, coordinate: system.scope.let_go(coordinate)}),
         )
         over_all = system.free is None and system.scope.dependent

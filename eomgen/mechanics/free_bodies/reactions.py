@@ -35,7 +35,7 @@ from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
-from eomgen.model import called, declared_at, driven_coordinates, driving_constraints
+from eomgen.model import called, declared_at
 from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
@@ -280,7 +280,7 @@ class Reactions:
         efforts = efforts_of(self.balance.system, owner)
         if not mine and not efforts:
             driven = next(
-                (q for q, constraints in driving_constraints(motion.scope.model).items() if owner in constraints), ""
+                (q for q, constraints in motion.scope.model.driving_constraints.items() if owner in constraints), ""
             )
             fix = f"ask drive({driven})" if driven else "what is placed carries none: name the constraint"
             raise DerivationError(f"'{owner}' carries no reaction", fix=fix)
@@ -480,7 +480,7 @@ def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
 
 def _joined_by_a_coordinate(system: System) -> str:
     """Sentence that one free coordinate moves several joints, or one joint in two ways; "" where none does."""
-    given = driven_coordinates(system.scope.model)
+    given = system.scope.model.driven_coordinates
     joints = [link for link in system.motion.links if link.joint is not None and link.joint.carries_reaction]
     for q in system.symbols.q:
         moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
@@ -504,7 +504,7 @@ def _placed_together(balance: Balance, unheld: np.ndarray) -> str:
     share = {body: float(np.linalg.norm(part, 2)) if part.size else 0.0 for body, part in parts.items()}
     if any(x > 1 - tolerances.RANK_NEARBY for x in share.values()):  # it moves by itself
         return ""
-    system, given = balance.system, driven_coordinates(balance.system.scope.model)
+    system, given = balance.system, balance.system.scope.model.driven_coordinates
     links = [link for link in system.motion.links if share.get(link.name, 0.0) > tolerances.RANK_NEARBY]
     for q in system.symbols.q:
         moved = [f"'{link.name}'" for link in links if depends_on_any(link.s, (q,))]

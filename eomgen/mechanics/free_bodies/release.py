@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
-from eomgen.model import Coordinate, Model, PointForce, Table, altered
+from eomgen.model import Coordinate, Model, PointForce, Table
 from eomgen.symbolic.exact import readable_all
 from eomgen.symbolic.expression import (
     ZERO,
@@ -55,10 +55,8 @@ def released(system: System, constraint: str) -> tuple[Model, ContactModes]:
 
 def _with_free_coordinates(model: Model, names: list[str]) -> Model:
     """The model with dependent coordinates free that only the ended constraint determined."""
-    table = {
-        name: altered(part, dependent=False) if name in names else part for name, part in model.coordinates.items()
-    }
-    return altered(model, coordinates=Table(table)) if names else model
+    table = {name: part.altered(dependent=False) if name in names else part for name, part in model.coordinates.items()}
+    return model.altered(coordinates=Table(table)) if names else model
 
 
 def stays_straight(system: System, constraint: str) -> bool:
@@ -103,8 +101,8 @@ def _freed(system: System, model: Model, row: Row) -> Model:
     if leave.turns:
         model, turn = _with_coordinate(model, row.constraint, "turn")
         changes["angle"] = as_expression(turn if joint.angle is None else f"({joint.angle.text}) + {turn}")
-    body = altered(model.bodies[leave.link.name], joint=altered(joint, **changes))
-    return altered(model, bodies=Table({**model.bodies, leave.link.name: body}))
+    body = model.bodies[leave.link.name].altered(joint=joint.altered(**changes))
+    return model.altered(bodies=Table({**model.bodies, leave.link.name: body}))
 
 
 def _with_coordinate(model: Model, constraint: str, what: str) -> tuple[Model, str]:
@@ -115,7 +113,7 @@ def _with_coordinate(model: Model, constraint: str, what: str) -> tuple[Model, s
         name += "_"
     zero = Expression.number(0)
     displaced = Coordinate(start=zero, speed=zero, about=f"displacement from {constraint}, which has ended")
-    return altered(model, coordinates=Table({**model.coordinates, name: displaced})), name
+    return model.altered(coordinates=Table({**model.coordinates, name: displaced})), name
 
 
 def _placed(system: System, row: Row) -> Leave:

@@ -20,7 +20,6 @@ from eomgen.mechanics.free_bodies.balance import (
     with_what_is_carried,
 )
 from eomgen.mechanics.free_bodies.wrenches import Effect
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import readable_all, sign_of_terms
 from eomgen.symbolic.expression import Node, Scalar, SparseRow, is_zero, substituted
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits
@@ -169,7 +168,7 @@ def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
 
 def _steady_parameters(system: System) -> frozenset[Node]:
     """The parameters that are not 0 in the model, and those that have no value."""
-    values = exact_parameters(system.scope.model)
+    values = system.scope.model.exact_parameters()
     return frozenset(x for name, x in system.symbols.parameters.items() if values.get(name, 1) != 0)
 
 

@@ -18,7 +18,7 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     Motion,
 )
-from eomgen.model import Couple, MassProperties, PointForce, driven_coordinates
+from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
@@ -320,7 +320,7 @@ def _driven_variables(motion: Motion) -> dict[tuple[str, int], str]:
     Raises:
         DerivationError: that coordinate moves other joints too, so that the drive has no one place.
     """
-    symbols, given = motion.scope.symbols, driven_coordinates(motion.scope.model)
+    symbols, given = motion.scope.symbols, motion.scope.model.driven_coordinates
     free = [q for q in symbols.q if q.name not in given]
     joints = [link for link in motion.links if link.joint is not None and link.joint.carries_reaction]
     found: dict[tuple[str, int], str] = {}
@@ -539,7 +539,7 @@ def _free_of_work(system: System, link: BodyLink) -> list[SparseRow]:
     """
     if link.joint is None or not link.is_placed:
         return []
-    driven, symbols = driven_coordinates(system.scope.model), system.symbols
+    driven, symbols = system.scope.model.driven_coordinates, system.symbols
     clocks = (symbols.t, *(q for q in symbols.q if q.name in driven))
     if not any(depends_on(s, clocks) for s in link.s):
         return []

@@ -16,7 +16,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Component, components_of
 from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
 from eomgen.mechanics.start import ScalarValues
-from eomgen.model import is_node, leaves_of
+from eomgen.model import is_node
 from eomgen.symbolic.exact import Legibly
 from eomgen.symbolic.expression import (
     ZERO,
@@ -282,7 +282,7 @@ class _Search:
         if any(row.number == component.number and not holds_identically(row.direct) for row in rows):
             return True
         constraint = motion.scope.model.constraints[component.owner]
-        points = (leaf.value for leaf in leaves_of(constraint, ()) if getattr(leaf.rule, "of", "") == "point")
+        points = (leaf.value for leaf in constraint.leaves(()) if getattr(leaf.rule, "of", "") == "point")
         return any(motion.moves(motion.place(point)[1]) for point in points)
 
     def _is_point(self, block: str) -> bool:

@@ -22,7 +22,7 @@ from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.start import start_state, values_where_at_rest
-from eomgen.model import Model, WrittenEquation, altered, exact_parameters, freed, is_node
+from eomgen.model import Model, WrittenEquation, freed, is_node
 from eomgen.symbolic.exact import collected_in, legible, readable_all
 from eomgen.symbolic.expression import (
     Expression,
@@ -314,7 +314,7 @@ def _places(free: System) -> tuple[State, Mapping[str, float]]:
 
 def _in_numbers(free: System, start: Mapping[str, float]) -> State:
     """Coordinates, and the parameters that have values, as the exact numbers that these doubles are."""
-    symbols, values = free.symbols, exact_parameters(free.scope.model)
+    symbols, values = free.symbols, free.scope.model.exact_parameters()
     parameters = {symbols.parameters[name]: Fraction(x) for name, x in values.items()}
     places = {q: Fraction(start[q.name]) for q in symbols.q}
     still = _still(free, values_where_at_rest(free, places))
@@ -333,7 +333,7 @@ def mobility_of(model: Model) -> int:
     Raises:
         DerivationError: constraints that are not satisfied at the start.
     """
-    return instant_kinematics_of(altered(model, given=None)).velocities.degrees_of_freedom
+    return instant_kinematics_of(model.altered(given=None)).velocities.degrees_of_freedom
 
 
 # -------- given rows ------------------------------------------------------------------------------------------

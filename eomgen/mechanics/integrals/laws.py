@@ -12,7 +12,6 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion, waves
 from eomgen.mechanics.integrals.speeds import Relations, rates_of, relations_of
 from eomgen.mechanics.kinematics import Located, integral_from_zero, primitive
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import sign_of_terms, simplest
 from eomgen.symbolic.expression import (
     Node,
@@ -192,7 +191,7 @@ class _Laws:
             return (x > 0) - (x < 0)
         if vanishes(x):
             return 0
-        values = exact_parameters(self.system.scope.model)
+        values = self.system.scope.model.exact_parameters()
         parameters = self.system.symbols.parameters
         known = {node: float(values[name]) for name, node in parameters.items() if name in values}
         if any(symbol not in known for symbol in symbols_of((x,))):

@@ -12,7 +12,6 @@ from eomgen.mechanics.dynamics import EVERYWHERE, EquationsOfMotion, Extent, Sys
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals, where_momenta_hold
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.kinematics import primitive
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import sign_of_terms, simplest
 from eomgen.symbolic.expression import (
     Fraction,
@@ -87,7 +86,7 @@ def rates_and_extent(
 
 def start_in_numbers(system: System, start: Mapping[Node, Scalar]) -> dict[Node, float]:
     """The start in numbers; a parameter without a value counts as 1: some sense of the motion must be chosen."""
-    known = exact_parameters(system.scope.model)
+    known = system.scope.model.exact_parameters()
     values = {node: float(known.get(name, 1)) for name, node in system.symbols.parameters.items()}
     return values | {node: float(evaluate((x,), values, FLOAT)[0]) for node, x in start.items()}
 

@@ -14,7 +14,6 @@ from eomgen.model import (
     BodyPoint,
     ConstraintRow,
     Resistance,
-    exact_parameters,
 )
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (
@@ -210,7 +209,7 @@ class SystemScene:
         scope = self.motion.scope
         if type(scalar) is Node:
             self.motion.decided[scalar] = None
-        known = exact_parameters(scope.model)
+        known = scope.model.exact_parameters()
         values = {node: known[name] for name, node in scope.symbols.parameters.items() if name in known}
         at_start = self.start(scalar)
         if not set(symbols_of((at_start,))) <= values.keys():

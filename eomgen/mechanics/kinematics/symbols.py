@@ -18,19 +18,11 @@ from eomgen.model import (
     MassProperties,
     Model,
     PlacedPiece,
-    altered,
     composite_of,
-    constant_parameters,
-    exact_parameters,
     in_order,
     in_parts,
-    leaves_of,
     no_orientation,
-    quaternions_of,
     spin_of_quaternion,
-)
-from eomgen.model import (
-    start_values as declared_starts,
 )
 from eomgen.symbolic.exact import cancelled, readable_all
 from eomgen.symbolic.expression import (
@@ -109,7 +101,7 @@ class Scope:
 
         Roots may be taken of their squares.
         """
-        values, sizes = exact_parameters(self.model), _sizes(self.model)
+        values, sizes = self.model.exact_parameters(), _sizes(self.model)
         return frozenset(
             node
             for name, node in self.symbols.parameters.items()
@@ -198,7 +190,7 @@ class Scope:
             ModelError: one is 0.
         """
         found = dict(start)
-        for four, part in zip(self.quaternions, quaternions_of(self.model), strict=True):
+        for four, part in zip(self.quaternions, self.model.quaternions, strict=True):
             if not start.keys() >= {*four}:
                 continue
             norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
@@ -220,7 +212,7 @@ class Scope:
         part = self.model.coordinates[name]
         (q,) = (x for x in self.symbols.q if x.name == name)
         start = part.start if part.motion is None else _written(self, self.start_value(q))
-        return altered(part, motion=None, rate=None, acceleration=None, start=start)
+        return part.altered(motion=None, rate=None, acceleration=None, start=start)
 
     def ground_place(self, at: Any) -> Vector:
         """A place on the ground: coordinates, or the name of a ground point [m]."""
@@ -231,12 +223,12 @@ class Scope:
     @property
     def known_parameters(self) -> dict[Node, float]:
         """The parameters that have values."""
-        return {self.symbols.parameters[name]: float(x) for name, x in exact_parameters(self.model).items()}
+        return {self.symbols.parameters[name]: float(x) for name, x in self.model.exact_parameters().items()}
 
     @property
     def known_exactly(self) -> dict[Node, Scalar]:
         """The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6."""
-        return {self.symbols.parameters[name]: x for name, x in constant_parameters(self.model, self.graph).items()}
+        return {self.symbols.parameters[name]: x for name, x in self.model.constant_parameters(self.graph).items()}
 
     def values_of_parameters(self, rng: Random | None, *, shaken: bool = False) -> dict[Node, Any]:
         """Values of the parameters with 50 digits: the model's own, else random ones; without `rng` those with a value.
@@ -245,7 +237,7 @@ class Scope:
             shaken: all near the model's own and none of them special.
         """
         model, arithmetic = self.model, fifty_digits()
-        known = exact_parameters(model)
+        known = model.exact_parameters()
         names, values = self.symbols.parameters, dict[Node, Any]()
         given = {name: part.value for name, part in model.parameters.items() if part is not None}
         for name in in_order(given)[0]:
@@ -396,7 +388,7 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
             names |= {**given, **{x.name: x for x in long}}
             N.append((0,) * len(free))
             nu.append(names[name + "'"])
-    quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in quaternions_of(model))
+    quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in model.quaternions)
     for four in quaternions:
         graph.hold_on_sphere(four)
     graph.hold_near(_own_numbers(model, symbols))
@@ -405,10 +397,10 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
 
 def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
     """Parameters, coordinates and rates at the start, as far as the file says them in numbers."""
-    known = exact_parameters(model)
+    known = model.exact_parameters()
     found = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     with suppress(EomgenError, OverflowError):
-        q, rates = declared_starts(model)
+        q, rates = model.start_values()
         found |= {node: q[node.name] for node in symbols.q if node.name in q}
         found |= {node: rates[node.name] for node in symbols.u if node.name in rates}
     return {node: value for node, value in found.items() if isfinite(value)}
@@ -417,7 +409,7 @@ def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
 def _speeds_by_rates(model: Model, names: Mapping[str, Scalar]) -> dict[str, Scalar]:
     """Declared speeds as they are declared, in what the names of rates stand for."""
     found = {name: part.rate.evaluate(names) for name, part in model.speeds.items() if part.rate is not None}
-    for each in quaternions_of(model):
+    for each in model.quaternions:
         e, rates = (tuple(names[name + prime] for name in each.coordinates) for prime in ("", "'"))
         found |= dict(zip(each.speeds, spin_of_quaternion(e, rates), strict=True))
     return found
@@ -470,7 +462,7 @@ def integral_from_zero(f: Scalar, t: Node, where: str, zero: Container[str] | No
 
 def parameters_of_zero(model: Model) -> frozenset[str]:
     """The parameters whose value is 0."""
-    return frozenset(name for name, value in exact_parameters(model).items() if value == 0)
+    return frozenset(name for name, value in model.exact_parameters().items() if value == 0)
 
 
 LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
@@ -520,7 +512,7 @@ def _zero(a: Scalar) -> bool:
 
 def _sizes(model: Model) -> frozenset[str]:
     """The names that stand alone where a negative number is an error: masses, lengths and radii of bodies."""
-    leaves = (leaf for body in model.bodies.values() for leaf in leaves_of(body, ()))
+    leaves = (leaf for body in model.bodies.values() for leaf in body.leaves(()))
     signed = (leaf.value for leaf in leaves if getattr(leaf.rule, "sign", "") and isinstance(leaf.value, Expression))
     return frozenset(value.text for value in signed if len(value.code) == 1 and value.literal is None)
 
@@ -546,7 +538,7 @@ def _written(scope: Scope, scalar: Scalar) -> Expression:
     try:
         return as_expression(to_text(scalar))
     except ExpressionError:
-        known = exact_parameters(scope.model)
+        known = scope.model.exact_parameters()
         values = {node: float(known[name]) for name, node in scope.symbols.parameters.items() if name in known}
         return as_expression(Fraction(evaluate((scalar,), values, FLOAT)[0]))
 

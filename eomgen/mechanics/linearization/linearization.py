@@ -51,7 +51,6 @@ from eomgen.mechanics.linearization.reference import (
 )
 from eomgen.mechanics.linearization.steady import family_of, steady_start
 from eomgen.mechanics.state import Exact, NumberField, Numbers
-from eomgen.model import exact_parameters, refuse_motion
 from eomgen.symbolic.expression import Node, ScalarRow, depends_on_any, operations, order, substituted
 from eomgen.symbolic.numeric import NoValue, dense, fifty_digits, tolerances
 
@@ -145,7 +144,7 @@ def small_motions_of(
         DerivationError: no equilibrium; the start is no steady motion; nothing can move; the requested coordinates do
             not move by themselves.
     """
-    refuse_motion(system.scope.model)
+    system.scope.model.refuse_motion()
     if not system.symbols.u:
         raise DerivationError(
             "nothing is free to move: there are no small motions",
@@ -258,7 +257,7 @@ def _refuse_unvalued(reference: ReferenceMotion) -> None:
         DerivationError: those without one are named.
     """
     model = reference.system.scope.model
-    missing = [f"'{name}'" for name in reference.system.symbols.parameters if name not in exact_parameters(model)]
+    missing = [f"'{name}'" for name in reference.system.symbols.parameters if name not in model.exact_parameters()]
     if missing:
         what = f"the reference, or the equations about it, have no closed form: {', '.join(missing)} need values"
         raise DerivationError(what, "parameters", fix="give them values in [parameters]")

@@ -18,7 +18,7 @@ from eomgen.mechanics.linearization.first_order import (
 )
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
-from eomgen.model import quaternions_of, rotation_of
+from eomgen.model import rotation_of
 from eomgen.symbolic.expression import Matrix, Node, apply, vector_of
 from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
 
@@ -439,7 +439,7 @@ def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]
     """The quaternions that move in the reference, three of each independent."""
     system, found = reference.system, []
     speeds = {u.name: u for u in system.symbols.u}
-    names = quaternions_of(system.scope.model)
+    names = system.scope.model.quaternions
     for four, part in zip(system.scope.quaternions, names, strict=True):
         carriers = tuple(j for j, k in enumerate(choice.places.free) if system.symbols.q[k] in four)
         moves = any(e in reference.moving for e in four)

@@ -16,7 +16,6 @@ from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_e
 from eomgen.mechanics.integrals import position_equations
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import refuse_lost, start_state
-from eomgen.model import contacts_of, exact_parameters
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -64,7 +63,7 @@ class ReferenceMotion:
     @cached_property
     def valued(self) -> bool:
         """True if all parameters have values."""
-        return not self.system.symbols.parameters.keys() - exact_parameters(self.system.scope.model).keys()
+        return not self.system.symbols.parameters.keys() - self.system.scope.model.exact_parameters().keys()
 
     @cached_property
     def moving(self) -> dict[Node, Any]:
@@ -88,7 +87,7 @@ def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> R
         NotYet: speeds that are not rates.
     """
     place = nearest_equilibrium(static_equations(system), guess)
-    if contacts_of(system.scope.model):
+    if system.scope.model.contacts:
         place.refuse_contradicted()
     return _place(place)
 
@@ -169,7 +168,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     gaps = [gap for row in system.constraints.rows if (gap := _gap(row)) is not None]
     exact |= located.places(substituted(tuple(gaps), exact), sought) if sought else {}
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
-    exact = exact if symbols.parameters.keys() - exact_parameters(model).keys() else _short(exact)
+    exact = exact if symbols.parameters.keys() - model.exact_parameters().keys() else _short(exact)
     for x in (*symbols.q, *symbols.u):
         numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(1) * located.numbers[x]
     return _with_inputs(ReferenceMotion(system, EQUILIBRIUM if at_rest else START, exact, numbers))

@@ -14,7 +14,7 @@ from eomgen.mechanics.constraints import is_guess
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.state import Doubles, Split
-from eomgen.model import PointForce, in_own_unit, numeric_parameters
+from eomgen.model import PointForce
 from eomgen.symbolic.expression import Node, Scalar, State, is_zero, jacobian, symbols_of
 from eomgen.symbolic.numeric import FLOAT, Newton, all_roots, evaluate, tolerances
 
@@ -164,7 +164,7 @@ class _Search:
 
     def branch(self, place: np.ndarray) -> AssemblyMode:
         values = {q.name: _plain(x) for q, x in zip(self.sought, place, strict=True)}
-        words = ", ".join(f"{name} = {in_own_unit(self.system.scope.model, name, x, 6)}" for name, x in values.items())
+        words = ", ".join(f"{name} = {self.system.scope.model.in_own_unit(name, x, 6)}" for name, x in values.items())
         reported = words, assembly_sides(self.system, self._state(place))
         if len(self.rows) < len(self.gaps):
             return AssemblyMode(values, 0, *reported)
@@ -182,7 +182,7 @@ def _search(system: System, start: Mapping[str, float]) -> _Search | None:
     free = [q for q in system.constraints.movable if q in standing]
     if not gaps or not free or system.scope.quaternions:
         return None
-    p = numeric_parameters(system.scope.model)
+    p = system.scope.model.numeric_parameters()
     known: State = {symbols.parameters[name]: value for name, value in p.items()} | {symbols.t: 0.0}
     known |= dict(zip(symbols.inputs.values(), evaluate(tuple(system.inputs.values()), known, FLOAT), strict=True))
     known |= {q: start[q.name] for q in symbols.q}

@@ -17,7 +17,6 @@ from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
 from eomgen.mechanics.state import Doubles, Numbers, Split
-from eomgen.model import exact_parameters
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
     Fraction,
@@ -171,7 +170,7 @@ def _without_zeros(row: ScalarRow) -> ScalarRow:
 
 def _drawn(system: System, seed: int) -> dict[str, float]:
     """Values of the parameters that have none."""
-    rng, known = Random(seed), exact_parameters(system.scope.model)
+    rng, known = Random(seed), system.scope.model.exact_parameters()
     return {name: rng.uniform(0.7, 1.3) for name in system.symbols.parameters if name not in known}
 
 
@@ -199,7 +198,7 @@ class _Sought:
     @cached_property
     def located(self) -> Located:
         """The numbers, by which closed forms are recognised."""
-        symbols, known = self.system.symbols, exact_parameters(self.system.scope.model, self.drawn)
+        symbols, known = self.system.symbols, self.system.scope.model.exact_parameters(self.drawn)
         numbers = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
         numbers |= {x: self.begun.values[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
         return Located(numbers, self.system.scope.positive)

@@ -34,12 +34,6 @@ from eomgen.model import (
     Model,
     PointForce,
     begun_speeds,
-    contacts_of,
-    exact_parameters,
-    first_guesses,
-    in_own_unit,
-    numeric_parameters,
-    start_values,
 )
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, minus, substituted, symbols_of
 from eomgen.symbolic.numeric import (
@@ -206,7 +200,7 @@ def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | 
 
     M (u+ - u-) = J^T Lam with J u+ + sigma = 0 of all that holds and Lam >= 0 of what can only push, or pull.
     """
-    one_sided = {contact.name for contact in contacts_of(system.scope.model) if contact.unilateral}
+    one_sided = {contact.name for contact in system.scope.model.contacts if contact.unilateral}
     rows = [
         (k, row) for k, row in enumerate(system.constraints.closing) if row.constraint in one_sided and row.number == 1
     ]
@@ -229,7 +223,7 @@ def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | 
 
 def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None) -> np.ndarray | None:
     """M at a state; None where a mass has no value."""
-    known = exact_parameters(system.scope.model, parameters)
+    known = system.scope.model.exact_parameters(parameters)
     values = {node: float(known[name]) for name, node in system.symbols.parameters.items() if name in known}
     values |= {node: float(x) for node, x in state.items()}
     rows = mass(system.motion)
@@ -285,8 +279,8 @@ def _change(model: Model, name: str, values: tuple[float, float], called: bool) 
     """A change from the first of two values to the second."""
     before, after = values
     given = called or not is_guess(model, name)
-    was = f" (not {in_own_unit(model, name, before, 6)})" if given else ""
-    return Change(name, before, after, given, f"{name} = {in_own_unit(model, name, after)}{was}")
+    was = f" (not {model.in_own_unit(name, before, 6)})" if given else ""
+    return Change(name, before, after, given, f"{name} = {model.in_own_unit(name, after)}{was}")
 
 
 def _rounded(x: Any, given: float) -> float:
@@ -328,8 +322,8 @@ def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[
     unknown = [name for name in start if name not in names]
     if unknown:
         raise UsageError(f"no coordinate or speed '{unknown[0]}'", fix=f"one of {', '.join(names)}")
-    q, u = start_values(system.scope.model, parameters)
-    guesses = first_guesses(system.scope.model, parameters)
+    q, u = system.scope.model.start_values(parameters)
+    guesses = system.scope.model.first_guesses(parameters)
     sought = {node.name for node in system.constraints.fixed_by_position}
     values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
     values |= _normed(system, values)
@@ -360,7 +354,7 @@ def _by_coordinates(
     formulas = start_speeds(system) if silent else {}
     requested = tuple(formulas[u] for u in silent)
     used = set(symbols_of(requested))
-    p = numeric_parameters(model, parameters, needed=[name for name, x in symbols.parameters.items() if x in used])
+    p = model.numeric_parameters(parameters, needed=[name for name, x in symbols.parameters.items() if x in used])
     state = {symbols.parameters[name]: value for name, value in p.items()}
     state |= {q: values[q.name] for q in symbols.q}
     return {u.name: float(x) for u, x in zip(silent, evaluate(requested, state, FLOAT), strict=True)}
@@ -374,7 +368,7 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
     used = set(symbols_of([x for row in rows for x in (row.velocity, 0 if row.gap is None else row.gap)]))
     used |= set(symbols_of(system.inputs.values()))
     needed = [name for name, node in symbols.parameters.items() if node in used]
-    p = numeric_parameters(system.scope.model, parameters, needed=needed)
+    p = system.scope.model.numeric_parameters(parameters, needed=needed)
     state = {symbols.parameters[name]: of_50_digits(value) for name, value in p.items()} | {symbols.t: of_50_digits(0)}
     state |= {node: of_50_digits(values[node.name]) for node in (*symbols.q, *symbols.u)}
     for name, node in symbols.inputs.items():
@@ -417,7 +411,7 @@ def _nearest(system: System, state: State) -> str:
     if miss is None:
         return ""
     model = system.scope.model
-    there = ", ".join(f"{name} = {in_own_unit(model, name, x, 6)}" for name, x in miss.values.items())
+    there = ", ".join(f"{name} = {model.in_own_unit(name, x, 6)}" for name, x in miss.values.items())
     if not miss.open:
         return f"; all constraints close at {there}, farther than a start is moved"
     stay = f"{quoted_names(miss.constraints)} {'stays' if len(miss.constraints) == 1 else 'stay'} open"

@@ -16,7 +16,7 @@ from eomgen.mechanics.free_bodies import Reactions, equations_of_motion, frictio
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
-from eomgen.model import Contact, Model, contacts_of, exact_parameters, rough_contacts
+from eomgen.model import Contact, Model
 from eomgen.symbolic.expression import Scalar, State, function, sqrt, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
 
@@ -59,13 +59,13 @@ def contacts_at_start(model: Model) -> ContactsAtStart:
 
     Without coordinates what is rough sticks. Of one model they are found once.
     """
-    if not contacts_of(model):
+    if not model.contacts:
         return ContactsAtStart()
     return recalled(model, contacts_at_start, lambda: _at_start(model))
 
 
 def _at_start(model: Model) -> ContactsAtStart:
-    contacts = contacts_of(model)
+    contacts = model.contacts
     if not model.coordinates:
         return ContactsAtStart(dict(modes_at_rest(model)))
     start = _StartNumbers(model)
@@ -85,7 +85,7 @@ def resting_contacts(model: Model) -> tuple[str, ...]:
 
     Whether they stick or begin to slide the first phase of the motion decides. () where parameters have no value.
     """
-    if not model.coordinates or not any(c.mu is not None for c in contacts_of(model)):
+    if not model.coordinates or not any(c.mu is not None for c in model.contacts):
         return ()
     start = _StartNumbers(model)
     try:
@@ -113,7 +113,7 @@ class _StartNumbers:
 
     @cached_property
     def missing(self) -> tuple[str, ...]:
-        known = exact_parameters(self.model)
+        known = self.model.exact_parameters()
         return tuple(name for name in self.model.parameters if name not in known)
 
     @cached_property
@@ -235,7 +235,7 @@ class _StartNumbers:
     def still(self, opened: ContactModes) -> set[str]:
         """The contacts with dry friction that do not slide at the start."""
         system = system_of(self.model, opened)
-        state, rough = _state(system, self.drawn), {c.name for c in contacts_of(self.model) if c.mu is not None}
+        state, rough = _state(system, self.drawn), {c.name for c in self.model.contacts if c.mu is not None}
         sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in frictions(system) if name in rough]
         values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
         return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= tolerances.CARRIED}
@@ -251,7 +251,7 @@ class _Lacking(Exception):
 def _state(system: System, drawn: Numbers) -> State:
     """Every symbol of a system at the start but a, multipliers 0."""
     symbols, values = system.symbols, start_state(system, drawn)
-    known = {**exact_parameters(system.scope.model, drawn), **values}
+    known = {**system.scope.model.exact_parameters(drawn), **values}
     nodes = {**symbols.parameters, **{x.name: x for x in (*symbols.q, *symbols.u)}}
     state = {node: of_50_digits(float(known[name])) for name, node in nodes.items()}
     state |= {x: of_50_digits(0.0) for x in (symbols.t, *symbols.lam)}
@@ -329,13 +329,13 @@ class RestCondition:
 
 def modes_at_rest(model: Model) -> ContactModes:
     """Every contact with dry friction sticks."""
-    return {contact.name: ContactMode(sense=0) for contact in rough_contacts(model)}
+    return {contact.name: ContactMode(sense=0) for contact in model.rough_contacts}
 
 
 def conditions_of(statics: StaticReactions) -> tuple[RestCondition, ...]:
     """Conditions of the contacts that can end or slide, where their reactions are determinate."""
     found = []
-    for contact in contacts_of(statics.system.scope.model):
+    for contact in statics.system.scope.model.contacts:
         name = contact.name
         normal, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "tension"))
         along = _resultant([_value(statics, f"reaction_{k}({name})") for k in ("ts" if contact.surface else "t")])

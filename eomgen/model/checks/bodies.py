@@ -13,7 +13,6 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.composite import Composite, about, composite_of, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
-from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import Expression, cross, vector_of
 from eomgen.symbolic.numeric import tolerances
@@ -164,14 +163,14 @@ def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, 
 
 def _signed_right(body: Any, values: Mapping[str, AnyNumber]) -> bool:
     """True if every mass, length and radius of a body that is known has its sign."""
-    signed = [leaf for leaf in leaves_of(body, ()) if getattr(leaf.rule, "sign", "")]
+    signed = [leaf for leaf in body.leaves(()) if getattr(leaf.rule, "sign", "")]
     known = [(leaf.rule.sign, value_of(leaf.value, values)) for leaf in signed if isinstance(leaf.value, Expression)]
     return all(x is None or x > 0 or (x == 0 and sign == "nonnegative") for sign, x in known)
 
 
 def _known(part: Any, values: Mapping[str, AnyNumber]) -> bool:
     """True if every expression in a part has names with values only."""
-    leaves = (leaf.value for leaf in leaves_of(part, ()))
+    leaves = (leaf.value for leaf in part.leaves(()))
     return all(e.names <= values.keys() for e in leaves if isinstance(e, Expression))
 
 
@@ -183,7 +182,7 @@ def _complete(body: Any) -> bool:
 
 def _placed(piece: Any) -> bool:
     """True if no vector of a piece has more components than space (reported where references are checked)."""
-    vectors = [leaf.value for leaf in leaves_of(piece, ()) if isinstance(leaf.rule, VectorRule)]
+    vectors = [leaf.value for leaf in piece.leaves(()) if isinstance(leaf.rule, VectorRule)]
     return all(len(components) <= 3 for components in vectors)
 
 

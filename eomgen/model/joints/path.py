@@ -22,7 +22,7 @@ from eomgen.model.joints.base import (
     linear,
 )
 from eomgen.model.kinds import ConstantAngle, Displacement, FrictionLaw, Length, MovingPlace, Text, Turn, ValueOf
-from eomgen.model.part import Part, PartRule, part_of_values, slots_of
+from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.model.shapes.forms import ArcForm, Form, LineForm
 from eomgen.symbolic.expression import Expression, Pose, Vector, apply, cos, function, over, plus, selected, sin
@@ -183,9 +183,8 @@ class Path(Joint):
     def piece(self, number: int) -> "OnePiece":
         """The same path with one of its pieces alone (from 0), which goes on before its beginning and after its end."""
         stretch = self.stretches(_itself)[number]
-        kept = {slot.name: getattr(self, slot.name) for slot in slots_of(type(self))}
-        return part_of_values(
-            OnePiece,
+        kept = {slot.name: getattr(self, slot.name) for slot in type(self).slots()}
+        return OnePiece.of_values(
             kept
             | {
                 "along": _expression(self.along - stretch.start),
