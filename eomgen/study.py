@@ -26,12 +26,10 @@ from eomgen.frozen import RECALLED, dataclass, recalled
 from eomgen.mechanics.constraints import Rank, holds_identically
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
+    Explicit,
     System,
-    bordered_rows,
-    by_short_rows,
+    WellPosed,
     refuse_jump,
-    refuse_massless,
-    regular_rows,
     signs_of_rates,
     system_of,
     with_accelerations,
@@ -106,7 +104,7 @@ class Study:
             DerivationError: a load contains an unknown.
         """
         self.model.refuse_motion()
-        refuse_massless(self.derived)
+        WellPosed(self.derived).refuse_massless()
         return self.derived
 
     @cached_property
@@ -131,7 +129,7 @@ class Study:
         """
         from eomgen.codegen import right_hand_side
 
-        refuse_massless(self.derived)
+        WellPosed(self.derived).refuse_massless()
         with growing():
             return right_hand_side(self.explicit)
 
@@ -144,7 +142,7 @@ class Study:
         """
         from eomgen.codegen import slopes_of
 
-        refuse_massless(self.derived)
+        WellPosed(self.derived).refuse_massless()
         return slopes_of(self.explicit)
 
     @cached_property
@@ -152,7 +150,7 @@ class Study:
         """The linearized equations beside any motion, for numbers at a state."""
         from eomgen.mechanics.linearization import FirstOrder
 
-        refuse_massless(self.derived)
+        WellPosed(self.derived).refuse_massless()
         return FirstOrder(self.derived, ())
 
     # -- reactions and outputs ---------------------------------------------------------------------
@@ -181,7 +179,7 @@ class Study:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
         from eomgen.codegen import reactions_program
 
-        refuse_massless(self.derived)
+        WellPosed(self.derived).refuse_massless()
         return reactions_program(self.reaction_values, self.explicit)
 
     @cached_property
@@ -198,7 +196,7 @@ class Study:
         """The outputs that are functions of the state; accelerations as in the right-hand side."""
         from eomgen.codegen import reactions_program
 
-        refuse_massless(self.derived)
+        WellPosed(self.derived).refuse_massless()
         return reactions_program(self.requested_outputs.values, self.explicit)[1]
 
     # -- parameters and the start --------------------------------------------------------------------
@@ -252,7 +250,7 @@ class Study:
         size = max(map(text_size, found.values()), default=0)
         if size <= NO_FORMULA or not self.equations.J or self.equations.friction:
             return found
-        short = by_short_rows(self.equations, self.simple)
+        short = Explicit(self.equations).by_short_rows(self.simple)
         return found if short is None or max(map(text_size, short.values())) > size else short
 
     def rates(self, *, at_rest: bool) -> tuple[dict[Node, Scalar], Extent] | None:
@@ -490,8 +488,8 @@ class Study:
         if equations.friction:
             values = substituted(tuple(self.unknowns.values()), state)
             return dict(zip(self.unknowns, (self.simple(x) if readable else x for x in values), strict=True))
-        kept = regular_rows(self.system)
-        rows, right = bordered_rows(equations, kept)
+        kept = Rank(self.system.constraints).regular()
+        rows, right = Explicit(equations).bordered(kept)
         entries = substituted([x for row in rows for x in row.values()], state)
         needed = substituted(right, state)
         if readable:

@@ -16,7 +16,7 @@ from eomgen.documents.reaction_values import Lettered
 from eomgen.documents.statements import Formula
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
+from eomgen.mechanics.dynamics.explicit_accelerations import Explicit
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.model.reader import loads
@@ -39,7 +39,7 @@ def is_short_tree(name: str) -> bool:
     """Nothing closes, nothing is eliminated, something reacts, and everything is printed."""
     e = derived_from(name)
     tree = not e.graph.J and e.system.free is None and bool(e.reactions.components)
-    return tree and name not in LONG and short_accelerations(e.graph) is not None
+    return tree and name not in LONG and Explicit(e.graph).short is not None
 
 
 HELD = tuple(name for name in derivable() if name not in LOOSE)
@@ -112,7 +112,7 @@ def letters(derived: Equations) -> Lettered:
 
 def along_motion(derived: Equations) -> dict[Node, Scalar]:
     """The accelerations of the equations of motion."""
-    found = short_accelerations(derived.graph)
+    found = Explicit(derived.graph).short
     assert found is not None
     return dict(zip(derived.graph.symbols.a, found, strict=True))
 

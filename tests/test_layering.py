@@ -246,7 +246,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "model": 142,
     "mechanics.kinematics": 24,
     "mechanics.constraints": 38,
-    "mechanics.dynamics": 43,
+    "mechanics.dynamics": 27,
     "mechanics.start": 16,
     "mechanics.free_bodies": 54,
     "mechanics.statics": 25,

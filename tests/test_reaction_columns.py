@@ -23,7 +23,7 @@ from eomgen.documents.figures import over_time
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import Closure
-from eomgen.mechanics.dynamics.accelerations import accelerations_at
+from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.mechanics.instant.quantities import Quantities
@@ -92,7 +92,10 @@ def test_a_column_is_what_an_output_of_its_name_says(path):
     equations = equations_of(path.stem)
     reactions, quantities = equations.reactions, Quantities(equations.system)
     state = Closure(equations.system.constraints).generic(Random(3))
-    a = [fifty_digits().number(1) * float(value) for value in accelerations_at(equations.graph, state)]
+    a = [
+        fifty_digits().number(1) * float(value)
+        for value in np.array(exact_accelerations(equations.graph, state), dtype=float)
+    ]
     state |= dict(zip(equations.graph.symbols.a, a, strict=True))
     state |= multipliers_at(equations, state)
     for named in named_reactions(reactions.balance):

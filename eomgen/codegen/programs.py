@@ -14,7 +14,8 @@ from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic
 from eomgen.codegen.rhs import GivenMotion, RightHandSide, compiled, parameter_vector
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, by_determinants, by_factors, regular_rows
+from eomgen.mechanics.constraints import Rank
+from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import FEW, Indeterminate, Inverse, Reactions, by_independent, named_reactions
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.model import OF_A_RUN, SMALL_MOTIONS, Output
@@ -352,9 +353,9 @@ def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Sc
         return found | _multipliers(equations, found)
     if not equations.J:
         return dict(zip(symbols.a, factor_solution(equations.M, equations.forcing), strict=True))
-    kept = regular_rows(equations.system)
+    kept = Rank(equations.system.constraints).regular()
     if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
-        return by_determinants(equations, kept)
+        return Explicit(equations).by_determinants(kept)
     if len(symbols.a) - len(kept) <= FEW:
         with suppress(DerivationError):
             return by_independent(equations, kept)
@@ -363,7 +364,7 @@ def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Sc
 
 def _by_factors(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[Node, Scalar]:
     symbols = equations.symbols
-    ((a, lam),) = by_factors(equations, kept)
+    ((a, lam),) = Explicit(equations).by_factors(kept)
     multipliers = {symbols.lam[i]: value for i, value in zip(kept, lam, strict=True)}
     return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
 
@@ -373,11 +374,11 @@ def _multipliers(equations: EquationsOfMotion, a: Mapping[Node, Scalar]) -> dict
     system = equations.system
     if not equations.J:
         return {}
-    kept = regular_rows(system)
+    kept = Rank(system.constraints).regular()
     n = len(equations.M)
     if n + len(kept) <= cramer.LARGEST_BLOCK:  # what divides by a pivot of J has no value where that vanishes
-        found = by_determinants(equations, kept)
+        found = Explicit(equations).by_determinants(kept)
         return {x: found[x] for x in system.symbols.lam}
-    ((_, lam),) = by_factors(equations, kept)
+    ((_, lam),) = Explicit(equations).by_factors(kept)
     found = {system.symbols.lam[m]: value for m, value in zip(kept, lam, strict=True)}
     return {x: found.get(x, 0) for x in system.symbols.lam}

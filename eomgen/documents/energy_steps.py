@@ -46,10 +46,9 @@ from eomgen.documents.statements import (
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
+    Explicit,
     Extent,
     System,
-    free_rates,
-    short_accelerations,
 )
 from eomgen.mechanics.integrals import (
     Constant,
@@ -293,7 +292,7 @@ def maggi_equations(
         momenta, forces: of the free system, one entry a coordinate.
     """
     system = equations.system
-    N = jacobian(free_rates(system, free), system.scope.symbols.u)
+    N = jacobian(system.free_rates(free), system.scope.symbols.u)
     inertia = [rate - held for rate, held in zip(momenta.rates, momenta.held, strict=True)]
     columns = list(zip(*N, strict=True))
     constraints = multiplier_forces(equations)
@@ -324,7 +323,7 @@ def maggi_equations(
 
 def _followers(system: System, free: System, N: Sequence[ScalarRow]) -> list[tuple[Node, Scalar]]:
     """u_d = A u + b, then a_d = A a + A' u + b', in the rates of all coordinates, of each dependent one."""
-    rates = dict(zip(free.symbols.u, free_rates(system, free), strict=True))
+    rates = dict(zip(free.symbols.u, system.free_rates(free), strict=True))
     dependent = [k for k, u in enumerate(free.symbols.u) if u not in system.symbols.u]
     found = [(free.symbols.u[k], rates[free.symbols.u[k]]) for k in dependent]
     for k in dependent:
@@ -455,7 +454,7 @@ def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
     symbols = system.symbols
     if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or system.free is not None:
         return ()
-    accelerations = short_accelerations(equations)
+    accelerations = Explicit(equations).short
     start = None if accelerations is None else known_start(system)
     laws = {} if accelerations is None or start is None else laws_of_motion(system, accelerations, start)
     free = {u.name.removesuffix("'") for u in symbols.u}

@@ -26,7 +26,7 @@ from eomgen.documents.statements import Meaning, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, short_accelerations
+from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import (
     EACH_AXIS,
     Balance,
@@ -168,7 +168,7 @@ def readings_of(equations: EquationsOfMotion, reader: Reader, *, free: bool = Fa
         DerivationError: a body is unsupported; a force acts at no place.
     """
     system = equations.system
-    found = short_accelerations(equations)
+    found = Explicit(equations).short
     long = found is None or sum(map(text_size, found)) > LONGEST_REACTION
     accelerations = {} if found is None or long else dict(zip(equations.symbols.a, found, strict=True))
     return Readings(system, shown_system(system) if free else system, reader, accelerations)

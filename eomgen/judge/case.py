@@ -16,7 +16,7 @@ from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System, free_rates
+from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System
 from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import ExactStart
@@ -335,7 +335,7 @@ class Case:
             slope = system.motion.scope.per_speed(gradient(value, symbols.q))[names.index(f"{by}'")]
         if system is self.system:
             return self.solved(slope)
-        return substituted((slope,), dict(zip(symbols.u, free_rates(self.system, system), strict=True)))[0]
+        return substituted((slope,), dict(zip(symbols.u, self.system.free_rates(system), strict=True)))[0]
 
     def _multiplier(self, call: Call) -> Scalar | None:
         label = f"{MULTIPLIER}({', '.join(a.name if isinstance(a, Reference) else a.text for a in call.args)})"

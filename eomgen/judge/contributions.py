@@ -17,7 +17,6 @@ from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
-    free_rates,
 )
 from eomgen.mechanics.kinematics import Applied, SystemInertia
 from eomgen.model import Catalog, Couple, Dimension, Load, PointForce, UniformField, inferred
@@ -117,7 +116,7 @@ class Operator:
         if self.system.free is None:
             return tuple(row)
         base, scope = self.base, self.system.scope
-        rates = free_rates(self.system, base)
+        rates = self.system.free_rates(base)
         known = dict(zip(base.symbols.u, rates, strict=True))
         known |= dict(zip(base.symbols.a, scope.with_accelerations(rates), strict=True))
         row = substituted(tuple(row), known)
@@ -128,7 +127,7 @@ class Operator:
         """A kinetic energy over the independent speeds."""
         if self.system.free is None:
             return T
-        rates = free_rates(self.system, self.base)
+        rates = self.system.free_rates(self.base)
         return substituted((T,), dict(zip(self.base.symbols.u, rates, strict=True)))[0]
 
 

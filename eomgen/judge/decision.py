@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import NOWHERE, Extent, System, division_of
+from eomgen.mechanics.dynamics import Extent, System, division_of
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.symbolic.exact import exact_state
 from eomgen.symbolic.expression import (
@@ -70,7 +70,7 @@ class Follows:
     rows: tuple[int, ...] = ()
     way: str = ""
     on_constraints: bool = False
-    held: Extent = NOWHERE
+    held: Extent = Extent(False)
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ def combination(
     held = _in_pieces(system, row, rows, constrained, on_constraints=found.on_constraints)
     if held is None or (held.everywhere and found.holds):
         return found
-    return Follows(False, (), found.way, held=NOWHERE if held.everywhere else held)
+    return Follows(False, (), found.way, held=Extent(False) if held.everywhere else held)
 
 
 def _in_pieces(

@@ -19,7 +19,7 @@ from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistak
 from eomgen.judge.model_edits import ModelEdits
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG, short_text
-from eomgen.mechanics.dynamics import EVERYWHERE, NOWHERE, Extent
+from eomgen.mechanics.dynamics import Extent
 from eomgen.model import AtRest, WrittenEquation
 from eomgen.symbolic.exact import legible
 from eomgen.symbolic.expression import (
@@ -137,7 +137,7 @@ def other_models(case: Case, written: HandEquation, kind: str, at: WrittenEquati
 def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> tuple[str, Extent]:
     """(by which integrals from the start a scalar vanishes where nodes are replaced, in words, where it does)."""
     if depends_on(scalar, case.system.symbols.lam):
-        return "", NOWHERE
+        return "", Extent(False)
     for reported in ("the momenta", "the energy theorem and the momenta"):
         by_integrals = case.by_momenta if reported == "the momenta" else case.speeds
         if not by_integrals:
@@ -146,7 +146,7 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> t
         started = substituted((case.phase.eliminated(scalar),), {**speeds, **known})
         if not case.starting.is_exact:
             if held.everywhere and vanish_nearly(case.system, started):
-                return reported, EVERYWHERE
+                return reported, Extent(True)
             continue
         of_forces = depends_on(scalar, case.system.symbols.a)  # equations of motion hold in every piece
         found = combination(case.system, started, (), within=not of_forces)
@@ -154,7 +154,7 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> t
             return reported, held
         if found.held and (both := held & found.held):
             return reported, both
-    return "", NOWHERE
+    return "", Extent(False)
 
 
 def while_(held: Extent) -> str:
@@ -264,13 +264,13 @@ def stays_constant(case: Case, scalar: Scalar) -> Extent:
     """The pieces in which a scalar with speeds in it is a first integral."""
     speeds = case.system.symbols.u
     if not depends_on(scalar, speeds) or is_zero_everywhere(case.system, *gradient(scalar, speeds)).holds:
-        return NOWHERE
+        return Extent(False)
     try:
         (rate,) = case.system.scope.with_accelerations((scalar,))
     except DerivationError:
-        return NOWHERE
+        return Extent(False)
     follows = case.follows(rate, within=True)
-    return EVERYWHERE if follows.holds else follows.held
+    return Extent(True) if follows.holds else follows.held
 
 
 # -- what the file has beside its symbols --------------------------------------------------------------
@@ -330,7 +330,7 @@ class HoldsWith:
         from_start: "the motion from the start, with " where it does in that motion alone, else "".
     """
 
-    held: Extent = EVERYWHERE
+    held: Extent = Extent(True)
     from_start: str = ""
 
 
@@ -352,8 +352,8 @@ def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scal
     if rows and linear:
         found = combination(case.system, row, own, closing, within=kind == "rate")
         if found.holds or found.held:
-            return HoldsWith(EVERYWHERE if found.holds else found.held)
-    held = _by_integrals(case, scalar, known)[1] if kind in ("motion", "rate") else NOWHERE
+            return HoldsWith(Extent(True) if found.holds else found.held)
+    held = _by_integrals(case, scalar, known)[1] if kind in ("motion", "rate") else Extent(False)
     if held.everywhere or (held and kind not in EVERY_PIECE):
         return HoldsWith(held, FROM_START)
     if kind not in ("law", "energy") or not case.start or not depends_on(scalar, case.system.symbols.u):
@@ -538,7 +538,7 @@ class Course:
     left: ScalarRow
     holds: bool | None
     begins: bool | None
-    held: Extent = EVERYWHERE
+    held: Extent = Extent(True)
     values: Mapping[Node, Scalar] = field(default_factory=dict)
 
 

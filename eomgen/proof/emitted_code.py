@@ -22,7 +22,7 @@ from eomgen.codegen import Role, Written
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, accelerations_at, free_rates
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import instant_of, with_inputs
@@ -192,7 +192,7 @@ def _held(system: System, given: State) -> State | None:
     if found is None or system.free is None or system.declared:
         return None if found is None else Closure(system.constraints).with_speeds(found)
     free = system.free
-    rates = evaluate(free_rates(system, free), found, fifty_digits())
+    rates = evaluate(system.free_rates(free), found, fifty_digits())
     return Closure(free.constraints).with_speeds(found | dict(zip(free.scope.symbols.u, rates, strict=True)))
 
 
@@ -458,8 +458,8 @@ class Judged:
             NoValue: redundant constraints contradict one another at the state.
         """
         self.motion.numbers(at).refuse_contradiction()
-        found = accelerations_at(self.motion.equations, self.motion.values(at))
-        return dict(zip(self.motion.equations.symbols.a, found.tolist(), strict=True))
+        found = map(float, exact_accelerations(self.motion.equations, self.motion.values(at)))
+        return dict(zip(self.motion.equations.symbols.a, found, strict=True))
 
     def _inverse(self, code: Code, at: Iterable[TriedState], name: str) -> Check:
         """Check of tau as forces and inputs: M a - J^T lam = forcing(tau) + columns tau, with J a + gamma = 0."""

@@ -24,7 +24,7 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
-from eomgen.mechanics.dynamics import System, free_rates
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import (
     Balance,
     Effect,
@@ -93,7 +93,7 @@ def demand_of(system: System, state: State, h: Any = STEP) -> Demand:
     free, u = system.free, system.scope.symbols.u
     found = _demand(free, _with_free_motion(system, free, state, h), h)
     shares = tuple(system.scope.graph.symbol(f"(r{k})") for k in range(len(found.forces)))
-    rows = pullback(free_rates(system, free), shares, u)
+    rows = pullback(system.free_rates(free), shares, u)
     forces = evaluate(rows, state | dict(zip(shares, found.forces, strict=True)), fifty_digits())
     slopes = evaluate([x for row in rows for x in gradient(row, shares)], state, fifty_digits())
     steepest = max(map(abs, slopes), default=0)  # near a dead centre dependent rates are many times those of the speeds
@@ -254,7 +254,7 @@ def _allowed(J: np.ndarray, regular: float) -> np.ndarray:
 
 def _with_free_motion(system: System, free: System, state: State, h: Any = STEP) -> State:
     """The state of the free system: its speeds and accelerations, and a lam of every row that determines a rate."""
-    speeds, a = _Bodies(system, state, h).along_motion(free_rates(system, free))
+    speeds, a = _Bodies(system, state, h).along_motion(system.free_rates(free))
     symbols = free.scope.symbols
     motion = dict(zip(symbols.u, speeds, strict=True)) | dict(zip(symbols.a, a, strict=True))
     pushing = {(row.constraint, row.number) for row in system.constraints.rows if row.eliminates}

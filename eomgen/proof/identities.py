@@ -11,7 +11,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import ALL as FORMULATIONS
-from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, free_rates, inverse_residual
+from eomgen.mechanics.dynamics import LAGRANGE, EquationsOfMotion, System, inverse_residual
 from eomgen.mechanics.free_bodies import with_friction
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.proof.check import Check, checked, unchecked
@@ -177,7 +177,7 @@ def _carried_power(system: System) -> Scalar:
     if system.free is None:
         return 0
     scope, free = system.scope, system.free.scope.symbols.u
-    rates = free_rates(system, system.free)
+    rates = system.free_rates(system.free)
     carried = substituted(rates, dict.fromkeys(scope.symbols.u, 0))
     own = tuple(rate - part for rate, part in zip(rates, carried, strict=True))
     along = {q: rate - bias for q, rate, bias in zip(scope.symbols.q, scope.rates, scope.nu, strict=True)}

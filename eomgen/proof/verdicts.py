@@ -22,7 +22,7 @@ import numpy as np
 from eomgen.codegen import compiled, right_hand_side
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import EquationsOfMotion, free_rates, with_accelerations
+from eomgen.mechanics.dynamics import EquationsOfMotion, with_accelerations
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import start_state
 from eomgen.model import BALANCE, FUNCTIONS
@@ -428,7 +428,7 @@ class Sides:
         along, arithmetic = dict[Node, Any](), fifty_digits()
         assert isinstance(energy, Expression)
         if system is not own:
-            values |= zip(system.symbols.u, evaluate(free_rates(own, system), self._values, arithmetic), strict=True)
+            values |= zip(system.symbols.u, evaluate(own.free_rates(system), self._values, arithmetic), strict=True)
         names = [u.name for u in system.symbols.u]
         if str(by) in names:
             along[system.symbols.u[names.index(str(by))]] = 1

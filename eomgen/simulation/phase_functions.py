@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.codegen import RightHandSide, bordered, compiled, compiled_together, program_of, right_hand_side
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import EquationsOfMotion, refuse_massless, with_accelerations
+from eomgen.mechanics.dynamics import EquationsOfMotion, WellPosed, with_accelerations
 from eomgen.symbolic.expression import Scalar
 
 
@@ -45,7 +45,7 @@ class PhaseFunctions:
 
     def _right_hand_side(self) -> RightHandSide:
         """x', and T and V in addition."""
-        refuse_massless(self.equations)
+        WellPosed(self.equations).refuse_massless()
         program = right_hand_side(with_accelerations(self.equations))
         energies = program_of(
             (self.equations.T, self.equations.V), self.equations.symbols, inputs=self.equations.system.inputs

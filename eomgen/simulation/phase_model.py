@@ -20,10 +20,7 @@ from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
     Valueless,
-    is_conservative,
-    overlarge,
-    valueless,
-    why_not_conservative,
+    WellPosed,
 )
 from eomgen.mechanics.free_bodies import Reactions, equations_of_motion
 from eomgen.mechanics.start import Start, start_of_motion
@@ -151,12 +148,12 @@ class PhaseModel:
         """First quantity without a value in a state, or just after it; None where everything has one."""
         with np.errstate(all="ignore"):
             after = tolerances.COMPUTED * max(1.0, abs(t)) * np.nan_to_num(self.rate(t, x))
-        found = (valueless(self.system, self._values(t, here)) for here in (x, x + after))
+        found = (Valueless.in_state(self.system, self._values(t, here)) for here in (x, x + after))
         return next((each for each in found if each is not None), None)
 
     def overlarge(self, t: float, x: np.ndarray) -> Valueless | None:
         """First quantity that is too large in a state to be calculated with; None where nothing is."""
-        return overlarge(self.system, self._values(t, x))
+        return Valueless.overlarge(self.system, self._values(t, x))
 
     def _values(self, t: float, x: np.ndarray) -> dict[Node, float]:
         symbols = self.system.symbols
@@ -165,7 +162,7 @@ class PhaseModel:
 
     @property
     def conservative(self) -> bool:
-        return bool(self._known("conservative", lambda: is_conservative(self.equations)))
+        return bool(self._known("conservative", lambda: WellPosed(self.equations).is_conservative))
 
     @property
     def declared_equations(self) -> EquationsOfMotion:
@@ -228,7 +225,7 @@ class PhaseModel:
             UsageError: energy need not stay.
         """
         if not self.conservative:
-            what = f"energy is not conserved: {why_not_conservative(self.equations)}"
+            what = f"energy is not conserved: {WellPosed(self.equations).why_not_conservative}"
             raise UsageError(what, fix='take stabilization "projection"')
         places, size = len(self.coordinates), len(self.coordinates) + len(self.speeds)
         energy = float(self.energies(np.array([t]), x[None, :]).sum())

@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Freedom, freedom_of
-from eomgen.mechanics.dynamics import assembled_by_recursion, massless_motions, system_of
+from eomgen.mechanics.dynamics import WellPosed, assembled_by_recursion, system_of
 from eomgen.mechanics.free_bodies import Structure, structure_of
 from eomgen.mechanics.instant import mobility_of
 from eomgen.mechanics.kinematics import ContactModes, SystemScene, motion_of, scope_of
@@ -169,7 +169,7 @@ def _misplaced(model: Model) -> Iterator[Problem]:
 def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:
     """Coordinates that move no mass, or several that move none together."""
     try:
-        return massless_motions(assembled_by_recursion(system_of(model, modes)))
+        return WellPosed(assembled_by_recursion(system_of(model, modes))).massless_motions
     except (DerivationError, ModelError):  # reported by the verbs that need equations of motion
         return ()
 

@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from eomgen.mechanics.dynamics.formulations import free_rates
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.equilibrium import BodyNumbers
 from eomgen.mechanics.kinematics.inertia import SystemInertia
@@ -51,7 +50,7 @@ def free_body_accelerations(system: System, state: State) -> np.ndarray:
 
 def free_speeds(system: System, free: System, state: State) -> State:
     """The speeds of the free system, the dependent ones as they follow."""
-    rates = evaluate(free_rates(system, free), state, fifty_digits())
+    rates = evaluate(system.free_rates(free), state, fifty_digits())
     return dict(zip(free.scope.symbols.u, rates, strict=True))
 
 

@@ -10,7 +10,7 @@ import eomgen
 from eomgen.documents.text import render
 from eomgen.errors import UsageError
 from eomgen.mechanics.dynamics import pieces, wellposed
-from eomgen.mechanics.dynamics.wellposed import is_conservative, where_conservative
+from eomgen.mechanics.dynamics.wellposed import WellPosed
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
 from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.start.exact import declared_start
@@ -119,7 +119,7 @@ def printed(text: str, tmp_path: Path) -> str:
 
 def where(text: str, tmp_path: Path) -> str:
     """Where T + V stays, in words; "everywhere", "nowhere"."""
-    held = where_conservative(eomgen.derive(at(text, tmp_path)).graph)
+    held = WellPosed(eomgen.derive(at(text, tmp_path)).graph).where_conservative
     return "everywhere" if held.everywhere else held.text or "nowhere"
 
 
@@ -229,7 +229,7 @@ def test_the_proof_of_answers_sees_an_energy_that_stays_in_one_piece_alone(reque
     """Planted: conservation is decided at random states; y'^2 = 2 g (1 - y) fails where the floor is touched."""
 
     def at_random(equations, scalars, decide):
-        return pieces.EVERYWHERE if decide(tuple(scalars)) else pieces.NOWHERE
+        return pieces.Extent(True) if decide(tuple(scalars)) else pieces.Extent(False)
 
     monkeypatch.setattr(wellposed, "where_holds", at_random)
     found = eomgen.solve(at(requested, tmp_path))
@@ -257,9 +257,9 @@ def test_what_fails_where_the_motion_starts_is_asked_in_no_other_piece(tmp_path)
     division = pieces.division_of(equations, (F,))
     assert division is pieces.division_of(equations, (2 * F + 1,))
     requested = []
-    assert division.where(lambda piece: requested.append(piece) is not None) == pieces.NOWHERE
+    assert division.where(lambda piece: requested.append(piece) is not None) == pieces.Extent(False)
     assert requested == [division.start]
-    assert division.where(lambda piece: requested.append(piece) is None) == pieces.EVERYWHERE
+    assert division.where(lambda piece: requested.append(piece) is None) == pieces.Extent(True)
     assert set(requested) == set(division.found) and len(division.found) == 2
 
 
@@ -307,7 +307,7 @@ def test_beside_samples_neither_energy_nor_jacobi_s_integral_stays(tmp_path):
     bodies.bead.joint = { kind = "prismatic", on = "arm", axis = [1, 0], displacement = "s" }
     """
     equations = eomgen.derive(at(text, tmp_path))
-    assert energy_integral(equations.graph) == () and not is_conservative(equations.graph)
+    assert energy_integral(equations.graph) == () and not WellPosed(equations.graph).is_conservative
     assert "stays constant" not in render(equations.derivation)
 
 

@@ -206,6 +206,12 @@ class Rank:
             if i not in kept
         )
 
+    def regular(self) -> list[int]:
+        """The constraint rows that do not follow from others."""
+        dropped = {(row.constraint, row.number) for row in self.redundant()}
+        closing = self.constraints.closing
+        return [i for i, row in enumerate(closing) if (row.constraint, row.number) not in dropped]
+
     def rank(self, state: State | None = None) -> int:
         """rank J, how many constraint rows are independent; the state and the errors are those of `redundant`."""
         return len(self.constraints.closing) - len(self.redundant(state))

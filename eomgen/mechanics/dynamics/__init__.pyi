@@ -2,9 +2,6 @@
 
 from eomgen.mechanics.dynamics.accelerations import PullBack as PullBack
 
-# a from M a = forcing + J^T lam, J a + gamma = 0 at a state, right to double precision whatever the condition
-from eomgen.mechanics.dynamics.accelerations import accelerations_at as accelerations_at
-
 # Accelerations with more digits than doubles have: the residual of each solution is solved for again
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations as exact_accelerations
 
@@ -14,23 +11,8 @@ from eomgen.mechanics.dynamics.accelerations import stabilized as stabilized
 # The equations with explicit accelerations, where articulated bodies give them
 from eomgen.mechanics.dynamics.accelerations import with_accelerations as with_accelerations
 
-# (rows, right side) of the equations for a, and lam of the kept rows: {index of the unknown: coefficient}
-from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows as bordered_rows
-
-# a and lam of the bordered equations at once; redundant rows are left out, their lam 0
-from eomgen.mechanics.dynamics.explicit_accelerations import by_determinants as by_determinants
-
-# (a, lam of the kept rows) of the equations, and then what each push, a force along the speeds, adds to them
-from eomgen.mechanics.dynamics.explicit_accelerations import by_factors as by_factors
-
-# a and lam by determinants of entries at their simplest, where constraints hold fixed ratios of rates; else None
-from eomgen.mechanics.dynamics.explicit_accelerations import by_short_rows as by_short_rows
-
-# The constraint rows that do not follow from others
-from eomgen.mechanics.dynamics.explicit_accelerations import regular_rows as regular_rows
-
-# a as functions of q, u, t and inputs; None where they are many, or the equations are singular
-from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations as short_accelerations
+# Accelerations and multipliers of equations of motion as explicit functions
+from eomgen.mechanics.dynamics.explicit_accelerations import Explicit as Explicit
 from eomgen.mechanics.dynamics.formulations import ALL as ALL
 from eomgen.mechanics.dynamics.formulations import LAGRANGE as LAGRANGE
 from eomgen.mechanics.dynamics.formulations import METHODS as METHODS
@@ -40,9 +22,6 @@ from eomgen.mechanics.dynamics.formulations import assembled_by_recursion as ass
 
 # The equations by the way of a method, friction left out
 from eomgen.mechanics.dynamics.formulations import derived_by as derived_by
-
-# The speeds of the free system by those that are left: N u + nu without the driven coordinates
-from eomgen.mechanics.dynamics.formulations import free_rates as free_rates
 
 # (M, c) by derivatives of the kinetic energy
 from eomgen.mechanics.dynamics.formulations import inertia_by_energies as inertia_by_energies
@@ -58,8 +37,6 @@ from eomgen.mechanics.dynamics.formulations import reported_of_nodes as reported
 
 # The model with the balance of every massless node as a constraint, from which its coordinate follows
 from eomgen.mechanics.dynamics.formulations import with_nodes_balanced as with_nodes_balanced
-from eomgen.mechanics.dynamics.pieces import EVERYWHERE as EVERYWHERE
-from eomgen.mechanics.dynamics.pieces import NOWHERE as NOWHERE
 from eomgen.mechanics.dynamics.pieces import SMOOTH as SMOOTH
 
 # Extent of a property: everywhere, under conditions, or nowhere
@@ -92,26 +69,5 @@ from eomgen.mechanics.dynamics.system import system_of as system_of
 # Part of a model that has no value in a state
 from eomgen.mechanics.dynamics.wellposed import Valueless as Valueless
 
-# True if T + V is conserved: nothing moves as prescribed, and Q is -N^T dV/dq alone, in every piece
-from eomgen.mechanics.dynamics.wellposed import is_conservative as is_conservative
-
-# The motions that move no mass; () where every acceleration is determined
-from eomgen.mechanics.dynamics.wellposed import massless_motions as massless_motions
-
-# The largest part of a system in a state, where that is too large to be calculated with; None where none is
-from eomgen.mechanics.dynamics.wellposed import overlarge as overlarge
-
-# Reason why scalars have no finite value, and where; "" where they have one, or need an unknown of the state
-from eomgen.mechanics.dynamics.wellposed import reason_without_value as reason_without_value
-
-# Refuses free coordinates that move no mass, alone or together: they have no acceleration
-from eomgen.mechanics.dynamics.wellposed import refuse_massless as refuse_massless
-
-# The first part of a system that has no finite value in a state; None where each has one
-from eomgen.mechanics.dynamics.wellposed import valueless as valueless
-
-# Extent, in pieces of min, max, abs, sign, cases and samples, in which T + V is conserved
-from eomgen.mechanics.dynamics.wellposed import where_conservative as where_conservative
-
-# Reason in words why T + V is not conserved everywhere; "" where it is
-from eomgen.mechanics.dynamics.wellposed import why_not_conservative as why_not_conservative
+# Properties of equations of motion known before anything moves: conservation of energy, motions without mass
+from eomgen.mechanics.dynamics.wellposed import WellPosed as WellPosed

@@ -43,15 +43,6 @@ BITS = 200  # of whole numbers that stand for numbers of 50 digits
 REFINEMENTS = 40  # each adds the digits that the condition number leaves of 16
 
 
-def accelerations_at(equations: EquationsOfMotion, state: State) -> np.ndarray:
-    """a from M a = forcing + J^T lam, J a + gamma = 0 at a state, right to double precision whatever the condition.
-
-    Raises:
-        NoValue: some motion that the constraints allow moves no mass at the state.
-    """
-    return np.array([float(x) for x in exact_accelerations(equations, state)])
-
-
 def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]:
     """Accelerations with more digits than doubles have: the residual of each solution is solved for again.
 

@@ -63,7 +63,7 @@ def assembled_by_energies(system: System) -> EquationsOfMotion:
 def _reduced(system: System, free: System) -> EquationsOfMotion:
     """The free system's M, c and Q along the motions that are left, its speeds in terms of the independent ones."""
     whole = assembled_by_energies(free)
-    rates = free_rates(system, free)
+    rates = system.free_rates(free)
     known = dict(zip(free.scope.symbols.u, rates, strict=True))
     N = jacobian(rates, system.scope.symbols.u)
     bias = system.scope.time_derivative(rates)
@@ -87,7 +87,7 @@ def energies_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     if system.free is None:
         return _along(system, system.symbols.a)
     u, free = system.scope.symbols.u, system.free
-    rates = free_rates(system, free)
+    rates = system.free_rates(free)
     bias = system.scope.time_derivative(rates)
     rows = (*_along(free, tangent(rates, dict(zip(u, system.symbols.a, strict=True)))), _along(free, bias)[0])
     known = dict(zip(free.scope.symbols.u, rates, strict=True))
@@ -105,12 +105,6 @@ def _along(system: System, a: ScalarRow) -> tuple[ScalarRow, ScalarRow, ScalarRo
     held = system.motion.scope.per_speed(gradient(T, scope.symbols.q))
     c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
     return tangent(momenta, dict(zip(u, a, strict=True))), c, system.loads.generalized_forces
-
-
-def free_rates(system: System, free: System) -> ScalarRow:
-    """The speeds of the free system by those that are left: N u + nu without the driven coordinates."""
-    rates = {q.name: rate for q, rate in zip(system.scope.symbols.q, system.scope.rates, strict=True)}
-    return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
 
 
 def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...], ScalarRow]:

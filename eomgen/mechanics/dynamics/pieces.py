@@ -96,7 +96,7 @@ class Extent:
     def __and__(self, other: Extent) -> Extent:
         """Extent in which both properties hold."""
         if not self or not other or (self.everywhere and other.everywhere):
-            return EVERYWHERE if self.everywhere and other.everywhere else NOWHERE
+            return Extent(True) if self.everywhere and other.everywhere else Extent(False)
         return Extent(False, tuple(dict.fromkeys((*self.within, *other.within))))
 
     @property
@@ -108,9 +108,6 @@ class Extent:
     def limits(self) -> tuple[Scalar, ...]:
         """Scalars that are negative inside the pieces in which the property holds."""
         return tuple(x.left - x.right if x.relation == "<=" else x.right - x.left for x in self.within)
-
-
-EVERYWHERE, NOWHERE = Extent(True), Extent(False)
 
 
 @dataclass(frozen=True)
@@ -140,14 +137,14 @@ class Division:
     def where(self, decide: Callable[[Choices], bool]) -> Extent:
         """Extent of a property that is decided piece by piece; nowhere if it fails in the piece of the start."""
         if self.start is not None and not self._decided(decide, self.start):
-            return NOWHERE
+            return Extent(False)
         if not self.found:
-            return NOWHERE
+            return Extent(False)
         good = {piece: piece == self.start or self._decided(decide, piece) for piece in self.found}
         if all(good.values()):
-            return EVERYWHERE
+            return Extent(True)
         if self.start is None:
-            return NOWHERE
+            return Extent(False)
         literals = self._literals([piece for piece, yes in good.items() if not yes])
         within = dict.fromkeys(c for node, choice in literals for c in self.conditions(node, choice))
         return Extent(False, tuple(within))
@@ -223,7 +220,7 @@ def where_holds(
     """Extent of a property of scalars; `decide` is called with the form that they have in each piece."""
     division = division_of(equations, scalars)
     if division is None:
-        return EVERYWHERE if decide(tuple(scalars)) else NOWHERE
+        return Extent(True) if decide(tuple(scalars)) else Extent(False)
     nodes = division.nodes
     return division.where(lambda piece: decide(as_chosen(scalars, nodes, piece)))
 
@@ -232,7 +229,7 @@ def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
     """Extent in which a function of the motion does not jump: everywhere, or the piece of the start alone."""
     division = division_of(equations, (x,))
     if division is None:
-        return EVERYWHERE
+        return Extent(True)
     moving, near = moving_symbols(equations.system), of_50_digits(tolerances.DIFFERENCE_AT_50)
     for switch in switches_of((x,), moving):
         for state in division.found.values():
@@ -244,7 +241,7 @@ def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
                         return division.where(lambda piece: piece == division.start)
             except (NoValue, ZeroDivisionError):
                 continue
-    return EVERYWHERE
+    return Extent(True)
 
 
 @dataclass(frozen=True)

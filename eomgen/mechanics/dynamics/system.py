@@ -101,6 +101,11 @@ class System:
         lam = tuple(symbols.graph.symbol(row.label) for row in self.constraints.closing)
         return replace(symbols, lam=lam)
 
+    def free_rates(self, free: System) -> ScalarRow:
+        """The speeds of the free system by those that are left: N u + nu without the driven coordinates."""
+        rates = {q.name: rate for q, rate in zip(self.scope.symbols.q, self.scope.rates, strict=True)}
+        return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
+
 
 def system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None

@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
-from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
+from eomgen.mechanics.dynamics.pieces import Extent, where_continuous, where_holds
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.state import Doubles
@@ -28,61 +28,71 @@ from eomgen.symbolic.print import text_size, to_text
 LONG = 120  # characters of a balance that is printed
 
 
-def is_conservative(equations: EquationsOfMotion) -> bool:
-    """True if T + V is conserved: nothing moves as prescribed, and Q is -N^T dV/dq alone, in every piece."""
-    return where_conservative(equations).everywhere
+@dataclass(frozen=True)
+class WellPosed:
+    """Properties of equations of motion known before anything moves: conservation of energy, motions without mass."""
 
+    equations: EquationsOfMotion
 
-def where_conservative(equations: EquationsOfMotion) -> Extent:
-    """Extent, in pieces of min, max, abs, sign, cases and samples, in which T + V is conserved."""
-    t = equations.symbols.t
-    by_itself = (*equations.nu, *equations.sigma)
-    if any(not is_zero(x) for x in by_itself) or depends_on(equations.V, (t,)) or depends_on(equations.T, (t,)):
-        return NOWHERE
-    elastic = equations.system.motion.scope.from_potential(equations.V)
-    if not elastic:
-        return EVERYWHERE
-    n = len(elastic)
-    return where_continuous(equations, equations.V) & where_holds(
-        equations,
-        (*equations.Q, *elastic),
-        lambda x: equal_at_random_states(zip(x[:n], x[n:], strict=True)).equal,
-    )
+    @property
+    def is_conservative(self) -> bool:
+        """True if T + V is conserved: nothing moves as prescribed, and Q is -N^T dV/dq alone, in every piece."""
+        return self.where_conservative.everywhere
 
+    @property
+    def where_conservative(self) -> Extent:
+        """Extent, in pieces of min, max, abs, sign, cases and samples, in which T + V is conserved."""
+        t = self.equations.symbols.t
+        by_itself = (*self.equations.nu, *self.equations.sigma)
+        if (
+            any(not is_zero(x) for x in by_itself)
+            or depends_on(self.equations.V, (t,))
+            or depends_on(self.equations.T, (t,))
+        ):
+            return Extent(False)
+        elastic = self.equations.system.motion.scope.from_potential(self.equations.V)
+        if not elastic:
+            return Extent(True)
+        n = len(elastic)
+        return where_continuous(self.equations, self.equations.V) & where_holds(
+            self.equations,
+            (*self.equations.Q, *elastic),
+            lambda x: equal_at_random_states(zip(x[:n], x[n:], strict=True)).equal,
+        )
 
-def why_not_conservative(equations: EquationsOfMotion) -> str:
-    """Reason in words why T + V is not conserved everywhere; "" where it is."""
-    held = where_conservative(equations)
-    if held.everywhere:
-        return ""
-    if held:
-        return f"T + V stays constant only while {held.text}"
-    model, loads = equations.system.scope.model, equations.system.loads
-    carried = [f"'{name}' moves by itself" for name, part in model.coordinates.items() if part.driven]
-    pushed = [f"'{each.name}' has no potential" for each in loads.applied if each.potential is None and each.loads]
-    turned = [f"something drives or brakes the joint of '{e.body}'" for e in loads.efforts if not is_zero(e.drive)]
-    rubbed = ["contacts rub"] if equations.friction else []
-    rows = zip(equations.system.constraints.closing, equations.sigma, strict=True)
-    moving = [f"'{row.constraint}' moves by itself" for row, sigma in rows if not is_zero(sigma)]
-    found = tuple(dict.fromkeys((*carried, *pushed, *turned, *rubbed, *moving)))
-    return ", ".join(found) or "something drives, brakes or carries the model"
+    @property
+    def why_not_conservative(self) -> str:
+        """Reason in words why T + V is not conserved everywhere; "" where it is."""
+        held = self.where_conservative
+        if held.everywhere:
+            return ""
+        if held:
+            return f"T + V stays constant only while {held.text}"
+        model, loads = self.equations.system.scope.model, self.equations.system.loads
+        carried = [f"'{name}' moves by itself" for name, part in model.coordinates.items() if part.driven]
+        pushed = [f"'{each.name}' has no potential" for each in loads.applied if each.potential is None and each.loads]
+        turned = [f"something drives or brakes the joint of '{e.body}'" for e in loads.efforts if not is_zero(e.drive)]
+        rubbed = ["contacts rub"] if self.equations.friction else []
+        rows = zip(self.equations.system.constraints.closing, self.equations.sigma, strict=True)
+        moving = [f"'{row.constraint}' moves by itself" for row, sigma in rows if not is_zero(sigma)]
+        found = tuple(dict.fromkeys((*carried, *pushed, *turned, *rubbed, *moving)))
+        return ", ".join(found) or "something drives, brakes or carries the model"
 
+    def refuse_massless(self) -> None:
+        """Refuses free coordinates that move no mass, alone or together: they have no acceleration.
 
-def refuse_massless(equations: EquationsOfMotion) -> None:
-    """Refuses free coordinates that move no mass, alone or together: they have no acceleration.
+        Raises:
+            ModelError: naming every such coordinate, or the body that can turn idly.
+        """
+        if problems := self.massless_motions:
+            raise ModelError(problems)
 
-    Raises:
-        ModelError: naming every such coordinate, or the body that can turn idly.
-    """
-    if problems := massless_motions(equations):
-        raise ModelError(problems)
-
-
-def massless_motions(equations: EquationsOfMotion) -> tuple[Problem, ...]:
-    """The motions that move no mass; () where every acceleration is determined."""
-    held = [any(not is_zero(row[k]) for row in equations.J) for k in range(len(equations.M))]
-    moves_nothing = [k for k in range(len(held)) if is_zero(equations.M[k][k]) and not held[k]]
-    return tuple(_massless(equations, k) for k in moves_nothing) or _idle(equations)
+    @property
+    def massless_motions(self) -> tuple[Problem, ...]:
+        """The motions that move no mass; () where every acceleration is determined."""
+        held = [any(not is_zero(row[k]) for row in self.equations.J) for k in range(len(self.equations.M))]
+        moves_nothing = [k for k in range(len(held)) if is_zero(self.equations.M[k][k]) and not held[k]]
+        return tuple(_massless(self.equations, k) for k in moves_nothing) or _idle(self.equations)
 
 
 def _massless(equations: EquationsOfMotion, k: int) -> Problem:
@@ -218,19 +228,49 @@ class Valueless:
     where: str
     what: str
 
+    @staticmethod
+    def in_state(system: System, values: Mapping[Node, float]) -> Valueless | None:
+        """The first part of a system that has no finite value in a state; None where each has one.
 
-def valueless(system: System, values: Mapping[Node, float]) -> Valueless | None:
-    """The first part of a system that has no finite value in a state; None where each has one.
+        Args:
+            values: of t, q, u and the parameters.
+        """
+        for where, name, part in _parts(system):
+            for scalar in _scalars(part):
+                reason = Valueless.reason(scalar, values)
+                if reason:
+                    return Valueless(where, f"{name} {reason}{_slack_at_zero(system, where, values)}")
+        return None
 
-    Args:
-        values: of t, q, u and the parameters.
-    """
-    for where, name, part in _parts(system):
-        for scalar in _scalars(part):
-            reason = reason_without_value(scalar, values)
-            if reason:
-                return Valueless(where, f"{name} {reason}{_slack_at_zero(system, where, values)}")
-    return None
+    @staticmethod
+    def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
+        """The largest part of a system in a state, where it is too large to be calculated with; None where none is."""
+        sizes = [(_size(part, values), where, name) for where, name, part in _parts(system)]
+        size, where, name = max(sizes, default=(0.0, "", ""))
+        if not tolerances.LARGEST_SQUARED < size < math.inf:
+            return None
+        what = f"{name} is of the size {size:.3g} there, beyond what doubles can follow; give it a smaller value"
+        return Valueless(where, what)
+
+    @staticmethod
+    def reason(scalar: Scalar, values: Mapping[Node, float]) -> str:
+        """Reason why a scalar has no finite value, and where; "" where it has one, or needs what is not known."""
+        symbols = symbols_of((scalar,))
+        if not all(symbol in values for symbol in symbols):
+            return ""
+        nodes = order((scalar,))
+        known = dict(zip(nodes, evaluate(nodes, values, FLOAT), strict=True))
+        culprit = next((node for node in nodes if not math.isfinite(known[node])), None)
+        if culprit is None or culprit in values:  # a state that is no number is nobody's here
+            return ""
+        operands = [known[a] if type(a) is Node else float(a) for a in culprit.args]
+        reason = REASONS.get(culprit.op, "has no finite value")
+        reason = "is 0/0" if culprit.op == "div" and not any(operands) else reason
+        held = symbols_of((culprit,))
+        state = [symbol for symbol in held if not symbol.graph.is_constant(symbol)] or held
+        return (
+            f"{reason} at {', '.join(f'{symbol.name} = {values[symbol]:.6g}' for symbol in state)}" if state else reason
+        )
 
 
 def _slack_at_zero(system: System, where: str, values: Mapping[Node, float]) -> str:
@@ -248,16 +288,6 @@ def _slack_at_zero(system: System, where: str, values: Mapping[Node, float]) -> 
         return ""
     zero = evaluate((length,), values, FLOAT)[0] == 0
     return " (its natural length is a parameter that is 0: write length = 0, and it has a value there)" if zero else ""
-
-
-def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
-    """The largest part of a system in a state, where that is too large to be calculated with; None where none is."""
-    sizes = [(_size(part, values), where, name) for where, name, part in _parts(system)]
-    size, where, name = max(sizes, default=(0.0, "", ""))
-    if not tolerances.LARGEST_SQUARED < size < math.inf:
-        return None
-    what = f"{name} is of the size {size:.3g} there, beyond what doubles can follow; give it a smaller value"
-    return Valueless(where, what)
 
 
 def _size(part: Any, values: Mapping[Node, float]) -> float:
@@ -288,21 +318,3 @@ def _scalars(part: Any) -> Iterator[Scalar]:
     elif is_dataclass(part):
         for field in fields(part):
             yield from _scalars(getattr(part, field.name))
-
-
-def reason_without_value(scalar: Scalar, values: Mapping[Node, float]) -> str:
-    """Reason why scalars have no finite value, and where; "" where they have one, or need an unknown of the state."""
-    symbols = symbols_of((scalar,))
-    if not all(symbol in values for symbol in symbols):
-        return ""
-    nodes = order((scalar,))
-    known = dict(zip(nodes, evaluate(nodes, values, FLOAT), strict=True))
-    culprit = next((node for node in nodes if not math.isfinite(known[node])), None)
-    if culprit is None or culprit in values:  # a state that is no number is nobody's here
-        return ""
-    operands = [known[a] if type(a) is Node else float(a) for a in culprit.args]
-    reason = REASONS.get(culprit.op, "has no finite value")
-    reason = "is 0/0" if culprit.op == "div" and not any(operands) else reason
-    held = symbols_of((culprit,))
-    state = [symbol for symbol in held if not symbol.graph.is_constant(symbol)] or held
-    return f"{reason} at {', '.join(f'{symbol.name} = {values[symbol]:.6g}' for symbol in state)}" if state else reason

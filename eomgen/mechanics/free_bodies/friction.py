@@ -9,15 +9,13 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import holds_identically
+from eomgen.mechanics.constraints import Rank, holds_identically
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
+    Explicit,
     System,
+    WellPosed,
     assembled_by_recursion,
-    bordered_rows,
-    by_factors,
-    refuse_massless,
-    regular_rows,
 )
 from eomgen.mechanics.free_bodies.balance import Balance, balance_of
 from eomgen.mechanics.free_bodies.solution import (
@@ -239,7 +237,7 @@ class _WithFriction:
 
     @cached_property
     def _kept(self) -> list[int]:
-        return regular_rows(self.equations.system)
+        return Rank(self.equations.system.constraints).regular()
 
     @cached_property
     def _values(self) -> ScalarRow:
@@ -254,12 +252,12 @@ class _WithFriction:
         try:
             return tuple(_solved(self.equations.system, *self._bordered()))
         except DerivationError:
-            refuse_massless(self.equations)
+            WellPosed(self.equations).refuse_massless()
             raise
 
     def _bordered(self) -> tuple[list[dict[int, Scalar]], list[Scalar]]:
         """(rows, right side) for a, lam and N at once."""
-        rows, right = bordered_rows(self._loaded, self._kept)
+        rows, right = Explicit(self._loaded).bordered(self._kept)
         n, first = len(self.equations.M), len(right)
         for k, contact in enumerate(self._single):
             multiplier = self._multiplier(contact.component, contact.name)
@@ -274,9 +272,9 @@ class _WithFriction:
     def _by_factors(self) -> ScalarRow:
         """Solution for many unknowns: a and lam for each N by the factors of M and J M^-1 J^T, then N alone."""
         try:
-            parts = by_factors(self._loaded, self._kept, [contact.force for contact in self._single])
+            parts = Explicit(self._loaded).by_factors(self._kept, [contact.force for contact in self._single])
         except DerivationError:
-            refuse_massless(self.equations)
+            WellPosed(self.equations).refuse_massless()
             raise
         columns = [[*a, *lam] for a, lam in parts]
         first, rows, right = len(columns[0]), [], []

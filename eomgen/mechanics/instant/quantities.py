@@ -8,7 +8,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import System, free_rates
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, Reactions, drive, multiplier, reactions_of, refuse_placeless
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
@@ -364,7 +364,7 @@ class Quantities:
         """A scalar of the system over the rates in the speeds of this one."""
         if system is self.system:
             return scalar
-        rates = free_rates(self.system, system)
+        rates = self.system.free_rates(system)
         return substituted((scalar,), dict(zip(system.symbols.u, rates, strict=True)))[0]
 
 

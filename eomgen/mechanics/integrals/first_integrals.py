@@ -11,13 +11,11 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure, hold_identically
 from eomgen.mechanics.dynamics import (
-    EVERYWHERE,
-    NOWHERE,
     EquationsOfMotion,
     Extent,
     System,
+    WellPosed,
     division_of,
-    where_conservative,
 )
 from eomgen.mechanics.kinematics import GROUND, SystemInertia, integral_from_zero
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce
@@ -83,7 +81,7 @@ class Integral:
     name: str
     expression: Scalar
     coordinate: str = ""
-    held: Extent = EVERYWHERE
+    held: Extent = Extent(True)
 
 
 def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
@@ -96,7 +94,7 @@ def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
         return ()
     within: list[Integral] = []
     for V in (equations.V, equations.V - work_of_constant_forces(equations.system)):
-        held = where_conservative(replace(equations, V=V))
+        held = WellPosed(replace(equations, V=V)).where_conservative
         if held.everywhere:
             return (Integral("energy", equations.T + V),)
         if held:
@@ -112,7 +110,7 @@ def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
 
 def where_momenta_hold(equations: EquationsOfMotion) -> Extent:
     """Extent in which all conserved momenta are constant; results that follow from them hold there."""
-    held = EVERYWHERE
+    held = Extent(True)
     for each in momentum_integrals(equations):
         if not depends_on(each.expression, (equations.symbols.t,)):
             held = held & each.held
@@ -179,7 +177,7 @@ def _of_time_alone(
     whole = [None if holds_op(rate, *PIECEWISE) and depends_on(rate, others) else rate for rate in rates]
     smooth = iter(_alone_at_all(equations.system, [rate for rate in whole if rate is not None], others))
     return [
-        _in_pieces(equations, rate, others) if same is None else (next(smooth), EVERYWHERE)
+        _in_pieces(equations, rate, others) if same is None else (next(smooth), Extent(True))
         for rate, same in zip(rates, whole, strict=True)
     ]
 
@@ -188,9 +186,9 @@ def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node
     """A rate that has pieces as it is in that of the start, where it depends on none of the others there."""
     division = division_of(equations, (rate,))
     if division is None:
-        return _alone_at_all(equations.system, (rate,), others)[0], EVERYWHERE
+        return _alone_at_all(equations.system, (rate,), others)[0], Extent(True)
     if division.start is None:
-        return None, NOWHERE
+        return None, Extent(False)
 
     def alone(piece: Choices) -> Scalar | None:
         return _alone_at_all(equations.system, as_chosen((rate,), division.nodes, piece), others)[0]
@@ -198,16 +196,16 @@ def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node
     try:
         begun = alone(division.start)
     except DerivationError:  # a division by zero
-        return None, NOWHERE
+        return None, Extent(False)
     if begun is None:
-        return None, NOWHERE
+        return None, Extent(False)
 
     def stays(piece: Choices) -> bool:
         other = alone(piece)
         return other is not None and equal_at_random_states([(other, begun)]).equal
 
     held = division.where(stays)
-    return (begun, held) if held else (None, NOWHERE)
+    return (begun, held) if held else (None, Extent(False))
 
 
 def _alone_at_all(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
@@ -284,18 +282,18 @@ def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> 
 def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Extent, ...]:
     """Extent in which each function of q, u and t is constant along every motion."""
     if equations.J or equations.friction or not equations.M:
-        return (NOWHERE,) * len(functions)
+        return (Extent(False),) * len(functions)
     try:
         drifts = equations.system.scope.time_derivative(tuple(functions))
     except DerivationError:  # an input, which a caller may replace
-        return (NOWHERE,) * len(functions)
+        return (Extent(False),) * len(functions)
     slopes = [gradient(f, equations.symbols.u) for f in functions]
     rows = [[*row, force] for row, force in zip(equations.M, equations.forcing, strict=True)]
     requested = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
     flat = [x for row in (*rows, *requested) for x in row]
     division = division_of(equations, flat)
     if division is None:
-        return tuple(EVERYWHERE if yes else NOWHERE for yes in _following(rows, requested))
+        return tuple(Extent(True) if yes else Extent(False) for yes in _following(rows, requested))
     known: dict[Choices, tuple[bool, ...]] = {}
 
     def found(piece: Choices) -> tuple[bool, ...]:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
-from eomgen.mechanics.dynamics import EVERYWHERE, EquationsOfMotion, Extent, System
+from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System
 from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals, where_momenta_hold
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.kinematics import primitive
@@ -132,7 +132,7 @@ class FreeSpeed:
             square = self._square_by_path()
             if square is not None:
                 root = function("sqrt", self._simple(substituted((square,), self.at)[0]))
-                return self._sense(self._speed) * root, EVERYWHERE
+                return self._sense(self._speed) * root, Extent(True)
         for energy in energies:
             difference = energy.expression - value_at_start(energy.expression, self.start, self.equations.symbols)
             return self._root_of_energy(substituted((difference,), self.relations.speeds)[0]), energy.held

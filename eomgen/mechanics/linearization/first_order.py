@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, refuse_massless
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, WellPosed
 from eomgen.mechanics.free_bodies import equations_of_motion
 from eomgen.mechanics.integrals import position_equations
 from eomgen.mechanics.linearization.reference import ReferenceMotion
@@ -135,7 +135,7 @@ def first_order_of(system: System) -> FirstOrder:
     relations = [x for x in position_equations(system, scope.start_values()) if depends_on(x, scope.symbols.q)]
     relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
     equations = equations_of_motion(system)
-    refuse_massless(equations)
+    WellPosed(equations).refuse_massless()
     return FirstOrder(equations, tuple(relations))
 
 

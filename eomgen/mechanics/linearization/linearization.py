@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import fork_at, refuse_undetermined
-from eomgen.mechanics.dynamics import System, valueless
+from eomgen.mechanics.dynamics import System, Valueless
 from eomgen.mechanics.equilibrium import standing_system, states_beside
 from eomgen.mechanics.free_bodies import frictions
 from eomgen.mechanics.kinematics import Located
@@ -278,7 +278,7 @@ def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) ->
 def _without_value(reference: ReferenceMotion) -> DerivationError:
     solved, value = reference.system.declared, Numbers(reference.numbers).of
     lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= tolerances.REGULAR]
-    part = None if lost else valueless(reference.system, {x: float(y) for x, y in reference.numbers.items()})
+    part = None if lost else Valueless.in_state(reference.system, {x: float(y) for x, y in reference.numbers.items()})
     if part is not None:
         fix = "let what acts be regular there, or start elsewhere"
         return DerivationError(f"{part.what}, the place of reference", part.where, fix)

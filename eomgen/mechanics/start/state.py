@@ -28,7 +28,7 @@ from eomgen.mechanics.constraints import (
     tiers_of,
     with_gaps_closed,
 )
-from eomgen.mechanics.dynamics import System, mass, reason_without_value
+from eomgen.mechanics.dynamics import System, Valueless, mass
 from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model import (
     Model,
@@ -401,7 +401,7 @@ def refuse_open_gaps(system: System, state: State) -> None:
 
 def _lacking(gap: Scalar, state: State) -> str:
     """Reason why a gap has no value: " is 0/0 at x = 0, where it starts"."""
-    found = reason_without_value(gap, {node: float(x) for node, x in state.items()})
+    found = Valueless.reason(gap, {node: float(x) for node, x in state.items()})
     return f"{found}, where it starts" if found else ""
 
 
