@@ -12,7 +12,7 @@ from pathlib import Path
 
 from eomgen.errors import EomgenError
 from eomgen.model.reader import model_at
-from eomgen.verbs.report import report
+from eomgen.page.report import report
 
 MODELS = Path(__file__).parent.parent / "models"
 LIMITS = {"space": 700, "plane": 400}  # KB

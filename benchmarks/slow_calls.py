@@ -57,8 +57,8 @@ def call(verb: str, model: Path, place: Path) -> list[str]:
 def main(verbs: list[str], resumed: Path | None) -> None:
     os.environ["EOMGEN_FRESH"] = "1"
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    import eomgen.page.report
     import eomgen.verbs.derive
-    import eomgen.verbs.report
     import eomgen.verbs.simulate
     import eomgen.verbs.solve  # noqa: F401  # what every call would import
 

@@ -3,11 +3,11 @@
 from eomgen.codegen.programs import InverseDynamics as InverseDynamics
 from eomgen.documents.at_rest.result import Statics as Statics
 from eomgen.documents.at_rest.result import statics as statics
-from eomgen.documents.equilibrium_picture import rest_picture as rest_picture
 from eomgen.documents.figures import run_picture as run_picture
 from eomgen.documents.kinematics.result import Kinematics as Kinematics
 from eomgen.documents.mass_properties.result import Inertia as Inertia
 from eomgen.documents.mass_properties.result import inertia as inertia
+from eomgen.documents.moving_picture import rest_picture as rest_picture
 from eomgen.documents.small_motions.result import Linearization as Linearization
 from eomgen.documents.small_motions.result import linearize as linearize
 from eomgen.equations import Equations as Equations
@@ -50,9 +50,12 @@ from eomgen.model.parts import Unknown as Unknown
 from eomgen.model.reader import load as load
 from eomgen.model.reader import loads as loads
 from eomgen.model.sampled_laws import samples as samples
+from eomgen.page.animation import animate as animate
+from eomgen.page.animation import virtual_displacement as virtual_displacement
 from eomgen.page.contents import Report as Report
 from eomgen.page.playing import Played as Played
 from eomgen.page.playing import play as play
+from eomgen.page.report import report as report
 from eomgen.pipeline import derive as derive
 from eomgen.pipeline import inverse_dynamics as inverse_dynamics
 from eomgen.pipeline import simulate as simulate
@@ -76,9 +79,6 @@ from eomgen.sweeps.runs_of_a_plan import Sweep as Sweep
 from eomgen.sweeps.runs_of_a_plan import sweep as sweep
 from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
 from eomgen.symbolic.numeric.work import patience as patience
-from eomgen.verbs.animate import animate as animate
-from eomgen.verbs.animate import virtual_displacement as virtual_displacement
 from eomgen.verbs.reactions import FoundReactions as FoundReactions
 from eomgen.verbs.reactions import reactions as reactions
-from eomgen.verbs.report import report as report
 from eomgen.version import __version__ as __version__

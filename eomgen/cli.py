@@ -111,7 +111,7 @@ def export_command(model: str, wants_json: bool, output: str, strict: bool, **op
     Links on hinges, slides and free joints, inertias, dampers, motors, coordinates that follow others. What URDF cannot
     say is listed.
     """
-    from eomgen.verbs import export_document
+    from eomgen.exported import export_document
 
     refuse_other_endings(output, (".urdf",), f"'{output}' is no name for a robot: the ending is .urdf")
     with reading(model) as source:

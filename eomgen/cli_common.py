@@ -290,7 +290,7 @@ def requested_document(
     try:
         document = made(valued.model, **rest, **more)
     except OpenConstraints as error:
-        from eomgen.verbs import named_open
+        from eomgen.documents import named_open
 
         raise named_open(valued.model, error) from error
     document = replace(document, taken=(*valued.taken, *document.taken))
@@ -301,7 +301,7 @@ def write_result(
     found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
 ) -> int:
     """Writes the result of a verb, at the start or elsewhere, with its plot and its proof where these are requested."""
-    from eomgen.verbs import shown, with_start_reported
+    from eomgen.documents import shown, with_start_reported
 
     def made(declared: Model, **requested: Any) -> Document:
         with growing():

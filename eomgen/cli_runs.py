@@ -180,8 +180,8 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     DIR/table.csv, a failed one with its message. The same command continues where it was stopped. `--replay RUN DIR`
     repeats one run.
     """
-    from eomgen.sweeps import Stepped
-    from eomgen.verbs import SweepRequested, replay_document, sweep_document
+    from eomgen.sweeps import Stepped, replay_document
+    from eomgen.verbs import SweepRequested, sweep_document
 
     form, drawn = form_requested(wants_json, None), bool(options["random"])
     refuse_idle(
@@ -225,7 +225,7 @@ def identify_command(**options: Any) -> int:
     The base parameters by least squares, with their formulas and deviations; how well the motion identifies them; and
     parameters of bodies of positive density that fit. Without --data, the groups that motions can identify.
     """
-    from eomgen.verbs import identify_document
+    from eomgen.identification import identify_document
 
     return write_requested(identify_document, **options)
 
@@ -248,7 +248,7 @@ def identify_command(**options: Any) -> int:
 @click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Number of frames of a strip.")
 def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
     """Show the motion, small motions, or a virtual displacement."""
-    from eomgen.verbs import Showing, animate_document, refuse_ending
+    from eomgen.page import Showing, animate_document, refuse_ending
 
     refuse_ending(output)
     ending, swings = Path(output).suffix.lower(), options["modes"] is not None or options["virtual"] is not None
@@ -315,8 +315,8 @@ def codegen_command(
     **options: Any,
 ) -> int:
     """Write equations and reactions as code, with test vectors."""
-    from eomgen.verbs import codegen_document as generated
-    from eomgen.verbs import languages
+    from eomgen.generated import codegen_document as generated
+    from eomgen.generated import languages
 
     if wants_list:
         refuse_beside("--list", ("wants_list", "wants_json", "strict"))
@@ -370,7 +370,7 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
     Sliders for parameters and starts, bodies to drag, plots, energy; it needs no network. Models whose contacts change
     play the recorded run.
     """
-    from eomgen.verbs import play_document
+    from eomgen.page import play_document
 
     refuse_other_endings(output, (".html", ".htm"), f"no page can be written as '{output}'", "the ending is .html")
     with reading(model) as source:
@@ -399,7 +399,7 @@ def report_command(model: str, wants_json: bool, output: str, strict: bool, **op
     Its figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the model. Sections:
     figure data derivation reactions statics kinematics inertia outputs linearize plots motion certificate downloads.
     """
-    from eomgen.verbs import form_of, report_document
+    from eomgen.page import form_of, report_document
 
     form_of(output)  # refused before any work
     with reading(model) as source:

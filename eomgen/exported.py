@@ -9,16 +9,20 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
+from eomgen import files
 from eomgen.codegen import parameter_vector
+from eomgen.documents import Document, Lines, plain_document
 from eomgen.errors import DerivationError, visible
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import GROUND, BodyLink
-from eomgen.model import ModelOrPath, UniformField
+from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
+from eomgen.proof import imported_otherwise, unsaid_otherwise
 from eomgen.robots import UNLIMITED, LeftOut, LegalNames, remarked
 from eomgen.symbolic.expression import (
     Pose,
@@ -301,3 +305,23 @@ def _angles(R: Sequence[float]) -> list[float]:
     roll = math.atan2(R[7], R[8]) if across > tolerances.ROUNDING else 0.0
     s, c = math.sin(roll), math.cos(roll)
     return [roll, pitch, math.atan2(s * R[2] - c * R[1], c * R[4] - s * R[5])]
+
+
+# -------- document -------------------------------------------------------------------------------------------
+# eomgen export: a model as a robot's file of other programs.
+
+
+def export_document(model: Model, *, output: str) -> Document:
+    """The URDF, written, and read again by another program; with the features that URDF lacks.
+
+    Raises:
+        DerivationError: a joint that URDF does not have.
+        WriteFailed: it cannot be written.
+    """
+    found = urdf_of(model)
+    files.write(output, found.text)
+    left_out = [each.as_dict() for each in found.left_out]
+    document = plain_document(model, lambda: {"file": output, "left_out": left_out}, Lines((output,)))
+    left = {each.what: each.where for each in found.left_out}
+    wrong = imported_otherwise(found.text, model) or unsaid_otherwise(found.text, model, left)
+    return replace(document, failed=wrong, notes=tuple(f"left out: {each}" for each in found.left_out))

@@ -26,6 +26,8 @@ from eomgen.documents.moving_picture import FINE, frame_times, mode_movies, movi
 from eomgen.documents.small_motions.result import linearize
 from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.mechanics.dynamics.system import system_of
+from eomgen.page import animation as animate
+from eomgen.page.animation import released
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm
 from eomgen.scene.frames_of_phases import phase_frames
@@ -35,8 +37,6 @@ from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.scene.virtual import SWING, VirtualDisplacement
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.verbs import animate
-from eomgen.verbs.animate import released
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"

@@ -33,9 +33,9 @@ from eomgen.page.formats import CALLS, written_as
 from eomgen.page.html import html_page
 from eomgen.page.packing import packed_columns
 from eomgen.page.paper import UnknownCommand, typst_math, typst_text
+from eomgen.page.report import report, report_document
 from eomgen.proof.check import Certificate, Check
 from eomgen.symbolic.print.names import COMMANDS
-from eomgen.verbs.report import report, report_document
 
 pytestmark = pytest.mark.slow
 

@@ -13,8 +13,8 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.documents.equilibrium_picture import drawing_at_rest
-from eomgen.documents.moving_picture import Movie, movie_of
+from eomgen.documents.moving_picture import Movie, drawing_at_rest, movie_of
+from eomgen.page.animation import movie_read_back
 from eomgen.page.player import (
     PlayedRun,
     PlayerOptions,
@@ -27,7 +27,6 @@ from eomgen.proof.reported_pictures import pictures_reported, states_shown
 from eomgen.scene.frames_of_phases import picture_reported
 from eomgen.scene.making import scene_of
 from eomgen.simulation.result import Trajectory
-from eomgen.verbs.animate import movie_read_back
 from tests.test_shapes import EXAMPLES as SHAPES
 
 MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))

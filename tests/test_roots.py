@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from eomgen.symbolic.exact.book_forms import is_root_of_sum, readable_over, rooted
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.roots import is_root_of_sum, readable_over, rooted
 from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.derivatives import gradient, tangent
 from eomgen.symbolic.expression.formula import cos, sin, sqrt

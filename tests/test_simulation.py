@@ -20,6 +20,7 @@ from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import stabilized
 from eomgen.model.quantities import Unit
+from eomgen.page.animation import Showing, animate_document
 from eomgen.questions.single_run import page_time, run_of_a_page
 from eomgen.questions.single_run import run as run_equations
 from eomgen.simulation.integration import drift_of, integrate
@@ -27,7 +28,6 @@ from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_model import slope_of
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.solvers import METHODS
-from eomgen.verbs.animate import Showing, animate_document
 
 pytestmark = pytest.mark.slow
 

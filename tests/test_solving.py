@@ -8,8 +8,7 @@ from random import Random
 import pytest
 from each import each
 
-from eomgen.symbolic.exact.normal_forms import simplest
-from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.exact.normal_forms import sign_of_terms, simplest
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar

@@ -33,11 +33,11 @@ from eomgen.questions.of_a_run import WholeRun
 from eomgen.sweeps import workers
 from eomgen.sweeps import workers as kernel
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
+from eomgen.sweeps.documents import _answers_proven
 from eomgen.sweeps.runs_of_a_plan import sweep_at
 from eomgen.sweeps.workers import SweepKernel
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.work import check_patience
-from eomgen.verbs.sweep import _answers_proven
 
 ROOT = Path(__file__).parents[1]
 MODELS = ROOT / "models"

@@ -21,7 +21,7 @@ from eomgen.documents import markdown
 from eomgen.documents.document import Document
 from eomgen.page.figure import rest_figure
 from eomgen.page.player import player_page
-from eomgen.verbs.report import Subject
+from eomgen.page.report import Subject
 
 ROOT = Path(__file__).parents[2]
 MODELS = ROOT / "models"

@@ -39,12 +39,6 @@ from eomgen.documents.document import plain_document as plain_document
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
 
-# A scene at the start of its model, with its dimensions
-from eomgen.documents.equilibrium_picture import drawing_at_rest as drawing_at_rest
-
-# The scene of a model at its start; a parameter without a value is drawn as 1
-from eomgen.documents.equilibrium_picture import rest_picture as rest_picture
-
 # of lines of one colour
 from eomgen.documents.figures import KINDS as KINDS
 
@@ -138,6 +132,9 @@ from eomgen.documents.moving_picture import PERIOD as PERIOD
 from eomgen.documents.moving_picture import Movie as Movie
 from eomgen.documents.moving_picture import Progress as Progress
 
+# A scene at the start of its model, with its dimensions
+from eomgen.documents.moving_picture import drawing_at_rest as drawing_at_rest
+
 # The path of ffmpeg: the system's, else that of the package imageio-ffmpeg
 from eomgen.documents.moving_picture import ffmpeg as ffmpeg
 
@@ -162,17 +159,38 @@ from eomgen.documents.moving_picture import on_stderr as on_stderr
 # Refuses frames a second, and a speed, that no moving picture has
 from eomgen.documents.moving_picture import refuse_rates as refuse_rates
 
+# The scene of a model at its start; a parameter without a value is drawn as 1
+from eomgen.documents.moving_picture import rest_picture as rest_picture
+
 # The frames of a movie side by side, with their times, as a PNG
 from eomgen.documents.moving_picture import strip as strip
 
 # A virtual displacement to and fro, once
 from eomgen.documents.moving_picture import virtual_movie as virtual_movie
 
+# Names in a line of text
+from eomgen.documents.proven_documents import listed as listed
+
+# The same error with the constraint that stays open at the start and by how much, where that can be found
+from eomgen.documents.proven_documents import named_open as named_open
+
+# The name that was probably meant, or all that there are
+from eomgen.documents.proven_documents import nearest_name as nearest_name
+
 # The document with the proof of what was found, and of its printed texts; None: none was requested
 from eomgen.documents.proven_documents import proven as proven
 
 # The document with a proof of the page that is made of it, read back, where it has one
 from eomgen.documents.proven_documents import proven_as as proven_as
+
+# Document of a result, with its proof where that is requested; its picture is saved where a file is given
+from eomgen.documents.proven_documents import shown as shown
+
+# The document of a result that needs no start; with a warning where nothing closes the constraints near it
+from eomgen.documents.proven_documents import with_constraints_closed as with_constraints_closed
+
+# The document with a note on the changes where its model could not start as it is written; a warning where
+from eomgen.documents.proven_documents import with_start_reported as with_start_reported
 
 # The reactions of a system with their symbols, or why they cannot be derived
 from eomgen.documents.reaction_steps import letters_of as letters_of

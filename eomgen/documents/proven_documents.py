@@ -1,7 +1,11 @@
-"""A document, the proof of its result -> the document with both, and a proof that it is printed as it was found."""
+"""A document, the proof of its result -> the document with both, and a proof that it is printed as it was found.
+
+A result -> its document, with notes on the changes of its model's start.
+"""
 
 from __future__ import annotations
 
+import difflib
 import math
 import operator
 import re
@@ -9,20 +13,34 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eomgen.documents.document import Document, quantities_of
 from eomgen.documents.read_back import page_read_back
 from eomgen.documents.rendering import drawn
+from eomgen.documents.result import Result
 from eomgen.documents.statements import Equation, Formula, Grid, Law, Listing, Matrix, Quantity, Statement, parts_of
 from eomgen.documents.text import cases_text, cell_text, is_piecewise, side_text
 from eomgen.documents.texts_read import json_read_back, text_read_back
-from eomgen.errors import ExpressionError, NumberBeyond
-from eomgen.model import Unit
+from eomgen.errors import (
+    DerivationError,
+    ExpressionError,
+    ModelError,
+    NumberBeyond,
+    OpenConstraints,
+    Problem,
+)
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.start import start_of_motion
+from eomgen.model import Model, Unit
 from eomgen.proof import Certificate, Check, Tally, differing
+from eomgen.study import study_of
 from eomgen.symbolic.expression import LONGEST, Expression, Graph, Node, Scalar, order, parse, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
+
+if TYPE_CHECKING:
+    from eomgen.simulation import Trajectory
 
 NAME = "formulas, read back as they are printed, are what they stand for"
 HOW = "50 digits"
@@ -258,3 +276,80 @@ def _is_no_number(part: Any) -> bool:
     if isinstance(part, Law):
         part = part.text
     return part in NO_NUMBERS if isinstance(part, str) else isinstance(part, float) and not math.isfinite(part)
+
+
+# -------- start ----------------------------------------------------------------------------------------------
+# Result -> its document, with notes on the changes of its start.
+
+
+def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:
+    """Document of a result, with its proof where that is requested; its picture is saved where a file is given."""
+    panels = () if plot is None else found.picture.saved(plot)
+    certificate = found.certify() + found.drawn_checks(panels) if certify else None
+    document = proven(found.document, certificate)
+    over = getattr(found, "over", None)  # the range of a picture
+    return document if over is None else replace(document, taken=(*document.taken, over.taken))
+
+
+def with_start_reported(document: Document, model: Model, run: Trajectory | None = None) -> Document:
+    """The document with a note on the changes where its model could not start as it is written; a warning where
+    nothing closes its constraints.
+
+    Args:
+        run: the motion that it reports: that nothing moves is a note too.
+    """
+    if run is not None and run.still:
+        document = replace(document, notes=(*document.notes, run.still))
+    if not (model.coordinates and model.constraints):
+        return document
+    try:
+        words = _words_of_start(model)
+    except OpenConstraints as error:
+        return with_open_constraints(document, error)
+    except (DerivationError, ModelError):  # reported by the verb, where it needs a start
+        return document
+    return replace(document, notes=(*document.notes, f"The start was {words}.")) if words else document
+
+
+def with_constraints_closed(document: Document, system: System) -> Document:
+    """The document of a result that needs no start; with a warning where nothing closes the constraints near it."""
+    try:
+        start_of_motion(system)
+    except OpenConstraints as error:
+        return with_open_constraints(document, error)
+    except (DerivationError, ModelError):  # reported by the verbs that need a start
+        pass
+    return document
+
+
+def with_open_constraints(document: Document, error: OpenConstraints) -> Document:
+    """The document with a warning that nothing closes the constraints of its model near the start."""
+    return replace(document, cautions=(*document.cautions, Problem(error.where, error.what, fix=error.fix)))
+
+
+def named_open(model: Model, error: OpenConstraints) -> OpenConstraints:
+    """The same error with the constraint that stays open at the start and by how much, where that can be found."""
+    try:
+        _words_of_start(model)
+    except OpenConstraints as exact:
+        return exact
+    except (DerivationError, ModelError):
+        pass
+    return error
+
+
+def _words_of_start(model: Model) -> str:
+    """The changes by which a model starts otherwise than it is written, "" where there are none."""
+    return start_of_motion(study_of(model).system).words
+
+
+def nearest_name(name: str, names: Iterable[str]) -> str:
+    """The name that was probably meant, or all that there are."""
+    names = list(names)
+    near = difflib.get_close_matches(name, names, n=1)
+    return f"did you mean '{near[0]}'?" if near else f"there are {listed(names)}"
+
+
+def listed(names: Iterable[str]) -> str:
+    """Names in a line of text."""
+    return ", ".join(names) or "none"

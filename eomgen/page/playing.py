@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import cached_property
 from itertools import chain
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.codegen import TestVector, compiled
+from eomgen.documents import Document, Lines, plain_document, proven, with_start_reported
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import with_nodes_balanced
@@ -177,3 +180,35 @@ def slider_ranges(
             found[name] = (low, high)
             taken.append(typed.taken(ends, [first, last], " to ".join))
     return found, tuple(taken)
+
+
+# -------- document -------------------------------------------------------------------------------------------
+# eomgen play: the model alive in a page of its own.
+
+
+def play_document(
+    model: Model,
+    *,
+    output: str,
+    time: float | None,
+    sliders: tuple[str, ...],
+    trail: str,
+    forces: bool,
+    speed: float,
+    certify: bool = True,
+) -> Document:
+    """Writes the page; the document describes its content."""
+    ranges, taken = slider_ranges(model, sliders)
+    options = PlayerOptions(ranges, True, trail, forces, speed)
+    found = played(model, time, options)
+    found.write(output)
+
+    def payload() -> dict[str, Any]:
+        reported = found.played.reported()
+        names = [slider["name"] for slider in reported["sliders"]]
+        return {"name": model.name, "files": [output], "sliders": names, "rests": found.rests or None}
+
+    run = found.played.run
+    document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
+    document = replace(document, taken=taken, notes=tuple(filter(None, (found.rests, found.shorter))))
+    return proven(with_start_reported(document, model, run), found.certify() if certify else None)

@@ -1,25 +1,10 @@
 """Door of the room: what other rooms may import from `eomgen.verbs`."""
 
-# Options of a moving picture
-from eomgen.verbs.animate import Showing as Showing
-
-# Writes the picture; the document describes its content
-from eomgen.verbs.animate import animate_document as animate_document
-
-# Refuses a file that no picture is written into
-from eomgen.verbs.animate import refuse_ending as refuse_ending
-
 # The model with the values that were typed, and their record; the other options, equations in SI
 from eomgen.verbs.assignments import typed as typed
 
 # The model's parts and its degrees of freedom, by rank and by the counting formula
 from eomgen.verbs.check import check_document as check_document
-
-# The right-hand side and the reactions as files that compile as they are; none where their proof fails
-from eomgen.verbs.codegen import codegen_document as codegen_document
-
-# The targets that there are, a line each
-from eomgen.verbs.codegen import languages as languages
 
 # The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`
 from eomgen.verbs.csv_inputs import following as following
@@ -33,12 +18,6 @@ from eomgen.verbs.doctor import doctor_document as doctor_document
 # Name and title of each, a line
 from eomgen.verbs.examples import examples_document as examples_document
 
-# The URDF, written, and read again by another program; with the features that URDF lacks
-from eomgen.verbs.exporting import export_document as export_document
-
-# The parameters that fit a measured motion; without one the groups of them that motions can distinguish
-from eomgen.verbs.identify import identify_document as identify_document
-
 # The model file, written where an output is given; and the parts of the robot's file without a counterpart in it
 from eomgen.verbs.importing import import_document as import_document
 
@@ -51,26 +30,8 @@ from eomgen.verbs.kinematics import kinematics_requested as kinematics_requested
 # A commented starter model NAME.toml, or the example as it is; never over a file that is there
 from eomgen.verbs.new import new_document as new_document
 
-# The same error with the constraint that stays open at the start and by how much, where that can be found
-from eomgen.verbs.outcome import named_open as named_open
-
-# Document of a result, with its proof where that is requested; its picture is saved where a file is given
-from eomgen.verbs.outcome import shown as shown
-
-# The document with a note on the changes where its model could not start as it is written
-from eomgen.verbs.outcome import with_start_reported as with_start_reported
-
-# Writes the page; the document describes its content
-from eomgen.verbs.play import play_document as play_document
-
 # Every reaction, as `reactions` finds it, in words and for machines
 from eomgen.verbs.reactions import reactions_document as reactions_document
-
-# The ending of a report's file
-from eomgen.verbs.report import form_of as form_of
-
-# Writes the report; the document names its files
-from eomgen.verbs.report import report_document as report_document
 
 # The JSON Schema of a model file
 from eomgen.verbs.schema import schema_document as schema_document
@@ -83,9 +44,6 @@ from eomgen.verbs.solve import solve_document as solve_document
 
 # Options of a sweep, as typed
 from eomgen.verbs.sweep import SweepRequested as SweepRequested
-
-# One run of a sweep once more; its results are those of the table, bit for bit
-from eomgen.verbs.sweep import replay_document as replay_document
 
 # The runs that the folder lacks are made; the document states their results
 from eomgen.verbs.sweep import sweep_document as sweep_document

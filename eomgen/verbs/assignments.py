@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import difflib
 import re
 from collections.abc import Iterable, Mapping
 from typing import Any
 
+from eomgen.documents import listed, nearest_name
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model import AtRest, Model, Taken, Valued, equation_typed, with_values
-from eomgen.verbs.outcome import listed
 
 OPTIONS = {"set_": "--set", "start": "--start", "from_rest": "--from-rest", "at": "--at", "until": "--until"}
 OPTIONS |= {"given": "--given"}
@@ -86,10 +85,3 @@ def assignments(given: Iterable[str], example: str) -> list[tuple[str, str]]:
             raise UsageError(f"'{word}' is no assignment", fix=f"write {example}")
         pairs.append((name.strip(), text.strip()))
     return pairs
-
-
-def nearest_name(name: str, names: Iterable[str]) -> str:
-    """The name that was probably meant, or all that there are."""
-    names = list(names)
-    near = difflib.get_close_matches(name, names, n=1)
-    return f"did you mean '{near[0]}'?" if near else f"there are {listed(names)}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from eomgen.documents import Document, Lines, plain_document
+from eomgen.documents import Document, Lines, listed, plain_document
 from eomgen.errors import Problem
 from eomgen.mechanics.constraints import Freedom
 from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
@@ -15,7 +15,6 @@ from eomgen.proof import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
-from eomgen.verbs.outcome import listed
 
 
 def check_document(model: Model) -> Document:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.documents import Document, Grid, Step, proven
+from eomgen.documents import Document, Grid, Step, proven, with_constraints_closed
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
 from eomgen.model import Model, load
-from eomgen.verbs.outcome import with_constraints_closed
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from eomgen.documents import listed
 from eomgen.mechanics.constraints import Freedom, RowName, VelocityRow
 from eomgen.mechanics.start import AssemblyMode, Branches
 from eomgen.model import Model
 from eomgen.symbolic.print import to_text
-from eomgen.verbs.outcome import listed
 
 
 def freedom_lines(model: Model, freedom: Freedom) -> list[str]:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.documents import Kinematics
+from eomgen.documents import Kinematics, nearest_name
 from eomgen.errors import ModelError, UsageError
 from eomgen.model import Model, WrittenEquation
 from eomgen.questions import kinematics as found_in
-from eomgen.verbs.assignments import nearest_name
 
 
 def kinematics_requested(

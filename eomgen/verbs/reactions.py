@@ -21,6 +21,7 @@ from eomgen.documents import (
     Listing,
     Quantity,
     Statement,
+    listed,
     listing_markdown,
     null_space,
     plain_document,
@@ -30,6 +31,7 @@ from eomgen.documents import (
     said,
     sums_of_open,
     why_not_at_rest,
+    with_start_reported,
 )
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
@@ -57,7 +59,6 @@ from eomgen.symbolic.expression import Fraction, parse
 from eomgen.symbolic.numeric import doing, tolerances
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
-from eomgen.verbs.outcome import listed, with_start_reported
 
 NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value

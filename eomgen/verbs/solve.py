@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.documents import Document, proven
+from eomgen.documents import Document, proven, with_start_reported
 from eomgen.model import Model
 from eomgen.questions import solve
-from eomgen.verbs.outcome import with_start_reported
 
 LATE = "there was no time left"
 

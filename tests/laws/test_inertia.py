@@ -533,7 +533,7 @@ def test_what_is_not_known_of_a_body_of_the_plane_is_not_answered():
 
 def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
     """--plot makes a picture; JSON has every result by name; without values nothing is drawn."""
-    from eomgen.verbs.outcome import shown
+    from eomgen.documents.proven_documents import shown
 
     picture = tmp_path / "plate.png"
     found = as_dict(shown(eomgen.inertia(eomgen.Model(**CH13), about="O"), plot=str(picture)))

@@ -10,13 +10,13 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.documents.json_form import as_dict
+from eomgen.documents.proven_documents import shown
 from eomgen.mechanics.instant import kinematic_state as relative_motion
 from eomgen.mechanics.instant import mechanism
 from eomgen.mechanics.kinematics.motion import Motion, VelocityField
 from eomgen.questions import velocities
 from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_requested as verb
-from eomgen.verbs.outcome import shown
 
 pytestmark = pytest.mark.slow
 

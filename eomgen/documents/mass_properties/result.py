@@ -16,7 +16,6 @@ import numpy as np
 
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.drawing import Sketch, draw_model, name_beside
-from eomgen.documents.equilibrium_picture import picture_of_scene
 from eomgen.documents.figures import Picture
 from eomgen.documents.mass_properties.steps import (
     LONGEST,
@@ -37,6 +36,7 @@ from eomgen.documents.mass_properties.steps import (
     together,
 )
 from eomgen.documents.motion_steps import data_step
+from eomgen.documents.moving_picture import picture_of_scene
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Law, Prose, Quantity, Statement, Step, prose
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError

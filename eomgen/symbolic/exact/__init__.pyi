@@ -1,7 +1,19 @@
 """Door of the folder: what other folders may import from `eomgen.symbolic.exact`."""
 
+# Expressions with a symbol for each square root of a sum
+from eomgen.symbolic.exact.book_forms import Rooted as Rooted
+
 # x as the author of a textbook prints it; x itself where that takes more than `limit` products of terms
 from eomgen.symbolic.exact.book_forms import book_form as book_form
+
+# True for sqrt(a + b), not for sqrt(2) and sqrt(x^2)
+from eomgen.symbolic.exact.book_forms import is_root_of_sum as is_root_of_sum
+
+# x multiplied out but for what is divided by the symbols `roots`: k*(1 - l0/r)*(x2 - x1)
+from eomgen.symbolic.exact.book_forms import readable_over as readable_over
+
+# The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r
+from eomgen.symbolic.exact.book_forms import rooted as rooted
 
 # Result of a comparison of pairs of expressions
 from eomgen.symbolic.exact.equality import Equality as Equality
@@ -45,6 +57,9 @@ from eomgen.symbolic.exact.normal_forms import equal as equal
 # x at its simplest; as it came where that is more than `long` characters, and longer than it came
 from eomgen.symbolic.exact.normal_forms import legible as legible
 
+# True if x is positive, or negative, wherever it has a value, for positive constants: M + m*sin(alpha)^2
+from eomgen.symbolic.exact.normal_forms import never_vanishes as never_vanishes
+
 # The normal form of x
 from eomgen.symbolic.exact.normal_forms import normal_form as normal_form
 
@@ -53,6 +68,9 @@ from eomgen.symbolic.exact.normal_forms import readable as readable
 
 # `readable` of several expressions that share their parts; those beyond the limit stay as they are
 from eomgen.symbolic.exact.normal_forms import readable_all as readable_all
+
+# 1 or -1 where all terms of x are positive or all negative, 0 where there are none; None where that is unknown
+from eomgen.symbolic.exact.normal_forms import sign_of_terms as sign_of_terms
 
 # All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2
 from eomgen.symbolic.exact.normal_forms import simple_constants as simple_constants
@@ -80,24 +98,6 @@ from eomgen.symbolic.exact.polynomials import square_root as square_root
 
 # (numerator, denominator) without common factor as polynomials in cosines and sines, in each of their forms
 from eomgen.symbolic.exact.quotient import reduced as reduced
-
-# Expressions with a symbol for each square root of a sum
-from eomgen.symbolic.exact.roots import Rooted as Rooted
-
-# True for sqrt(a + b), not for sqrt(2) and sqrt(x^2)
-from eomgen.symbolic.exact.roots import is_root_of_sum as is_root_of_sum
-
-# x multiplied out but for what is divided by the symbols `roots`: k*(1 - l0/r)*(x2 - x1)
-from eomgen.symbolic.exact.roots import readable_over as readable_over
-
-# The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r
-from eomgen.symbolic.exact.roots import rooted as rooted
-
-# True if x is positive, or negative, wherever it has a value, for positive constants: M + m*sin(alpha)^2
-from eomgen.symbolic.exact.signs import never_vanishes as never_vanishes
-
-# 1 or -1 where all terms of x are positive or all negative, 0 where there are none; None where that is unknown
-from eomgen.symbolic.exact.signs import sign_of_terms as sign_of_terms
 
 # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
 from eomgen.symbolic.exact.sums import BRACKETS as BRACKETS

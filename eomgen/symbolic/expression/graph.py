@@ -19,8 +19,17 @@ from operator import mul
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.angles import circular, inverse_circular
-from eomgen.symbolic.expression.node import Node, Owner, Scalar, argument, collected, is_zero, linear_terms
+from eomgen.symbolic.expression.node import (
+    Node,
+    Owner,
+    Scalar,
+    argument,
+    circular,
+    collected,
+    inverse_circular,
+    is_zero,
+    linear_terms,
+)
 from eomgen.symbolic.expression.numbers import Number, binary_folded_at, exact, exact_power, folded_at, root_of, tidy
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of

@@ -21,10 +21,12 @@ from eomgen.documents import (
     drawing_at_rest,
     inertia,
     linearize,
+    nearest_name,
     plain_document,
     proven,
     statics,
     with_listings_typeset,
+    with_start_reported,
 )
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing, UsageError
@@ -32,38 +34,24 @@ from eomgen.frozen import dataclass
 from eomgen.generated import Generated
 from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.model import Model, ModelOrPath, Typed, Values, bytes_at, loads, model_at, seconds
-from eomgen.page import (
-    FORMATS,
-    PLAYER,
-    SECTIONS,
-    Attachment,
-    FilesByName,
-    Html,
+from eomgen.page.contents import PLAYER, SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
+from eomgen.page.figure import figure_of, motion_drawings, rest_figure
+from eomgen.page.formats import FORMATS, FilesByName, written_as
+from eomgen.page.markup import Html, element, in_a_row
+from eomgen.page.player import (
     Playable,
     PlayedDisplacements,
     PlayedRun,
     PlayerOptions,
-    Report,
-    ReportFigure,
-    ReportSection,
-    element,
-    figure_of,
-    in_a_row,
-    joint_proof,
-    motion_drawings,
     player_parts_of,
     player_read_back,
-    report_read_back,
-    rest_figure,
-    written_as,
 )
+from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, kinematics, run_of_a_page, solve
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.numeric import doing
-from eomgen.verbs.assignments import nearest_name
-from eomgen.verbs.outcome import with_start_reported
 
 SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
 MOST_RELEASED = 8  # reactions whose virtual displacement a page plays

@@ -28,6 +28,7 @@ from eomgen.documents import (
     strip,
     virtual_movie,
     virtual_work_step,
+    with_start_reported,
 )
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
@@ -37,14 +38,13 @@ from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_hel
 from eomgen.mechanics.free_bodies import refuse_loose, structure_of
 from eomgen.mechanics.statics import modes_at_rest, released_in
 from eomgen.model import Model, ModelOrPath, Typed, Values, model_at
-from eomgen.page import PlayedRun, PlayerOptions, player_page_of, player_read_back
+from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof import Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, page_stepping, page_time
 from eomgen.questions import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation import Stepping, Trajectory
 from eomgen.symbolic.numeric import tolerances
-from eomgen.verbs.outcome import with_start_reported
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
 STILL = (".png", ".html")  # of which --fps says nothing
@@ -64,7 +64,7 @@ class PlayerFrame:
         return f"<page of a motion, {len(self.page) // 1024} KB>"
 
     def _repr_html_(self) -> str:
-        from eomgen.page import framed
+        from eomgen.page.contents import framed
 
         return framed(self.page)
 
@@ -227,7 +227,7 @@ def virtual_displacement(
 
 
 def _displacement_page(found: VirtualDisplacement) -> str:
-    from eomgen.page import PlayedDisplacements
+    from eomgen.page.player import PlayedDisplacements
 
     return player_page_of(PlayedDisplacements((found,)))
 
