@@ -43,8 +43,9 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.declared_loads import acting_otherwise
+from eomgen.proof.declared_loads import acting_otherwise, strung_otherwise, threads_of
 from eomgen.proof.free_bodies import named_otherwise
+from eomgen.proof.posed_model import apart, meetings_of
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
 from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
@@ -73,12 +74,19 @@ def structure_checks(
     yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7)))
     name = "reactions named by x, y and z are those along the ground's axes"
     yield attempted(name, "50 digits", lambda: named_otherwise(found.balance.balance, proof.state))
+    system = found.structure.system
+    if meetings_of(system):
+        name = "contacts lie on both surfaces, and push by 1 N for each unit of their force"
+        yield attempted(name, "50 digits", lambda: apart(system, proof.state))
+    if threads_of(system):
+        name = "strings and links touch their guides, keep their length and pull along it"
+        yield attempted(name, "50 digits", lambda: strung_otherwise(system, proof.state))
     if found.sums and not found.structure.unknowns:
         name = "stated sums have one value, whatever the self-stress"
         yield checked(name, first_wrong(map(proof.wrong_sum, found.sums)), IN_NUMBERS)
-    if found.structure.system.loads.applied:
+    if system.loads.applied:
         name = "applied loads act as their fields declare"
-        yield attempted(name, "50 digits", lambda: acting_otherwise(found.structure.system, proof.state))
+        yield attempted(name, "50 digits", lambda: acting_otherwise(system, proof.state))
     if sections:
         for name, wrong_one in (
             ("N, V and M are the same from the other end", proof.wrong_from_behind),
