@@ -21,7 +21,13 @@ from eomgen.identification import fit
 from eomgen.identification.base_parameters import Group
 from eomgen.identification.constrained_rows import sampled_rows
 from eomgen.identification.fit import _begun_checked, noise_of, numbers_of
-from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, samples_checked, spread_checked
+from eomgen.identification.proof_of_groups import (
+    bias_checked,
+    certify_regressor,
+    fit_checked,
+    samples_checked,
+    spread_checked,
+)
 from eomgen.identification.regressors import Regressor, regressor_of
 from eomgen.model.replaced import with_values
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -483,6 +489,14 @@ joint = { kind = "revolute", angle = "q" }
 
 
 @pytest.mark.slow
+def test_a_bias_is_of_the_size_by_which_more_noise_moves_the_fit():
+    """bias = 0.02 where noise once more moves by about as much; 0.4 is another one."""
+    moved = np.random.default_rng(1).normal([0.02, 0.0], [0.002, 1e-6], size=(8, 2))
+    assert bias_checked(np.array([0.02, 0.0]), moved, np.array([1e-3, 1e-6])).ok
+    assert bias_checked(np.array([0.4, 0.0]), moved, np.array([1e-3, 1e-6])).ok is False
+    assert bias_checked(np.array([0.02, 0.01]), moved, np.array([1e-3, 1e-6])).ok is False
+
+
 def test_a_base_parameter_that_follows_from_the_others_is_told():
     """Columns of Y_base at many states are independent: rank = their number."""
     found = eomgen.regressor(MODELS / "arm3.toml")

@@ -28,7 +28,13 @@ from eomgen.documents import Document, Lines, plain_document, prose, proven
 from eomgen.errors import UsageError
 from eomgen.files import read
 from eomgen.frozen import dataclass
-from eomgen.identification.proof_of_groups import StackedSamples, fit_checked, samples_checked, spread_checked
+from eomgen.identification.proof_of_groups import (
+    StackedSamples,
+    bias_checked,
+    fit_checked,
+    samples_checked,
+    spread_checked,
+)
 from eomgen.identification.regressors import Regressor, regressor, regressor_of
 from eomgen.model import Model, ModelOrPath, model_at
 from eomgen.pipeline import derive
@@ -131,7 +137,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
     values = _consistent(found, K, scaled, lengths, stacked.b)
     again = stacked.b - W @ (K @ np.array([values[name] for name in found.parameters]))
     formulas = [group.formula for group in base.groups]
-    shifts = _shifts(stacking, data, kept, beta / lengths, _splined(found.system.symbols, data))
+    shifts, moved = _shifts(stacking, data, kept, beta / lengths, _splined(found.system.symbols, data))
     condition, residual = float(np.linalg.cond(scaled)), float(np.sqrt(np.mean(left**2)))
     return Identified(
         found,
@@ -145,6 +151,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         (
             fit_checked(W, stacked.b, beta / lengths),
             spread_checked(W, stacked.b, deviations, condition, residual),
+            *([bias_checked(np.array(shifts), moved, deviations)] if shifts else []),
             _begun_checked(found),
             samples_checked(found, _samples(found, data, stacked)),
         ),
@@ -168,17 +175,21 @@ def _splined(symbols: Symbols, data: Data) -> list[str]:
     return list(dict.fromkeys(name if name in data else name[:-1] for name in wanted))
 
 
-def _shifts(stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarray, names: Sequence[str]) -> list[float]:
-    """Estimated bias of the base parameters by the noise of those columns; [] without such columns.
+def _shifts(
+    stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarray, names: Sequence[str]
+) -> tuple[list[float], np.ndarray]:
+    """(estimated bias of the base parameters by the noise of those columns, their change in fits to noisier columns).
+
+    Both are empty without such columns.
 
     beta - (W^T W - E D^T D)^-1 (W^T b - E D^T d), D and d the changes of W and b by noise of the same size; where the
     noise is as large as W^T W, all of beta.
     """
     t = np.asarray(data["t"], dtype=float)
     if not names or len(t) < LEAST_SAMPLES:
-        return []
+        return [], np.zeros((0, len(beta)))
     noise = {name: noise_of(t, np.asarray(data[name], dtype=float)) for name in names}
-    plain, moments = stacking(data), []
+    plain, moments, moved = stacking(data), [], []
     W = np.column_stack([plain.W[:, kept], plain.b])
     for seed in range(DRAWS):
         rng = np.random.default_rng(seed)
@@ -186,10 +197,11 @@ def _shifts(stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarra
         stacked = stacking({**data, **noisier})
         D = np.column_stack([stacked.W[:, kept], stacked.b]) - W
         moments.append(D.T @ D)
+        moved.append(np.linalg.lstsq(stacked.W[:, kept], stacked.b, rcond=None)[0] - beta)
     left = W.T @ W - np.mean(moments, axis=0)
     A, c = left[:-1, :-1], left[:-1, -1]
     known = np.linalg.eigvalsh(A)[0] > 0
-    return [float(x) for x in (beta - np.linalg.solve(A, c) if known else beta)]
+    return [float(x) for x in (beta - np.linalg.solve(A, c) if known else beta)], np.array(moved)
 
 
 def noise_of(t: np.ndarray, y: np.ndarray) -> float:

@@ -35,6 +35,7 @@ POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ
 STACKED = "samples give the forces of the model as its equations do"
 SEED, STATES = 11, 3  # others than those at which the groups were found
+FAR, UNSURE = 10.0, 10.0  # times its change by more noise, and the spread of that: a bias is not so large
 ENOUGH = 2  # rows of a base parameter, which distinguish them
 
 
@@ -165,6 +166,18 @@ def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
         wrong,
         "floating point, all samples",
     )
+
+
+def bias_checked(bias: np.ndarray, moved: np.ndarray, deviations: np.ndarray) -> Check:
+    """Check of the bias by noise: noise of the same size once more moves the fit about as far.
+
+    Args:
+        moved: change of each base parameter in every fit to noisier samples, draws x parameters.
+    """
+    usual, spread = np.mean(moved, axis=0), np.std(moved, axis=0) + deviations
+    far = np.abs(bias) > FAR * np.abs(usual) + UNSURE * spread
+    wrong = [f"{bias[k]:.3g} for {usual[k]:.3g}" for k in np.flatnonzero(far)]
+    return checked("noise once more moves the fit by about its bias", first_wrong(wrong), f"{len(moved)} draws")
 
 
 @dataclass(frozen=True)

@@ -137,6 +137,10 @@ class Sensitivity(Result):
         reported.append(
             checked("derivatives are of the requested quantities", self._of_others(), "names that the file declares")
         )
+        if self.run is not None:
+            reported.append(
+                checked("values at the end are those of the last instant", self._not_at_the_end(), "its columns")
+            )
         texts = Tally("closed forms of derivatives, read back, give the numbers", "our grammar, floating point")
         for pair, slope in self.slopes.items():
             if slope.exact is not None and pair in self.in_si:
@@ -144,6 +148,19 @@ class Sensitivity(Result):
         values = {of: x.value * Unit.parse(x.unit or "1").size for of, x in self.values.items() if x.value is not None}
         slopes = checks_of(self.model, Derivatives(values, self.in_si, self.run))
         return Certificate((*slopes.checks, *reported, *texts.checks()))
+
+    def _not_at_the_end(self) -> str:
+        """Message that names a value or derivative which is not that of the run's latest instant; ""."""
+        assert self.run is not None
+        last = int(np.argmax(self.run.t))
+        for pair, slope in self.in_si.items():
+            if not np.array_equal(slope, self.run.slopes[pair][last], equal_nan=True):
+                return f"{named(*pair)} is {slope:.9g} for {self.run.slopes[pair][last]:.9g}"
+        for of, found in self.values.items():
+            due = float(self.run.values[of][last])
+            if found.value is not None and differing(found.value * Unit.parse(found.unit or "1").size, due):
+                return f"{of} is {found.value:.9g} {found.unit or ''} for {due:.9g} in SI"
+        return ""
 
     def _misread(self, text: str, due: float) -> str:
         """The text at the parameters, and where the motion starts."""

@@ -355,3 +355,14 @@ def test_words_stand_for_formulas_by_the_names_of_the_file(word, of):
     checks = [x.certify().checks for x in (found, replace(found, of=(*of, "m")))]
     held = [next(check.ok for check in each if "requested quantities" in check.name) for each in checks]
     assert found.of == of and held == [True, False]
+
+
+@pytest.mark.slow
+def test_values_at_the_end_are_those_of_the_last_instant():
+    """x(t) of a run: those of another instant, told as those of the end, are contradicted."""
+    found = eomgen.sensitivity(MODELS / "elastic_pendulum.toml", "state", ("m",), time=0.5, samples=4)
+    name = "values at the end are those of the last instant"
+    assert next(check for check in found.certify().checks if check.name == name).ok
+    early = {pair: float(column[1]) for pair, column in found.run.slopes.items()}
+    wrong = replace(found, in_si=early)
+    assert next(check for check in wrong.certify().checks if check.name == name).ok is False
