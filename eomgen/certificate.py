@@ -11,7 +11,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.mechanics.free_bodies import has_friction
+from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.proof import Certificate, Printed, Trials, identity_checks, other_data
 from eomgen.symbolic.numeric import doing, growing
 
@@ -45,7 +45,7 @@ def certify(
     if equations.system.elimination is not None:
         checks.append(trials.eliminated_rows())
     checks += [trials.free_bodies(), *trials.accelerations()]
-    if has_friction(equations.system):
+    if SystemFriction(equations.system).exists:
         checks += [trials.friction(), *trials.pushes()]
     checks += trials.begun_contacts() if begins else ()
     checks += [

@@ -34,8 +34,9 @@ from eomgen.mechanics.dynamics import (
     system_of,
     with_accelerations,
 )
-from eomgen.mechanics.free_bodies import equations_of_motion, still, values_at_a_state, with_rest
+from eomgen.mechanics.free_bodies import SystemFriction, equations_of_motion, values_at_a_state
 from eomgen.mechanics.instant import Quantities, requests_of
+from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, start_state
 from eomgen.mechanics.statics import contacts_at_start
@@ -113,7 +114,7 @@ class Study:
         equations = self.explicit_while_sliding
         if not equations.friction or equations.accelerations is None:
             return equations
-        return replace(equations, accelerations=with_rest(self.system, equations.accelerations))
+        return replace(equations, accelerations=SystemFriction(self.system).with_rest(equations.accelerations))
 
     @cached_property
     def explicit_while_sliding(self) -> EquationsOfMotion:
@@ -172,7 +173,7 @@ class Study:
         from eomgen.codegen import determinate
 
         values = determinate(self.reactions)
-        return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
+        return dict(zip(values, SystemFriction(self.system).with_rest(tuple(values.values())), strict=True))
 
     @cached_property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
@@ -188,7 +189,9 @@ class Study:
         from eomgen.codegen import outputs_of_state
 
         found = outputs_of_state(self.system)
-        values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
+        values = dict(
+            zip(found.values, SystemFriction(self.system).with_rest(tuple(found.values.values())), strict=True)
+        )
         return replace(found, values=values)
 
     @cached_property
@@ -272,13 +275,13 @@ class Study:
         Raises:
             DerivationError: a coordinate has no value at the start.
         """
-        from eomgen.mechanics.integrals import relations_of, where_momenta_hold
+        from eomgen.mechanics.integrals import relations_of
 
         start = self.start_of(at_rest=at_rest).values
 
         def found() -> tuple[dict[Node, Scalar], Extent] | None:
             relations = relations_of(self.equations, start)
-            return None if relations is None else (relations.speeds, where_momenta_hold(self.equations))
+            return None if relations is None else (relations.speeds, FirstIntegrals(self.equations).where_momenta_hold)
 
         return recalled(self, ("rates by one", at_rest), found)
 
@@ -337,7 +340,7 @@ class Study:
         """Scalar with accelerations and multipliers replaced by the equations of motion, unknown loads by statics."""
         scalar = self._known(scalar, self.quantities)
         if self._stands_still:
-            (scalar,) = substituted((scalar,), still(self.system))
+            (scalar,) = substituted((scalar,), self.system.still)
         if not depends_on(scalar, (*self.system.symbols.a, *self.system.symbols.lam)):
             return scalar
         return substituted((scalar,), self.unknowns)[0]
@@ -442,7 +445,7 @@ class Study:
         given, inputs = state, {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
         if self.model.unknowns_in_loads():
-            return {**state, **still(self.system)}
+            return {**state, **self.system.still}
         if formula is not None and not self.needs_equations(formula):
             return state
         cached = self._cached(given)

@@ -52,11 +52,9 @@ from eomgen.mechanics.dynamics import (
 )
 from eomgen.mechanics.integrals import (
     Constant,
+    FirstIntegrals,
     Integral,
-    energy_integral,
     laws_of_motion,
-    momenta_of_the_whole,
-    momentum_integrals,
     work_of_constant_forces,
 )
 from eomgen.mechanics.kinematics import (
@@ -365,7 +363,7 @@ def integral_steps(
 
 def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
     symbols = equations.symbols
-    cyclic = [each for each in momentum_integrals(equations) if not depends_on(each.expression, (symbols.t,))]
+    cyclic = [each for each in FirstIntegrals(equations).of_momentum if not depends_on(each.expression, (symbols.t,))]
     statements: list[Statement] = []
     if cyclic:
         moving = {q.name: q for q in symbols.q}
@@ -380,7 +378,7 @@ def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]
             words = ("The momentum of the speed ", speeds[each.coordinate], " stays constant")
             statements.append(prose(*words, *while_words(each.held), ":"))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
-    energies = energy_integral(equations)
+    energies = FirstIntegrals(equations).of_energy
     for energy in energies:
         statements += _energy(reader, equations, energy)
     statements += _of_the_whole(equations, reader, [each.expression for each in (*cyclic, *energies)])
@@ -390,7 +388,7 @@ def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]
 def _of_the_whole(equations: EquationsOfMotion, reader: Reader, known: Sequence[Scalar]) -> list[Statement]:
     """Momentum and angular momentum of all bodies together, ground axes, where they stay."""
     statements: list[Statement] = []
-    found = momenta_of_the_whole(equations, known)
+    found = FirstIntegrals(equations).momenta_of_the_whole(known)
     for about, group in groupby(found, key=lambda each: (each.letter, each.about)):
         what = "momentum" if about[0] == "P" else f"angular momentum about {about[1]}"
         statements.append(prose(f"The {what}, in the axes of the ground, stays constant:"))

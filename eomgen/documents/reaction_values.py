@@ -30,18 +30,16 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import (
     EACH_AXIS,
     Balance,
-    Combination,
     Component,
     FrictionContact,
     Indeterminate,
     NamedReaction,
     Reactions,
+    SystemFriction,
     determinate_sums,
-    friction_contacts,
     named_reactions,
     reactions_by_sides,
     reactions_of,
-    unit_of,
 )
 from eomgen.model import PointForce, ReactionSymbols, trusses_of
 from eomgen.symbolic.exact import book_form, never_vanishes
@@ -97,7 +95,7 @@ class Readings:
     def own_ways(self) -> tuple[Reactions, ...]:
         return self.ways if self.shown is self.system else _ways(self.system)
 
-    def with_accelerations(self, combination: Combination, given: Scalar = 0) -> Scalar:
+    def with_accelerations(self, combination: dict[int, Scalar], given: Scalar = 0) -> Scalar:
         """sum of combination * components + given, linear in the accelerations.
 
         Raises:
@@ -107,7 +105,7 @@ class Readings:
         values = [*([] if by_side is None else [by_side]), *(way.combined(combination, "") for way in self.ways)]
         return self._shortest([x + given for x in values])
 
-    def without(self, combination: Combination, given: Scalar = 0) -> Scalar | None:
+    def without(self, combination: dict[int, Scalar], given: Scalar = 0) -> Scalar | None:
         """The same by the equations of motion; None where nothing accelerates in it, or that is long."""
         by_side = _by_sides(self.own_sides, combination)
         found_ways = [*([] if by_side is None else [by_side]), *(w.combined(combination, "") for w in self.own_ways)]
@@ -179,7 +177,7 @@ def shown_system(system: System) -> System:
     return system if system.free is None or system.scope.model.speeds else system.free
 
 
-def _by_sides(sides: Mapping[int, Scalar], combination: Combination) -> Scalar | None:
+def _by_sides(sides: Mapping[int, Scalar], combination: dict[int, Scalar]) -> Scalar | None:
     """sum of combination * components; None where one of them is not known by its side."""
     if not combination.keys() <= sides.keys():
         return None
@@ -254,7 +252,7 @@ class Lettered:
         named = {contact.component: symbols for contact, symbols in zip(self.contacts, self.frictions, strict=True)}
         for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
             if shown is None or symbol in shown:
-                rows.append(Meaning(symbol, meaning(self.balance, component), unit_of(component)))
+                rows.append(Meaning(symbol, meaning(self.balance, component), component.unit))
             for share, friction in zip(component.friction, named.get(j, ()), strict=True):
                 if shown is None or friction in shown:
                     rows.append(Meaning(friction, _friction(self.balance, component, share.label), "N"))
@@ -272,7 +270,7 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
     """A symbol for every reaction, none of them a name of the model."""
     balance = reactions.balance
     graph = balance.system.scope.graph
-    contacts = tuple(friction_contacts(balance.system, reactions.components))
+    contacts = tuple(SystemFriction(balance.system).contacts(reactions.components))
     used: set[str] = set()
     declared: dict[str, Symbol] = {}
 

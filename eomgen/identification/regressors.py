@@ -21,7 +21,7 @@ from eomgen.frozen import dataclass
 from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameters, base_of, named_entries
 from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import frictions, has_friction
+from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
@@ -130,8 +130,8 @@ def regressor_of(system: System) -> Regressor:
             "coordinates",
             "give a joint a coordinate that is free, neither driven nor dependent",
         )
-    if has_friction(system):
-        name = frictions(system)[0][0]
+    if SystemFriction(system).exists:
+        name = SystemFriction(system).named[0][0]
         raise DerivationError(
             f"the friction of '{name}' is not linear in the parameters: its normal force depends on them",
             f"{'constraints' if name in system.scope.model.constraints else 'bodies'}.{name}",

@@ -26,7 +26,7 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies import frictions, reactions_of
+from eomgen.mechanics.free_bodies import SystemFriction, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
 from eomgen.mechanics.start import start_of_motion
 from eomgen.model import Contact, Resistance
@@ -333,7 +333,7 @@ def other_friction(system: System, state: State) -> str:
         NoValue: something has no value there.
     """
     proof, surfaces = InNumbers(system, state), {row.constraint for row in system.constraints.rows if row.shares}
-    for name, factor, sliding in frictions(system):
+    for name, factor, sliding in SystemFriction(system).named:
         found, v = proof.at((factor, sliding))
         along = 1 if name in surfaces else abs(v)  # on a surface viscous friction is for a unit of v
         slides = (

@@ -24,7 +24,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row, RowName, constraints_of
+from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row, constraints_of
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
@@ -186,7 +186,7 @@ def _by_differences(constraints: Constraints, state: State, found: Freedom) -> s
     f = len(scope.symbols.u) - len(scope.quaternions) - whole
     if f != found.by_rank:
         return f"by differences there are {f} degrees of freedom, not {found.by_rank}"
-    redundant: dict[RowName, tuple[str, ...]] = {(r.constraint, r.number): r.others for r in found.redundant}
+    redundant: dict[tuple[str, int], tuple[str, ...]] = {(r.constraint, r.number): r.others for r in found.redundant}
     kept = [line for name, line in J.items() if name not in redundant]
     if _rank(kept) != whole or len(kept) != whole:
         return (

@@ -27,14 +27,14 @@ from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import (
     Balance,
+    DrivingForces,
     Effect,
     Indeterminate,
     NamedReaction,
     Reactions,
+    SystemFriction,
     efforts_of,
-    frictions,
     named_reactions,
-    with_drive_let_go,
 )
 from eomgen.mechanics.kinematics import BodyLink, SystemInertia
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
@@ -140,9 +140,9 @@ def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, 
     """
     if not system.scope.model.coordinates[coordinate].driven:
         raise NoValue("a constraint drives it")
-    if frictions(system):  # of what is driven alone too, where no equation of motion holds it
+    if SystemFriction(system).named:  # of what is driven alone too, where no equation of motion holds it
         raise NoValue("there is friction")
-    free = with_drive_let_go(system, coordinate)
+    free = DrivingForces(system).let_go(coordinate)
     own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
     symbols = free.symbols
     moving = (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
@@ -545,7 +545,7 @@ def named_otherwise(balance: Balance, state: State) -> str:
 def drives_beside(reactions: Reactions) -> dict[str, str]:
     """{name of a drive: its coordinate}, of drives by the model's [coordinates], without friction in the system."""
     system = reactions.balance.system
-    if frictions(system):
+    if SystemFriction(system).named:
         return {}
     driven = system.scope.model.coordinates
     return {c.name: c.side for c in reactions.components if c.kind == "drive" and c.side and driven[c.side].driven}

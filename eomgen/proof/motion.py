@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.codegen import RightHandSide, bordered, compiled, program_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.free_bodies import with_rest
+from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.model import GivenEnergy, PushOfMass
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
@@ -347,7 +347,7 @@ class Energies:
                 found = found + lam * sum((x * u for x, u in zip(row, equations.symbols.u, strict=True)), start=0)
             elif not is_zero(sigma):
                 found = found - lam * sigma
-        return with_rest(self.equations.system, (found,))[0]
+        return SystemFriction(self.equations.system).with_rest((found,))[0]
 
     def along(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """(T, V, H), each n [J]."""

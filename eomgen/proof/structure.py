@@ -24,7 +24,6 @@ from eomgen.mechanics.free_bodies import (
     Axes,
     RigidBlock,
     VelocityPlan,
-    blocks_of,
     imbalance,
     members_of,
     named_reactions,
@@ -298,7 +297,7 @@ class _Proof:
         """
         plans = [(each.name, each.work.plan) for each in self.found.reactions if each.work is not None]
         for name, plan in plans[:: 1 + (len(plans) - 1) // MOST_PLANS]:
-            blocks = blocks_of(plan)
+            blocks = plan.blocks
             fields = [np.array(self._at(plan, (*block.spin, *block.velocity))) for block in blocks]
             for block, field in zip(blocks, fields, strict=True):
                 for part, places in self._ends(plan, block):

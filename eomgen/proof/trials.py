@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
-from eomgen.mechanics.free_bodies import friction_contacts, frictions, imbalance, push_sizes, reactions_of
+from eomgen.mechanics.free_bodies import SystemFriction, imbalance, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, spin_between
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
@@ -284,7 +284,7 @@ class Trials:
 
         That of a bilateral contact is F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the free bodies.
         """
-        laws = _laws_of_round(self.equations.system) if push_sizes(self.equations.system) else []
+        laws = _laws_of_round(self.equations.system) if SystemFriction(self.equations.system).push_sizes() else []
 
         def check(state: State) -> str:
             if wrong := other_friction(self.equations.system, state):
@@ -292,7 +292,7 @@ class Trials:
             for name, law in laws:
                 if not self._holds(law, state):
                     return f"the friction of '{name}' is not that of its normal force"
-            for name, factor, sliding in frictions(self.equations.system):
+            for name, factor, sliding in SystemFriction(self.equations.system).named:
                 mode = self.equations.system.modes.get(name, ContactMode())
                 v = sliding if mode.sense is None else mode.sense
                 speed, power, factor_at = evaluate((v, mode.push * factor * v, factor), state, fifty_digits())
@@ -485,7 +485,7 @@ def _columns(equations: EquationsOfMotion) -> Iterable[Sequence[Scalar]]:
 def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:
     """(contact, (F, factor, N_1, N_2)) of every bilateral contact with friction."""
     reactions = reactions_of(system)
-    rounds = [contact for contact in friction_contacts(system, reactions.components) if contact.normals]
+    rounds = [contact for contact in SystemFriction(system).contacts(reactions.components) if contact.normals]
     return [(r.name, (reactions.value(r.component), r.factor, *map(reactions.value, r.normals))) for r in rounds]
 
 

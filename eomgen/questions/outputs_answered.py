@@ -37,7 +37,7 @@ from eomgen.errors import (
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
 from eomgen.mechanics.instant import InstantKinematics, instant_kinematics_of, requests_motion, requests_of
-from eomgen.mechanics.integrals import stay_constant
+from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
     FUNCTIONS,
     SMALL_MOTIONS,
@@ -452,7 +452,7 @@ class _Solver:
         if moment.phase is not phase or not motion.start:
             return None
         requested = phase.eliminated(phase.raw(output.value))
-        if not stay_constant(phase.equations, (requested,))[0]:
+        if not FirstIntegrals(phase.equations).stay_constant((requested,))[0]:
             return None
         return substituted((requested,), motion.start)[0]
 

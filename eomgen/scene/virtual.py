@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.codegen import compiled, program_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Effect, Structure, blocks_of, numeral
+from eomgen.mechanics.free_bodies import Axes, Effect, Structure, numeral
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.statics import StaticReaction, WorkEquation
 from eomgen.model import UniformField
@@ -168,7 +168,7 @@ class VirtualDisplacement:
         spots = np.array(self._numbers([x for place in places for x in place[:2]])).reshape(-1, 2)
         low, high = (spots.min(axis=0), spots.max(axis=0)) if len(spots) else (np.zeros(2), np.zeros(2))
         reach = IN_SIGHT * float(np.max(high - low))
-        for number, block in enumerate(blocks_of(plan), start=1):
+        for number, block in enumerate(plan.blocks, start=1):
             place = block.center(plan).place
             if place is None:
                 continue

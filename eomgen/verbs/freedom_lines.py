@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from eomgen.documents import listed
-from eomgen.mechanics.constraints import Freedom, RowName, VelocityRow
+from eomgen.mechanics.constraints import Freedom, VelocityRow
 from eomgen.mechanics.start import AssemblyMode, Branches
 from eomgen.model import Model
 from eomgen.symbolic.print import to_text
@@ -33,7 +33,7 @@ def freedom_lines(model: Model, freedom: Freedom) -> list[str]:
     return lines
 
 
-def _constraints(rows: Sequence[RowName], beside: Sequence[str]) -> str:
+def _constraints(rows: Sequence[tuple[str, int]], beside: Sequence[str]) -> str:
     """Names the constraints of rows, with row numbers where other rows of it are named too: floor (rows 2 and 3)."""
     return listed(
         f"{constraint} ({_numbered(numbers)})" if constraint in beside else constraint
@@ -41,7 +41,7 @@ def _constraints(rows: Sequence[RowName], beside: Sequence[str]) -> str:
     )
 
 
-def _by_constraint(rows: Sequence[RowName]) -> dict[str, list[int]]:
+def _by_constraint(rows: Sequence[tuple[str, int]]) -> dict[str, list[int]]:
     found: dict[str, list[int]] = {}
     for constraint, number in rows:
         found.setdefault(constraint, []).append(number)

@@ -218,8 +218,8 @@ def pushing(mode, law, value, sliding):
     return None if factor is None else -factor
 
 
-def other_way(system, found):
-    return [replace(contact, along=tuple(-x for x in contact.along)) for contact in friction_contacts(system, found)]
+def other_way(of_system, found):
+    return [replace(contact, along=tuple(-x for x in contact.along)) for contact in friction_contacts(of_system, found)]
 
 
 def without_parent(axes, link, force, couple):
@@ -230,11 +230,11 @@ def to_the_other_side(axes, i, place):
     return times(-1, arm(axes, i, place))
 
 
-friction_factor, friction_contacts = contacts.ContactMode.friction_factor, friction.friction_contacts
+friction_factor, friction_contacts = contacts.ContactMode.friction_factor, friction.SystemFriction.contacts
 joint_effects, arm = effects.effects_at_joint, effects.Axes.arm
 REACTION_ERRORS = [
     ("ch16_p6", contacts.ContactMode, "friction_factor", pushing),
-    ("ch16_p6", friction, "friction_contacts", other_way),
+    ("ch16_p6", friction.SystemFriction, "contacts", other_way),
     ("double_pendulum", components, "effects_at_joint", without_parent),
     ("arm3", components, "effects_at_joint", without_parent),
     ("double_pendulum", effects.Axes, "arm", to_the_other_side),

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import eomgen
-from eomgen.mechanics.free_bodies.friction import has_friction
+from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.model import constraints, forces, joints
 from eomgen.model.part import Part
 from eomgen.proof import identities
@@ -384,7 +384,7 @@ def test_every_field_of_every_kind_is_derived_by_two_routes(name):
     system, graph = equations.system, equations.graph
     trials = Trials(graph)
     checks = [*identities.compared(list(identities.routes(graph))), *trials.balance(), trials.free_bodies()]
-    checks += [trials.friction()] if has_friction(system) else []
+    checks += [trials.friction()] if SystemFriction(system).exists else []
     assert [(check.name, check.detail) for check in checks if not check.ok] == []
 
 

@@ -74,7 +74,7 @@ def test_members_have_closed_forms_only_where_they_are_told(monkeypatch: pytest.
         requested.clear()
         work = by_virtual_work(structure, named)
         assert work is not None and len(requested) <= 1, named.name
-        reported = blocks.blocks_of(work.plan)
+        reported = work.plan.blocks
         assert len(requested) <= len(reported) + 1 < len(blocks.members_of(structure.system)) / 2
 
 

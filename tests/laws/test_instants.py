@@ -15,7 +15,7 @@ from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
-from eomgen.mechanics.integrals.first_integrals import energy_integral
+from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
 from eomgen.mechanics.integrals.laws import position_equations
 from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.start.exact import declared_start
@@ -345,7 +345,7 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     nodes = (*symbols.q, *symbols.u)
     values = {symbols.parameters[n]: x for n, x in each.model.numeric_parameters().items()}
     first = start_state(each.system)
-    for integral in energy_integral(each.equations):
+    for integral in FirstIntegrals(each.equations).of_energy:
         known = {u: 0 for u in symbols.u if first[u.name] == 0}  # where all hinges are in line, T needs u = 0
         (begin,) = substituted((integral.expression,), known)
         at = [

@@ -14,7 +14,7 @@ from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.dynamics.accelerations import with_accelerations
 from eomgen.mechanics.integrals import first_integrals as integrals
-from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
+from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
 from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.integrals.speeds import rates_of
 from eomgen.study import Study, study_of
@@ -256,7 +256,7 @@ def exact_start(each: Study) -> dict:
 
 
 def _integrals(equations):
-    return (*energy_integral(equations), *momentum_integrals(equations))
+    return (*FirstIntegrals(equations).of_energy, *FirstIntegrals(equations).of_momentum)
 
 
 @each("name", ONE_WAY)
@@ -559,7 +559,7 @@ def test_the_work_of_a_constant_couple_belongs_to_the_energy_that_stays():
         + '[forces.motor]\nkind = "couple"\nbody = "b"\ncouple = "F"\n'
     )
     each = phase(text)
-    energy = energy_integral(each.equations)[0]
+    energy = FirstIntegrals(each.equations).of_energy[0]
     symbols = each.system.symbols
     names = {**symbols.parameters, "x": symbols.q[0], "x'": symbols.u[0]}
     expected = parse("3/4*m*x'^2 + F*x/l").evaluate(names)
@@ -570,5 +570,5 @@ def test_what_is_seen_to_change_is_not_multiplied_out(monkeypatch):
     """Of twenty links none has a momentum that stays, and no rate is written out to see that."""
     read = []
     monkeypatch.setattr(integrals, "readable", lambda x, limit: read.append(x) or x)
-    assert integrals.momentum_integrals(eomgen.derive(MODELS / "chain20.toml").graph) == ()
+    assert FirstIntegrals(eomgen.derive(MODELS / "chain20.toml").graph).of_momentum == ()
     assert read == []

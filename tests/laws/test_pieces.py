@@ -11,7 +11,7 @@ from eomgen.documents.text import render
 from eomgen.errors import UsageError
 from eomgen.mechanics.dynamics import pieces, wellposed
 from eomgen.mechanics.dynamics.wellposed import WellPosed
-from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
+from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
 from eomgen.mechanics.integrals.laws import laws_of_motion
 from eomgen.mechanics.start.exact import declared_start
 from eomgen.proof.trials import Trials
@@ -246,7 +246,9 @@ def test_stabilization_by_energy_is_refused_where_it_does_not_stay(tmp_path):
 
 def test_a_momentum_stays_while_nothing_pushes_along_it(tmp_path):
     """dp_x/dt = min(0, k (d - x)) is 0 while x <= d."""
-    found = {each.coordinate: each.held for each in momentum_integrals(eomgen.derive(at(IN_SPACE, tmp_path)).graph)}
+    found = {
+        each.coordinate: each.held for each in FirstIntegrals(eomgen.derive(at(IN_SPACE, tmp_path)).graph).of_momentum
+    }
     assert found["y"].everywhere and found["x"].text == "x <= d" and found["z"].text == "z >= 0"
 
 
@@ -307,7 +309,7 @@ def test_beside_samples_neither_energy_nor_jacobi_s_integral_stays(tmp_path):
     bodies.bead.joint = { kind = "prismatic", on = "arm", axis = [1, 0], displacement = "s" }
     """
     equations = eomgen.derive(at(text, tmp_path))
-    assert energy_integral(equations.graph) == () and not WellPosed(equations.graph).is_conservative
+    assert FirstIntegrals(equations.graph).of_energy == () and not WellPosed(equations.graph).is_conservative
     assert "stays constant" not in render(equations.derivation)
 
 

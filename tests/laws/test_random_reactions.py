@@ -14,7 +14,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.mechanics.dynamics.system import System, system_of
-from eomgen.mechanics.free_bodies.inverse import drive
+from eomgen.mechanics.free_bodies.inverse import DrivingForces
 from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.symbolic.expression.node import Scalar
@@ -169,7 +169,7 @@ def test_a_joint_that_gives_way_is_held_by_its_reaction(space, seed):
         ("couple", turn if space == "plane" else f"{turn}, {along}", e if space == "space" else np.array([0, 0, 1])),
     ]:
         system = system_of(eomgen.loads(given_way(text, body, moves)))
-        (found,) = values(tree, system, (drive(system, "d"),))
+        (found,) = values(tree, system, (DrivingForces(system).along("d"),))
         expected = sum((R @ way)[k] * tree.reaction(body, what, k) for k in range(3) if tree.carried(what, k))
         assert abs(found - expected) < 1e-8 * max(1.0, abs(expected)), f"{what} of {body} along {way}\n{text}"
 

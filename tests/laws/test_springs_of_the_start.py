@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.constraints.assembly import begun_places
+from eomgen.mechanics.constraints.assembly import Assembly
 from eomgen.mechanics.start.state import start_of_motion
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -73,7 +73,7 @@ def test_the_length_follows_the_parameters_where_the_start_has_a_closed_form():
     system = eomgen.derive(
         eomgen.loads(TIED.replace("R\n", STARTS["dependent"] + "\n", 1).replace("GAP", GAPS["with a parameter"]))
     ).system
-    (place,) = begun_places(system.free.constraints).values()
+    (place,) = Assembly(system.free.constraints).begun_places().values()
     (L,) = (x for x in system.symbols.parameters.values() if x.name == "L")
     assert evaluate((place,), {L: 0.5}, FLOAT)[0] == pytest.approx(0.4 * 0.5 + 0.25)
 

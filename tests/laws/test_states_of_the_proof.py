@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import eomgen
-from eomgen.mechanics.free_bodies import friction
+from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.model.joints.path import Stretch
 from eomgen.proof.check import Certificate
 from eomgen.proof.trials import NOWHERE, Trials
@@ -140,7 +140,11 @@ def test_friction_that_is_planted_to_drive_is_seen_beside_a_start_at_rest(monkey
     """At rest friction takes no power: the proof goes to a state near the start, in which something slides."""
     text = HEAD + PATH.replace("LENGTH", "0.3, friction = 0.2").replace("start = 1.2, speed = 1", "start = 0.1")
     assert certificate(text).ok
-    right = friction.frictions
-    turned = lambda system: [(name, -factor, v) for name, factor, v in right(system)]  # noqa: E731
-    monkeypatch.setattr("eomgen.proof.trials.frictions", turned)
+
+    class Turned(SystemFriction):
+        @property
+        def named(self):
+            return [(name, -factor, v) for name, factor, v in super().named]
+
+    monkeypatch.setattr("eomgen.proof.trials.SystemFriction", Turned)
     assert certificate(text).ok is False

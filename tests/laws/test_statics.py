@@ -13,7 +13,6 @@ import eomgen
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.structure import structure_of
-from eomgen.mechanics.free_bodies.velocity_plan import blocks_of
 from eomgen.mechanics.statics.virtual_work import (
     StaticReactions,
     by_virtual_work,
@@ -141,7 +140,7 @@ def test_gerber_beam_by_virtual_work():
     assert exact["reaction_n(A)"] == "-9*p*a" and exact["reaction_n(B)"] == "18*p*a"
     assert exact["reaction_y(E)"] == "7*p*a" and exact["reaction_couple(E)"] == "-20*p*a^2"
     work = found.by_name["reaction_n(A)"].work
-    centers = [tuple(to_text(x) for x in block.center(work.plan).place[:2]) for block in blocks_of(work.plan)]
+    centers = [tuple(to_text(x) for x in block.center(work.plan).place[:2]) for block in work.plan.blocks]
     assert centers == [("4*a", "0"), ("16*a", "0")]
     assert to_text(work.along) == "-4*a"
 

@@ -12,7 +12,9 @@ from scipy.spatial.transform import Rotation
 
 import eomgen
 from eomgen.documents import rendered
-from eomgen.mechanics.integrals.first_integrals import energy_integral, momenta_of_the_whole, stay_constant
+from eomgen.mechanics.integrals.first_integrals import (
+    FirstIntegrals,
+)
 from eomgen.mechanics.linearization.linearization import small_motions_of
 
 pytestmark = pytest.mark.slow
@@ -215,7 +217,7 @@ joint = { kind = "spherical", orientation = "zxz", angles = ["psi", "theta", "ph
 
 def constants(text: str) -> dict[str, object]:
     equations = eomgen.derive(eomgen.loads(text))
-    found = momenta_of_the_whole(equations.graph, ())
+    found = FirstIntegrals(equations.graph).momenta_of_the_whole(())
     return {f"{each.letter}_{each.axis}".rstrip("_"): each.expression for each in found}
 
 
@@ -234,7 +236,7 @@ def test_a_heavy_body_keeps_what_is_about_the_vertical():
     text = TOP % (1, 0.2, 0.1, 0.3, 3)
     assert set(constants(text)) == {"L_z"}
     equations = eomgen.derive(eomgen.loads(text))
-    assert [each.name for each in energy_integral(equations.graph)] == ["energy"]
+    assert [each.name for each in FirstIntegrals(equations.graph).of_energy] == ["energy"]
 
 
 def test_a_torque_takes_the_constants_away():
@@ -246,14 +248,14 @@ def test_a_torque_takes_the_constants_away():
 def test_the_energy_of_a_gyrostat_is_jacobis():
     """sum u dT/du - T stays where the wheel is kept at its rate, and T does not; L of both together stays."""
     equations = eomgen.derive(eomgen.load(MODELS / "gyrostat.toml"))
-    (energy,) = energy_integral(equations.graph)
+    (energy,) = FirstIntegrals(equations.graph).of_energy
     assert energy.name == "jacobi"
     run = eomgen.simulate(eomgen.load(MODELS / "gyrostat.toml"), time=5)
     w = run.x[:, -3:]
     h = w**2 @ np.array([3.011, 4.011, 5.02]) / 2
     assert h == pytest.approx(np.full(len(h), h[0]), rel=1e-8)
-    assert stay_constant(equations.graph, (energy.expression, equations.graph.T)) == (True, False)
-    names = [each.letter + each.axis for each in momenta_of_the_whole(equations.graph, ())]
+    assert FirstIntegrals(equations.graph).stay_constant((energy.expression, equations.graph.T)) == (True, False)
+    names = [each.letter + each.axis for each in FirstIntegrals(equations.graph).momenta_of_the_whole(())]
     assert {"Lx", "Ly", "Lz"} <= set(names)
 
 

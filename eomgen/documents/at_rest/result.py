@@ -24,7 +24,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
-from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import (
     InfluenceLine,
@@ -235,7 +235,7 @@ def _text(value: Scalar | None) -> str | None:
 def _work(equation: WorkEquation) -> dict[str, Any]:
     """The released mechanism, per unit of its scale, and the equation of virtual work: along * R + sum of terms = 0."""
     return {
-        "mechanism": [_block(equation.plan, block) for block in blocks_of(equation.plan)],
+        "mechanism": [_block(equation.plan, block) for block in equation.plan.blocks],
         "along": to_text(equation.along),
         "terms": [{"load": term.acting.name, "work": to_text(term.work)} for term in equation.terms],
         "value": to_text(equation.value),

@@ -19,11 +19,8 @@ from eomgen.mechanics.free_bodies import (
     RigidBlock,
     Structure,
     VelocityPlan,
-    blocks_of,
     members_of,
-    motion_in_words,
     numeral,
-    resting_blocks,
 )
 from eomgen.mechanics.statics import (
     Acting,
@@ -139,7 +136,7 @@ def _free(structure: Structure) -> str:
         return "Nothing can move"
     if structure.turns_idly:
         return f"Nothing can move but {', '.join(idle)} about its own line, on which nothing acts"
-    reported = "; ".join(motion_in_words(plan) for plan in structure.loose)
+    reported = "; ".join(plan.in_words for plan in structure.loose)
     why = "nothing resists it, but no load does any work in it"
     return f"{reported[0].upper()}{reported[1:]}: {why}. Else nothing can move"
 
@@ -302,7 +299,7 @@ def virtual_work_step(reaction: StaticReaction, symbol: Node) -> Step:
     """Step that derives one reaction from the virtual work of the mechanism that its release leaves."""
     equation = reaction.work
     assert equation is not None, "an indeterminate reaction has no equation of work"
-    plan, blocks = equation.plan, blocks_of(equation.plan)
+    plan, blocks = equation.plan, equation.plan.blocks
     if not blocks:
         nothing = prose("Its constraint leaves this motion free, and so bears nothing: ", symbol, " = 0.")
         return Step(f"work {reaction.name}", f"{reaction.name} by virtual work", (nothing,))
@@ -328,7 +325,7 @@ def _scale(blocks: Sequence[RigidBlock], symbol: Node) -> Node:
 
 def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, delta: Node) -> Prose:
     """Sentence on the blocks that move once the reaction is released, and those that stay at rest."""
-    still = resting_blocks(plan)
+    still = plan.resting_blocks
     rest = f"; {_listed(still)} {'stays' if len(still) == 1 else 'stay'} at rest" if still else ""
     many = "one block" if len(blocks) == 1 else f"{len(blocks)} blocks"
     return prose(

@@ -3,20 +3,11 @@
 # of values for parameters that have none: what is no closed form agrees at one of them by chance
 from eomgen.mechanics.constraints.assembly import SEEDS as SEEDS
 
+# Positions and speeds that constraints put together from those given, and places where branches of motion meet
+from eomgen.mechanics.constraints.assembly import Assembly as Assembly
+
 # A position in which branches meet
 from eomgen.mechanics.constraints.assembly import Fork as Fork
-
-# Start values that the constraints change from the declared ones, in closed form or else in numbers
-from eomgen.mechanics.constraints.assembly import begun_places as begun_places
-
-# The fork at a state where the rank of the constraint rows is less than elsewhere; None where it is not
-from eomgen.mechanics.constraints.assembly import fork_at as fork_at
-
-# True if all speeds are 0 in the state
-from eomgen.mechanics.constraints.assembly import is_at_rest as is_at_rest
-
-# True if accelerations exist with these speeds: J a + gamma = 0
-from eomgen.mechanics.constraints.assembly import leads_on as leads_on
 
 # The constraints whose scalars ought to be zero and are not
 from eomgen.mechanics.constraints.assembly import open_at as open_at
@@ -24,17 +15,8 @@ from eomgen.mechanics.constraints.assembly import open_at as open_at
 # |x|, where it is more than rounding: against its terms, and against what the symbols would have to move
 from eomgen.mechanics.constraints.assembly import open_by as open_by
 
-# The state with the nearest speeds that lead along a branch; None where none is found
-from eomgen.mechanics.constraints.assembly import speeds_along as speeds_along
-
-# All constraints but the contacts that are open and may be so
-from eomgen.mechanics.constraints.assembly import that_stay as that_stay
-
 # Coordinates or speeds in the order in which they may change: not given, given by the model, by the caller
 from eomgen.mechanics.constraints.assembly import tiers_of as tiers_of
-
-# (the nearest state in which positions agree with the constraints, the constraints that did not hold)
-from eomgen.mechanics.constraints.assembly import with_gaps_closed as with_gaps_closed
 from eomgen.mechanics.constraints.closure import CLOSING as CLOSING
 
 # States in which constraints hold, phi = 0 and J u + sigma = 0, with 50 digits
@@ -67,9 +49,6 @@ from eomgen.mechanics.constraints.rank import Freedom as Freedom
 
 # Which constraint rows are independent: at a generic configuration in which the constraints hold
 from eomgen.mechanics.constraints.rank import Rank as Rank
-
-# of a constraint, from 1
-from eomgen.mechanics.constraints.rank import RowName as RowName
 
 # A row of velocities alone
 from eomgen.mechanics.constraints.rank import VelocityRow as VelocityRow

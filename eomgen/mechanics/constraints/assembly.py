@@ -52,31 +52,113 @@ from eomgen.symbolic.numeric import (
 SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
 
 
-def begun_places(constraints: Constraints) -> dict[Node, Scalar]:
-    """Start values that the constraints change from the declared ones, in closed form or else in numbers.
+@dataclass(frozen=True)
+class Assembly:
+    """Positions and speeds that constraints put together from those given, and places where branches of motion meet."""
 
-    Raises:
-        DerivationError: a value has no closed form, and parameters have no value.
-    """
-    scope, rows = constraints.motion.scope, constraints.gaps
-    if not rows:
-        return {}
-    declared = scope.with_unit_quaternions(scope.start_values()) | {scope.symbols.t: 0}
-    drawn = any(name not in scope.model.exact_parameters() for name in scope.symbols.parameters)
-    states = [_assembled(constraints, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
-    moved = [q for q in scope.symbols.q if any(_differs(declared[q], q, state) for state in states)]
-    if not moved:
-        return {}
-    known = {x: value for x, value in declared.items() if x not in moved}
-    equations = [x for x in substituted(rows, known) if depends_on(x, moved)]
-    located = [Located({x: float(value) for x, value in state.items()}, scope.positive) for state in states]
-    found = located[0].places(equations, moved)
-    exact = {q: x for q, x in found.items() if q in moved and all(each.agrees(x, q) for each in located)}
-    left = [q for q in moved if q not in exact or depends_on(exact[q], moved)]
-    if left and drawn:
-        what = f"the start of '{left[0].name}' has no closed form, and no number while parameters have no value"
-        raise DerivationError(what, f"coordinates.{left[0].name}", "give the parameters values")
-    return exact | {q: Fraction(str(states[0][q])) for q in left}
+    constraints: Constraints
+
+    def begun_places(self) -> dict[Node, Scalar]:
+        """Start values that the constraints change from the declared ones, in closed form or else in numbers.
+
+        Raises:
+            DerivationError: a value has no closed form, and parameters have no value.
+        """
+        scope, rows = self.constraints.motion.scope, self.constraints.gaps
+        if not rows:
+            return {}
+        declared = scope.with_unit_quaternions(scope.start_values()) | {scope.symbols.t: 0}
+        drawn = any(name not in scope.model.exact_parameters() for name in scope.symbols.parameters)
+        states = [_assembled(self.constraints, declared, seed) for seed in (SEEDS if drawn else SEEDS[:1])]
+        moved = [q for q in scope.symbols.q if any(_differs(declared[q], q, state) for state in states)]
+        if not moved:
+            return {}
+        known = {x: value for x, value in declared.items() if x not in moved}
+        equations = [x for x in substituted(rows, known) if depends_on(x, moved)]
+        located = [Located({x: float(value) for x, value in state.items()}, scope.positive) for state in states]
+        found = located[0].places(equations, moved)
+        exact = {q: x for q, x in found.items() if q in moved and all(each.agrees(x, q) for each in located)}
+        left = [q for q in moved if q not in exact or depends_on(exact[q], moved)]
+        if left and drawn:
+            what = f"the start of '{left[0].name}' has no closed form, and no number while parameters have no value"
+            raise DerivationError(what, f"coordinates.{left[0].name}", "give the parameters values")
+        return exact | {q: Fraction(str(states[0][q])) for q in left}
+
+    def with_gaps_closed(self, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
+        """(the nearest state in which positions agree with the constraints, the constraints that did not hold).
+
+        Args:
+            called: coordinates whose start a person typed, or a caller gave: these are moved last.
+        """
+        scope = self.constraints.motion.scope
+        apart = open_at(((row, row.gap) for row in self.constraints.rows if not row.identical), scope.symbols.q, state)
+        staying = self.that_stay(apart)
+        opened = tuple(name for name in apart if any(row.constraint == name for row in staying.rows))
+        if not opened:
+            return state, ()
+        standing, sought = set(symbols_of(staying.gaps)), self.constraints.fixed_by_position
+        own = [
+            q
+            for q in scope.symbols.q
+            if q in standing and q not in sought and not scope.model.coordinates[q.name].driven
+        ]
+        silent, given, typed = tiers_of(scope.model, own, called)
+        return Closure(staying).nearest_places(
+            state, ([*sought, *silent], given, typed), (*sought, *silent)
+        ) or state, opened
+
+    def that_stay(self, apart: Sequence[str]) -> Constraints:
+        """All constraints but the contacts that are open and may be so."""
+        ending = [contact.name for contact in self.constraints.motion.scope.model.contacts if contact.unilateral]
+        return bilateral(self.constraints, ending, [name for name in ending if name not in apart])
+
+    def fork_at(self, state: State) -> Fork | None:
+        """The fork at a state where the rank of the constraint rows is less than elsewhere; None where it is not.
+
+        Raises:
+            MissingValues, DerivationError: the constraints cannot be satisfied near.
+        """
+        if not self.constraints.closing or not self.constraints.motion.scope.symbols.u:
+            return None
+        J = _matrix(self.constraints, state)
+        lengths = lengths_of(J, 1, keepdims=True)
+        U, sizes, _ = np.linalg.svd(of_one_length(J))
+        here = int(np.sum(sizes > tolerances.RANK))
+        if here == len(self.constraints.closing):
+            return None
+        more = Rank(self.constraints).rank() - here
+        if more <= 0:
+            return None
+        shares = np.max(np.abs(U[:, here:]), axis=1)
+        names = dict.fromkeys(
+            row.constraint
+            for row, share in zip(self.constraints.closing, shares, strict=True)
+            if share > tolerances.SHARE
+        )
+        return Fork(tuple(names), more, U[:, here:].T / np.where(lengths > 0, lengths, 1.0).T)
+
+    def leads_on(self, fork: Fork, state: State) -> bool:
+        """True if accelerations exist with these speeds: J a + gamma = 0."""
+        return bool(_Search(self.constraints, fork, state, ()).size(np.zeros(0)) <= tolerances.CARRIED)
+
+    def is_at_rest(self, state: State) -> bool:
+        """True if all speeds are 0 in the state."""
+        return all(abs(state[u]) <= tolerances.SOLVED for u in self.constraints.motion.scope.symbols.u)
+
+    def speeds_along(self, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]) -> dict[Node, Any] | None:
+        """The state with the nearest speeds that lead along a branch; None where none is found.
+
+        Args:
+            tiers: what may move, each with those before it.
+        """
+        free: list[Node] = []
+        for tier in tiers:
+            free += tier
+            if tier:
+                found = _Search(self.constraints, fork, state, tuple(free)).nearest()
+                if found is not None:
+                    return {**state, **{u: state[u] + float(d) for u, d in zip(free, found, strict=True)}}
+        return None
 
 
 def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int) -> State:
@@ -88,35 +170,13 @@ def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int
     state |= {q: of_50_digits(guesses[q.name]) for q in sought}
     state = (Closure(constraints).closed(state, sought) or state) if sought else state
     called = frozenset(q.name for q in scope.symbols.q if is_typed(scope.model, q.name))
-    return with_gaps_closed(constraints, state, called)[0]
+    return Assembly(constraints).with_gaps_closed(state, called)[0]
 
 
 def _differs(declared: Scalar, q: Node, state: State) -> bool:
     """True if a coordinate differs from its declared start."""
     before = float(evaluate((declared,), state, fifty_digits())[0])
     return abs(float(state[q]) - before) > tolerances.COMPUTED * (1 + abs(before))
-
-
-def with_gaps_closed(constraints: Constraints, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
-    """(the nearest state in which positions agree with the constraints, the constraints that did not hold).
-
-    Args:
-        called: coordinates whose start a person typed, or a caller gave: these are moved last.
-    """
-    scope = constraints.motion.scope
-    apart = open_at(((row, row.gap) for row in constraints.rows if not row.identical), scope.symbols.q, state)
-    staying = that_stay(constraints, apart)
-    opened = tuple(name for name in apart if any(row.constraint == name for row in staying.rows))
-    if not opened:
-        return state, ()
-    standing, sought = set(symbols_of(staying.gaps)), constraints.fixed_by_position
-    own = [
-        q for q in scope.symbols.q if q in standing and q not in sought and not scope.model.coordinates[q.name].driven
-    ]
-    silent, given, typed = tiers_of(scope.model, own, called)
-    return Closure(staying).nearest_places(
-        state, ([*sought, *silent], given, typed), (*sought, *silent)
-    ) or state, opened
 
 
 def tiers_of(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
@@ -130,12 +190,6 @@ def open_at(pairs: Iterable[tuple[Row, Scalar | None]], symbols: Sequence[Node],
     """The constraints whose scalars ought to be zero and are not."""
     named = ((row, x) for row, x in pairs if x is not None)
     return tuple(dict.fromkeys(row.constraint for row, x in named if open_by(x, symbols, state)))
-
-
-def that_stay(constraints: Constraints, apart: Sequence[str]) -> Constraints:
-    """All constraints but the contacts that are open and may be so."""
-    ending = [contact.name for contact in constraints.motion.scope.model.contacts if contact.unilateral]
-    return bilateral(constraints, ending, [name for name in ending if name not in apart])
 
 
 def open_by(x: Scalar, symbols: Sequence[Node], state: State) -> float:
@@ -202,58 +256,6 @@ class Fork:
         names = ", ".join(f"'{name}'" for name in self.constraints)
         do = "does" if len(self.constraints) == 1 else "do"
         return f"a change point, where {names} {do} not determine the motion"
-
-
-def fork_at(constraints: Constraints, state: State) -> Fork | None:
-    """The fork at a state where the rank of the constraint rows is less than elsewhere; None where it is not.
-
-    Raises:
-        MissingValues, DerivationError: the constraints cannot be satisfied near.
-    """
-    if not constraints.closing or not constraints.motion.scope.symbols.u:
-        return None
-    J = _matrix(constraints, state)
-    lengths = lengths_of(J, 1, keepdims=True)
-    U, sizes, _ = np.linalg.svd(of_one_length(J))
-    here = int(np.sum(sizes > tolerances.RANK))
-    if here == len(constraints.closing):
-        return None
-    more = Rank(constraints).rank() - here
-    if more <= 0:
-        return None
-    shares = np.max(np.abs(U[:, here:]), axis=1)
-    names = dict.fromkeys(
-        row.constraint for row, share in zip(constraints.closing, shares, strict=True) if share > tolerances.SHARE
-    )
-    return Fork(tuple(names), more, U[:, here:].T / np.where(lengths > 0, lengths, 1.0).T)
-
-
-def leads_on(constraints: Constraints, fork: Fork, state: State) -> bool:
-    """True if accelerations exist with these speeds: J a + gamma = 0."""
-    return bool(_Search(constraints, fork, state, ()).size(np.zeros(0)) <= tolerances.CARRIED)
-
-
-def is_at_rest(constraints: Constraints, state: State) -> bool:
-    """True if all speeds are 0 in the state."""
-    return all(abs(state[u]) <= tolerances.SOLVED for u in constraints.motion.scope.symbols.u)
-
-
-def speeds_along(
-    constraints: Constraints, fork: Fork, state: State, tiers: Sequence[Sequence[Node]]
-) -> dict[Node, Any] | None:
-    """The state with the nearest speeds that lead along a branch; None where none is found.
-
-    Args:
-        tiers: what may move, each with those before it.
-    """
-    free: list[Node] = []
-    for tier in tiers:
-        free += tier
-        if tier:
-            found = _Search(constraints, fork, state, tuple(free)).nearest()
-            if found is not None:
-                return {**state, **{u: state[u] + float(d) for u, d in zip(free, found, strict=True)}}
-    return None
 
 
 @dataclass(frozen=True)

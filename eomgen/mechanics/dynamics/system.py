@@ -10,10 +10,10 @@ from typing import Any
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
+    Assembly,
     Constraints,
     Elimination,
     Rank,
-    begun_places,
     constraints_of,
     elimination_of,
     holds_identically,
@@ -106,6 +106,11 @@ class System:
         rates = {q.name: rate for q, rate in zip(self.scope.symbols.q, self.scope.rates, strict=True)}
         return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
 
+    @property
+    def still(self) -> dict[Node, Scalar]:
+        """Rates and accelerations at rest."""
+        return dict.fromkeys((*self.symbols.u, *self.symbols.a), 0)
+
 
 def system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
@@ -135,7 +140,7 @@ def free_system_of(
     if begun_as is not None:
         begun = _carried_places(begun_as, motion.scope)
     elif any(force.of_the_start for force in model.forces.values()):
-        begun = begun_places(constraints)
+        begun = Assembly(constraints).begun_places()
     return System(motion, loads_of(motion, begun), constraints, modes or {})
 
 

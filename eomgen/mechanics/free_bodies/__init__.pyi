@@ -12,9 +12,6 @@ from eomgen.mechanics.free_bodies.balance import balance_of as balance_of
 # Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them
 from eomgen.mechanics.free_bodies.balance import refuse_placeless as refuse_placeless
 
-# Rates and accelerations at rest
-from eomgen.mechanics.free_bodies.balance import still as still
-
 # Description of what is out of balance at a state; "" where nothing is. Reactions left open take random values
 from eomgen.mechanics.free_bodies.equilibrium import imbalance as imbalance
 
@@ -24,29 +21,20 @@ from eomgen.mechanics.free_bodies.equilibrium import reactions_by_sides as react
 # A contact with friction
 from eomgen.mechanics.free_bodies.friction import FrictionContact as FrictionContact
 
+# Friction of a system that depends on its own reactions
+from eomgen.mechanics.free_bodies.friction import SystemFriction as SystemFriction
+
 # The equations of motion of a system in their shortest form, friction in Q and forcing
 from eomgen.mechanics.free_bodies.friction import equations_of_motion as equations_of_motion
-
-# Every contact with friction, in the order of the components
-from eomgen.mechanics.free_bodies.friction import friction_contacts as friction_contacts
-
-# (contact, the friction of a unit of N, the sliding velocity) of every contact with friction
-from eomgen.mechanics.free_bodies.friction import frictions as frictions
-
-# True if any contact has friction
-from eomgen.mechanics.free_bodies.friction import has_friction as has_friction
-
-# |N| of every bilateral contact with friction, as a function of q, u and t; {} where there is none
-from eomgen.mechanics.free_bodies.friction import push_sizes as push_sizes
 
 # The equations of motion, friction in Q and forcing, and the accelerations explicit; the same without friction
 from eomgen.mechanics.free_bodies.friction import with_friction as with_friction
 
-# Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line
-from eomgen.mechanics.free_bodies.friction import with_rest as with_rest
-
 # degrees of freedom
 from eomgen.mechanics.free_bodies.inverse import FEW as FEW
+
+# Forces along what is driven, and multipliers of constraints, of given motions
+from eomgen.mechanics.free_bodies.inverse import DrivingForces as DrivingForces
 
 # Inverse dynamics: tau as functions of t, q, u, a, parameters, and of inputs that are no actuators
 from eomgen.mechanics.free_bodies.inverse import Inverse as Inverse
@@ -54,32 +42,14 @@ from eomgen.mechanics.free_bodies.inverse import Inverse as Inverse
 # a and lam, where the constraints leave few degrees of freedom; redundant rows are left out, their lam 0
 from eomgen.mechanics.free_bodies.inverse import by_independent as by_independent
 
-# The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam
-from eomgen.mechanics.free_bodies.inverse import drive as drive
-
 # tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them
 from eomgen.mechanics.free_bodies.inverse import inverse_of as inverse_of
-
-# lam of a constraint of one row in the equations of motion; a symbol where it closes
-from eomgen.mechanics.free_bodies.inverse import multiplier as multiplier
-
-# The system with a driven coordinate free, which starts where it is driven from
-from eomgen.mechanics.free_bodies.inverse import with_drive_let_go as with_drive_let_go
 
 # sum of combination * components + given
 from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction as NamedReaction
 
-# An argument of a call as it was written
-from eomgen.mechanics.free_bodies.names_of_reactions import argument_name as argument_name
-
-# Name in a table that a call means: the ends of a member may be in either order
-from eomgen.mechanics.free_bodies.names_of_reactions import name_of as name_of
-
 # Every reaction by its name, in the order of the components
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions as named_reactions
-
-# Unit of a component: FORCE, or COUPLE if it has no force on any body
-from eomgen.mechanics.free_bodies.names_of_reactions import unit_of as unit_of
 
 # All reactions of a system
 from eomgen.mechanics.free_bodies.reactions import Reactions as Reactions
@@ -95,7 +65,6 @@ from eomgen.mechanics.free_bodies.release import released as released
 
 # True if each displacement that releases the constraint is along its own push, whatever else is released
 from eomgen.mechanics.free_bodies.release import stays_straight as stays_straight
-from eomgen.mechanics.free_bodies.solution import Combination as Combination
 
 # A reaction that the equations of the rigid bodies do not determine
 from eomgen.mechanics.free_bodies.solution import Indeterminate as Indeterminate
@@ -106,12 +75,6 @@ from eomgen.mechanics.free_bodies.solution import values_at_a_state as values_at
 # Bodies and the reactions on them, at one configuration
 from eomgen.mechanics.free_bodies.structure import Structure as Structure
 
-# body 'AC' can turn about (4*a, 0), with it body 'CD' about (16*a, 0)
-from eomgen.mechanics.free_bodies.structure import motion_in_words as motion_in_words
-
-# Refuse bodies that would move in a way that no coordinate describes
-from eomgen.mechanics.free_bodies.structure import refuse_loose as refuse_loose
-
 # The structure at a configuration, at rest
 from eomgen.mechanics.free_bodies.structure import structure_of as structure_of
 
@@ -121,20 +84,11 @@ from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock as RigidBlock
 # A field of velocities of rigid bodies, a velocity plan
 from eomgen.mechanics.free_bodies.velocity_plan import VelocityPlan as VelocityPlan
 
-# The blocks that move, in the order of the model; what is in none of them stays at rest
-from eomgen.mechanics.free_bodies.velocity_plan import blocks_of as blocks_of
-
 # (truss, member, its two nodes) of every truss
 from eomgen.mechanics.free_bodies.velocity_plan import members_of as members_of
 
 # Roman numeral by which textbooks name a block: I, II, III, IV,
 from eomgen.mechanics.free_bodies.velocity_plan import numeral as numeral
-
-# Names of the bodies and trusses that are at rest
-from eomgen.mechanics.free_bodies.velocity_plan import resting_blocks as resting_blocks
-
-# 1/w of the first block that turns about one axis; 1 where none does
-from eomgen.mechanics.free_bodies.velocity_plan import turning_by_one as turning_by_one
 from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS as EACH_AXIS
 
 # The axes of each body's equations: the ground's in the plane, the body's own in space

@@ -349,11 +349,6 @@ def slope(balance: Balance, equation: BodyEquation, unknown: Node) -> Scalar:
     return found
 
 
-def still(system: System) -> dict[Node, Scalar]:
-    """Rates and accelerations at rest."""
-    return dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)
-
-
 def refuse_friction(balance: Balance) -> None:
     """Refuses friction at rest: it may have any value up to its limit, so that the balance determines no force.
 

@@ -93,7 +93,7 @@ def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:
     Raises:
         DerivationError: the normal reaction of a contact with friction is indeterminate.
     """
-    if not has_friction(equations.system):
+    if not SystemFriction(equations.system).exists:
         return equations
     solved = _WithFriction(equations)
     a, forces = solved.accelerations, solved.normals
@@ -110,58 +110,64 @@ def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:
     )
 
 
-def push_sizes(system: System) -> dict[str, Scalar]:
-    """|N| of every bilateral contact with friction, as a function of q, u and t; {} where there is none.
+@dataclass(frozen=True)
+class SystemFriction:
+    """Friction of a system that depends on its own reactions."""
 
-    Raises:
-        DerivationError: as `with_friction`.
-    """
-    if not round_symbols(system):
-        return {}
-    solved = _WithFriction(assembled_by_recursion(system))
-    pairs = zip(solved.found, solved.normals, strict=True)
-    return {contact.name: N for contact, N in pairs if contact.normals}
+    system: System
 
+    def push_sizes(self) -> dict[str, Scalar]:
+        """|N| of every bilateral contact with friction, as a function of q, u and t; {} where there is none.
 
-def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
-    """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line."""
-    rows = [row for row in system.constraints.rows if row.shares and row.friction is not None]
-    speeds = [row.sliding for row in rows if type(row.sliding) is Node and row.sliding.op == "sqrt"]
-    return substituted(tuple(scalars), {v: function("max", v, LEAST) for v in speeds}) if speeds else tuple(scalars)
+        Raises:
+            DerivationError: as `with_friction`.
+        """
+        if not self.round_symbols:
+            return {}
+        solved = _WithFriction(assembled_by_recursion(self.system))
+        pairs = zip(solved.found, solved.normals, strict=True)
+        return {contact.name: N for contact, N in pairs if contact.normals}
 
+    def with_rest(self, scalars: Sequence[Scalar]) -> ScalarRow:
+        """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is, as sign(v) along a line is."""
+        rows = [row for row in self.system.constraints.rows if row.shares and row.friction is not None]
+        speeds = [row.sliding for row in rows if type(row.sliding) is Node and row.sliding.op == "sqrt"]
+        return substituted(tuple(scalars), {v: function("max", v, LEAST) for v in speeds}) if speeds else tuple(scalars)
 
-def has_friction(system: System) -> bool:
-    """True if any contact has friction."""
-    return bool(frictions(system))
+    @property
+    def exists(self) -> bool:
+        """True if any contact has friction."""
+        return bool(self.named)
 
+    @property
+    def named(self) -> list[tuple[str, Scalar, Scalar]]:
+        """(contact, the friction of a unit of N, the sliding velocity) of every contact with friction."""
+        found = [(row.constraint, row.friction, row.sliding) for row in self.system.constraints.rows]
+        for link in self.system.motion.links:
+            found.append((link.name, joint_friction(self.system, link), link.s_rate[0] if link.s_rate else 0))
+        return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
 
-def frictions(system: System) -> list[tuple[str, Scalar, Scalar]]:
-    """(contact, the friction of a unit of N, the sliding velocity) of every contact with friction."""
-    found = [(row.constraint, row.friction, row.sliding) for row in system.constraints.rows]
-    for link in system.motion.links:
-        found.append((link.name, joint_friction(system, link), link.s_rate[0] if link.s_rate else 0))
-    return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
+    def contacts(self, components: Sequence[Component]) -> list[FrictionContact]:
+        """Every contact with friction, in the order of the components."""
+        u = self.system.symbols.u
+        found = []
+        for j, component in enumerate(components):
+            if not component.frictional:
+                continue
+            factor, sliding = sliding_friction(self.system, component)
+            normals = () if component.bilateral_friction is None else normals_of_round(components, component)
+            found.append(FrictionContact(component.owner, j, gradient(sliding, u), factor, normals))
+        return found
 
-
-def friction_contacts(system: System, components: Sequence[Component]) -> list[FrictionContact]:
-    """Every contact with friction, in the order of the components."""
-    u = system.symbols.u
-    found = []
-    for j, component in enumerate(components):
-        if not component.frictional:
-            continue
-        factor, sliding = sliding_friction(system, component)
-        normals = () if component.bilateral_friction is None else normals_of_round(components, component)
-        found.append(FrictionContact(component.owner, j, gradient(sliding, u), factor, normals))
-    return found
-
-
-def round_symbols(system: System) -> dict[str, Node]:
-    """A symbol for |N| of every bilateral contact with friction, by its name."""
-    on_lines = [row.constraint for row in system.constraints.rows if row.round and row.friction is not None]
-    if system.scope.model.space == "space":
-        on_lines += [link.name for link in system.motion.links if joint_friction(system, link) is not None]
-    return {name: system.scope.graph.symbol(f"|N|({name})") for name in on_lines}
+    @property
+    def round_symbols(self) -> dict[str, Node]:
+        """A symbol for |N| of every bilateral contact with friction, by its name."""
+        on_lines = [row.constraint for row in self.system.constraints.rows if row.round and row.friction is not None]
+        if self.system.scope.model.space == "space":
+            on_lines += [
+                link.name for link in self.system.motion.links if joint_friction(self.system, link) is not None
+            ]
+        return {name: self.system.scope.graph.symbol(f"|N|({name})") for name in on_lines}
 
 
 @dataclass(frozen=True)
@@ -185,7 +191,7 @@ class _WithFriction:
 
     @cached_property
     def found(self) -> list[FrictionContact]:
-        return friction_contacts(self.equations.system, self._balance.components)
+        return SystemFriction(self.equations.system).contacts(self._balance.components)
 
     @property
     def _single(self) -> list[FrictionContact]:
@@ -193,7 +199,7 @@ class _WithFriction:
 
     @cached_property
     def _symbols(self) -> dict[str, Node]:
-        return round_symbols(self.equations.system)
+        return SystemFriction(self.equations.system).round_symbols
 
     @cached_property
     def _normals(self) -> dict[int, Node]:

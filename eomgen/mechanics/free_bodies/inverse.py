@@ -33,7 +33,7 @@ from eomgen.mechanics.dynamics import (
     inverse_residual,
     system_of,
 )
-from eomgen.mechanics.free_bodies.friction import frictions, has_friction
+from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
@@ -105,7 +105,7 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
         UsageError: an unknown name; too few or too many actuators.
         DerivationError: Coulomb friction; an input that does not act linearly.
     """
-    if has_friction(system):
+    if SystemFriction(system).exists:
         raise DerivationError(
             "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
             fix="give the coordinates their `motion`, and use drive(...)",
@@ -223,56 +223,90 @@ def _acting_alone(columns: Sequence[ScalarRow]) -> dict[int, int]:
 # N_r are the normal reactions of contacts with friction, f_r the generalized force of its friction for a unit of it.
 
 
-def drive(system: System, coordinate: str) -> Scalar:
-    """The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam.
+@dataclass(frozen=True)
+class DrivingForces:
+    """Forces along what is driven, and multipliers of constraints, of given motions."""
 
-    That of a coordinate which a constraint drives is the multiplier of the constraint.
+    system: System
 
-    Raises:
-        DerivationError: the coordinate is not driven.
-    """
-    if (drive, coordinate) not in system.found:
-        system.found[drive, coordinate] = _drive(system, coordinate)
-    found: Scalar = system.found[drive, coordinate]
-    return found
+    def along(self, coordinate: str) -> Scalar:
+        """The force (of an angle: torque) along a driven coordinate that keeps it moving as given, linear in a and lam.
+
+        That of a coordinate which a constraint drives is the multiplier of the constraint.
+
+        Raises:
+            DerivationError: the coordinate is not driven.
+        """
+        if ("drive", coordinate) not in self.system.found:
+            self.system.found["drive", coordinate] = _drive(self.system, coordinate)
+        found: Scalar = self.system.found["drive", coordinate]
+        return found
+
+    def let_go(self, coordinate: str) -> System:
+        """The system with a driven coordinate free, which starts where it is driven from.
+
+        A system over all rates stays one: rates that its constraints would give need not be those of a state.
+        """
+        key = ("let go", coordinate)
+        if key not in self.system.found:
+            model = self.system.scope.model.altered(
+                coordinates=Table(
+                    {**self.system.scope.model.coordinates, coordinate: self.system.scope.let_go(coordinate)}
+                ),
+            )
+            over_all = self.system.free is None and self.system.scope.dependent
+            self.system.found[key] = (free_system_of if over_all else system_of)(
+                model, self.system.modes, begun_as=self.system
+            )
+        free: System = self.system.found[key]
+        return free
+
+    def multiplier(self, constraint: str) -> Scalar:
+        """lam of a constraint of one row in the equations of motion; a symbol where it closes.
+
+        Raises:
+            DerivationError: it has no single row, carries nothing, or shares what it carries with others.
+        """
+        rows = [row for row in self.system.constraints.rows if row.constraint == constraint]
+        if len(rows) != 1:
+            raise DerivationError(
+                f"multiplier({constraint}): the constraint has {len(rows)} rows",
+                fix="ask for reaction(...) of one component",
+            )
+        (row,) = rows
+        if row.status == "identical":
+            raise DerivationError(
+                f"multiplier({constraint}): the coordinates satisfy it by themselves, and it acts on no body",
+                fix="take it away, or other coordinates",
+            )
+        _refuse_shared((self.system.free or self.system).constraints, constraint)
+        if row.status == "closing":
+            return next(lam for lam in self.system.symbols.lam if lam.name == row.label)
+        return _eliminated(self.system, row)
 
 
 def _drive(system: System, coordinate: str) -> Scalar:
     model = system.scope.model
     part, constraints = model.coordinates[coordinate], model.driving_constraints.get(coordinate, ())
     if not part.driven and constraints:
-        return sum((multiplier(system, constraint) for constraint in constraints), start=0)
+        return sum((DrivingForces(system).multiplier(constraint) for constraint in constraints), start=0)
     if not part.driven:
         raise DerivationError(
             f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
             fix="ask it of a coordinate with `motion`, `rate` or `acceleration`",
         )
-    free = with_drive_let_go(system, coordinate)
+    free = DrivingForces(system).let_go(coordinate)
     equations = assembled_by_recursion(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
     return _carried(drive_residual(equations, k), system) - _friction(system, free, k)
 
 
-def with_drive_let_go(system: System, coordinate: str) -> System:
-    """The system with a driven coordinate free, which starts where it is driven from.
-
-    A system over all rates stays one: rates that its constraints would give need not be those of a state.
-    """
-    key = (with_drive_let_go, coordinate)
-    if key not in system.found:
-        model = system.scope.model.altered(
-            coordinates=Table({**system.scope.model.coordinates, coordinate: system.scope.let_go(coordinate)}),
-        )
-        over_all = system.free is None and system.scope.dependent
-        system.found[key] = (free_system_of if over_all else system_of)(model, system.modes, begun_as=system)
-    free: System = system.found[key]
-    return free
-
-
 def _friction(system: System, free: System, k: int) -> Scalar:
     """The friction along the k-th speed of the freed system, by the normal reactions of the motion as it is given."""
     u = free.symbols.u[k]
-    shares = {name: _carried(factor * derivative(sliding, u), system) for name, factor, sliding in frictions(free)}
+    shares = {
+        name: _carried(factor * derivative(sliding, u), system) for name, factor, sliding in SystemFriction(free).named
+    }
     shares = {name: share for name, share in shares.items() if not is_zero(share)}
     if not shares:
         return 0
@@ -294,30 +328,6 @@ def _carried(value: Scalar, system: System) -> Scalar:
     scope = system.scope
     meanings = {**scope.names, **{lam.name: lam for lam in system.symbols.lam}}
     return transplanted((value,), scope.graph, meanings)[0]
-
-
-def multiplier(system: System, constraint: str) -> Scalar:
-    """lam of a constraint of one row in the equations of motion; a symbol where it closes.
-
-    Raises:
-        DerivationError: it has no single row, carries nothing, or shares what it carries with others.
-    """
-    rows = [row for row in system.constraints.rows if row.constraint == constraint]
-    if len(rows) != 1:
-        raise DerivationError(
-            f"multiplier({constraint}): the constraint has {len(rows)} rows",
-            fix="ask for reaction(...) of one component",
-        )
-    (row,) = rows
-    if row.status == "identical":
-        raise DerivationError(
-            f"multiplier({constraint}): the coordinates satisfy it by themselves, and it acts on no body",
-            fix="take it away, or other coordinates",
-        )
-    _refuse_shared((system.free or system).constraints, constraint)
-    if row.status == "closing":
-        return next(lam for lam in system.symbols.lam if lam.name == row.label)
-    return _eliminated(system, row)
 
 
 def _refuse_shared(constraints: Constraints, constraint: str) -> None:

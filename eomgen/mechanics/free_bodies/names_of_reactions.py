@@ -7,21 +7,18 @@ surface along both tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, holds_identically
 from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, efforts_of
+from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect, effects_of_load, efforts_of
 from eomgen.mechanics.kinematics import BodyLink, Motion
-from eomgen.model import AXIS_NAMES, PointForce, ends_requested
+from eomgen.model import AXIS_NAMES, PointForce
 from eomgen.symbolic.expression import (
     ZERO,
-    Call,
-    Expression,
     Node,
-    Reference,
     Scalar,
     Vector,
     apply,
@@ -34,7 +31,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 
-FORCE, COUPLE = "N", "N*m"
 OWN = frozenset(("n", "t", "s", "tension", ""))  # components that outputs name as they are, in space too
 
 WrenchPart = Callable[[Effect], Vector]
@@ -66,19 +62,6 @@ def named_reactions(balance: Balance) -> tuple[NamedReaction, ...]:
     return tuple(named for owner in owners for named in _of_owner(balance, owner))
 
 
-def name_of(call: Call, names: Container[str]) -> str:
-    """Name in a table that a call means: the ends of a member may be in either order."""
-    ends = ends_requested(call) if call.name == "tension" and call.args else None
-    either = () if ends is None else (ends, ends[::-1])
-    written = (f"tension({argument_name(call.args[0])}, {a}-{b})" for a, b in either)
-    return next((name for name in written if name in names), str(call))
-
-
-def argument_name(argument: Reference | Expression) -> str:
-    """An argument of a call as it was written."""
-    return argument.name if isinstance(argument, Reference) else argument.text
-
-
 def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     constraints = [(j, c) for j, c in mine if c.kind != "drive"]
@@ -97,12 +80,12 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
             (about_z,) = _vector(balance, owner, "", "couple_", COUPLE, (2,))
             yield replace(about_z, name=f"reaction_couple({owner})")
     for j, c in apart:
-        yield NamedReaction(_name(balance, c), owner, unit_of(c), {j: 1})
+        yield NamedReaction(_name(balance, c), owner, c.unit, {j: 1})
         for share in c.friction:
             yield NamedReaction(f"reaction_{share.label}({owner})", owner, FORCE, {j: share.factor})
     for j, c in mine:
         if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
-            yield NamedReaction(c.name, owner, unit_of(c), drives, _less_inside(balance, c))
+            yield NamedReaction(c.name, owner, c.unit, drives, _less_inside(balance, c))
 
 
 def _vector(
@@ -138,12 +121,6 @@ def _turned(balance: Balance, on: int, vector: Vector) -> Vector:
 
 def _has_couple(component: Component) -> bool:
     return any(not is_zero(x) for effect in component.effects for x in effect.couple)
-
-
-def unit_of(component: Component) -> str:
-    """Unit of a component: FORCE, or COUPLE if it has no force on any body."""
-    forces = any(not is_zero(x) for effect in component.effects for x in effect.force)
-    return FORCE if forces else COUPLE
 
 
 def _name(balance: Balance, component: Component) -> str:

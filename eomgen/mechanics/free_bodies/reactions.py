@@ -24,13 +24,12 @@ from eomgen.mechanics.free_bodies.balance import (
     balances_of_nodes,
     is_balanced,
     refuse_friction,
-    still,
     unbalanced,
 )
-from eomgen.mechanics.free_bodies.friction import push_sizes, round_symbols
+from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import SURE, Combination, combined_reaction, solution_of_balance
-from eomgen.mechanics.free_bodies.structure import refuse_loose, structure_of
+from eomgen.mechanics.free_bodies.structure import structure_of
 from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
@@ -381,7 +380,7 @@ def reactions_of(
 
 
 def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) -> Reactions:
-    sizes = push_sizes(system)
+    sizes = SystemFriction(system).push_sizes()
     balance = balance_of(system, sizes)
     if balance.unknowns:
         return _at_rest(balance, at, work)
@@ -395,7 +394,7 @@ def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) ->
 
 def _with_sizes(system: System, at: Mapping[Node, Scalar], sizes: Mapping[str, Scalar], work: int) -> Solution:
     """The reactions at a configuration, |N| of bilateral contacts put in at last: multiplied out it is long."""
-    symbols = round_symbols(system)
+    symbols = SystemFriction(system).round_symbols
     solution = solution_of_balance(balance_of(system, symbols), at, work=work)
     names, values = list(solution.constants), tuple(solution.constants.values())
     known = dict(zip((symbols[name] for name in sizes), substituted(tuple(sizes.values()), at), strict=True))
@@ -409,7 +408,7 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reaction
         DerivationError: the loads are not in balance there, whatever the unknowns are.
     """
     refuse_friction(balance)
-    state = {**at, **still(balance.system)}
+    state = {**at, **balance.system.still}
     solution = solution_of_balance(balance, state, work=work)
     if not is_balanced(balance, solution):
         state = {**values_where_at_rest(balance.system), **at}
@@ -443,7 +442,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
         if len(left) <= motions or sum(not holds_identically(x) for x in left) <= motions:
             return
         if not system.symbols.u:
-            return refuse_loose(structure_of(system))
+            return structure_of(system).refuse_loose()
     key = (refuse_unheld, bool(at))
     if key not in system.found:
         system.found[key] = _unheld(balance, touched=bool(at))

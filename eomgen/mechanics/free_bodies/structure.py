@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -11,7 +11,10 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
-from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.free_bodies.velocity_plan import (
+    MOST_MOTIONS,
+    VelocityPlan,
+)
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.model import BodyPoint, Constraint, declared_at
@@ -22,19 +25,14 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     State,
     Vector,
-    cross,
     derivative,
-    dot,
     is_zero,
-    over,
     substituted,
     tangent,
     tangents,
-    times,
     vector_of,
 )
 from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, sparse_rank
-from eomgen.symbolic.print import to_text
 from eomgen.symbolic.solve import LinearSystem, Pivots, Solution, general_solution
 
 # -------- structure -------------------------------------------------------------------------------------------
@@ -257,6 +255,29 @@ class Structure:
         """The model's own, or the first generic ones at which all entries have a value."""
         return self.system.scope.values_for([x for row in self.rows for x in row.values()], shaken=shaken)
 
+    def refuse_loose(self, degrees_of_freedom: int = 0) -> None:
+        """Refuse bodies that would move in a way that no coordinate describes.
+
+        Args:
+            degrees_of_freedom: the number of motions that coordinates describe.
+        Raises:
+            DerivationError: which bodies can move, and how.
+        """
+        if self.mobility <= degrees_of_freedom or stays(self):
+            return
+        reported = [plan.in_words for plan in self.loose[:MOST_MOTIONS]]
+        more = len(self.loose) - len(reported)
+        enough = self.indeterminacy + degrees_of_freedom >= self.mobility
+        kind = "infinitesimally movable" if enough else "unstable"
+        what = f"the structure is {kind}: {'; '.join(reported)}{f'; and {more} more' if more else ''}"
+        if degrees_of_freedom:
+            what += (
+                f" ({degrees_of_freedom} of these motions {'is' if degrees_of_freedom == 1 else 'are'} a coordinate's)"
+            )
+        if enough:
+            what += f"; its {len(self.rows)} reactions are not independent there"
+        raise DerivationError(what, declared_at(_culprit(self.loose[0])), _fix(self, enough))
+
 
 @dataclass(frozen=True)
 class _Solved:
@@ -330,33 +351,7 @@ def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
 
 
 # -------- loose motion ----------------------------------------------------------------------------------------
-# Plan -> in words, how bodies that nothing holds can move: "body 'CD' can turn about (2*a, 0)".
-
-
-MOST_NAMES = 6  # of parts that move together
-MOST_MOTIONS = 3  # that are described in words
-
-
-def refuse_loose(structure: Structure, degrees_of_freedom: int = 0) -> None:
-    """Refuse bodies that would move in a way that no coordinate describes.
-
-    Args:
-        degrees_of_freedom: the number of motions that coordinates describe.
-    Raises:
-        DerivationError: which bodies can move, and how.
-    """
-    if structure.mobility <= degrees_of_freedom or stays(structure):
-        return
-    reported = [motion_in_words(plan) for plan in structure.loose[:MOST_MOTIONS]]
-    more = len(structure.loose) - len(reported)
-    enough = structure.indeterminacy + degrees_of_freedom >= structure.mobility
-    kind = "infinitesimally movable" if enough else "unstable"
-    what = f"the structure is {kind}: {'; '.join(reported)}{f'; and {more} more' if more else ''}"
-    if degrees_of_freedom:
-        what += f" ({degrees_of_freedom} of these motions {'is' if degrees_of_freedom == 1 else 'are'} a coordinate's)"
-    if enough:
-        what += f"; its {len(structure.rows)} reactions are not independent there"
-    raise DerivationError(what, declared_at(_culprit(structure.loose[0])), _fix(structure, enough))
+# Structure -> True if bodies that nothing holds stay in place, and what would hold them.
 
 
 def stays(structure: Structure) -> bool:
@@ -390,7 +385,7 @@ def _only_pulls(constraint: Constraint) -> bool:
 
 def _culprit(plan: VelocityPlan) -> str:
     """A body or node that moves."""
-    blocks = blocks_of(plan)
+    blocks = plan.blocks
     named = [name for block in blocks for name in block.bodies]
     return named[0] if named else plan.moving[0]
 
@@ -406,59 +401,3 @@ def _fix(structure: Structure, enough: bool) -> str:
         held += "; a spring holds only what a coordinate moves: name the angle or displacement in the body's joint"
     balanced = "; its loads are in balance even so, what they need then `eomgen reactions` gives"
     return held + (balanced if structure.is_in_balance else "")
-
-
-def motion_in_words(plan: VelocityPlan) -> str:
-    """body 'AC' can turn about (4*a, 0), with it body 'CD' about (16*a, 0)"""
-    (name, (verb, _, how)), *others = [(_named(block), _motion(plan, block)) for block in blocks_of(plan)]
-    following = [f"{other} {doing} {how}" for other, (_, doing, how) in others[:MOST_MOTIONS]]
-    following += [f"{len(others) - MOST_MOTIONS} more blocks"] if len(others) > MOST_MOTIONS else []
-    return f"{name} can {verb} {how}" + (f", with it {' and '.join(following)}" if following else "")
-
-
-def _named(block: RigidBlock) -> str:
-    """Its bodies; of trusses its members, or its nodes."""
-    members = [member for _, member in block.members]
-    kinds: list[tuple[str, str, Sequence[str]]] = [
-        ("body", "bodies", block.bodies),
-        ("member", "members", members),
-        ("node", "nodes", block.nodes),
-    ]
-    return " and ".join(_of_kind(one, many, names) for one, many, names in kinds if names)
-
-
-def _of_kind(one: str, many: str, names: Sequence[str]) -> str:
-    shown = ", ".join(f"'{name}'" for name in names[:MOST_NAMES])
-    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-    return f"{one if len(names) == 1 else many} {shown}{more}"
-
-
-def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
-    """(slide, sliding, along x), (turn, turning, about (a, 0))"""
-    if plan.vanishes(block.spin):
-        return "slide", "sliding", f"along {_direction(plan, vector_of(map(plan.simple, block.velocity)))}"
-    place = block.center(plan).place if plan.system.scope.model.space == "plane" else None
-    return "turn", "turning", _screw(plan, block) if place is None else f"about {_tuple(place[:2])}"
-
-
-def _screw(plan: VelocityPlan, block: RigidBlock) -> str:
-    """Description of a screw motion in space: the axis through w x v_O / w.w along w, and the advance along it."""
-    w, v = block.spin, block.velocity
-    square = dot(w, w)
-    place = tuple(plan.simple(over(x, square)) for x in cross(w, v))
-    turning = f"about the axis through {_tuple(place)} along {_direction(plan, w)}"
-    return turning if plan.vanishes((dot(w, v),)) else f"{turning}, advancing along it"
-
-
-def _direction(plan: VelocityPlan, vector: Vector) -> str:
-    """x, y, z, or the components against the first that is not 0."""
-    kept = [k for k in range(3) if not plan.vanishes((vector[k],))]
-    if len(kept) == 1:
-        return "xyz"[kept[0]]
-    ratio = times(over(1, vector[kept[0]]), vector)
-    size = 2 if plan.system.scope.model.space == "plane" else 3
-    return _tuple([plan.simple(x) if k in kept else 0 for k, x in enumerate(ratio)][:size])
-
-
-def _tuple(scalars: Iterable[Scalar]) -> str:
-    return f"({', '.join(to_text(x) for x in scalars)})"

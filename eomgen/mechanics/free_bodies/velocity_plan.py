@@ -30,9 +30,11 @@ from eomgen.symbolic.expression import (
     plus,
     sqrt,
     substituted,
+    times,
     vector_of,
 )
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.print import to_text
 
 # -------- velocity plan ---------------------------------------------------------------------------------------
 # Velocities of all bodies at one configuration -> Plan: velocities of points, spins, centres of rotation, work.
@@ -224,6 +226,53 @@ class VelocityPlan:
         rotation = (vector_of(R[0:3]), vector_of(R[3:6]), vector_of(R[6:9]))
         return apply(rotation, vector)
 
+    @property
+    def blocks(self) -> tuple[RigidBlock, ...]:
+        """The blocks that move, in the order of the model; what is in none of them stays at rest."""
+        groups: list[_Group] = []
+        for part in _bodies(self):
+            group = next((g for g in groups if _agree(g.parts[0].numbers, part.numbers)), None)
+            if group is None:
+                groups.append(_Group([part]))
+            else:
+                group.parts.append(part)
+        members = _moving_members(self)
+        nodes = _nodes_of(self, members)
+        for member in members:
+            group = next((g for g in groups if all(g.carries(node, nodes(node)) for node in member[2])), None)
+            if group is not None:
+                group.parts.append(_member(self, member, ()))
+            elif numbers := _numbers_of(*map(nodes, member[2])):
+                groups.append(_Group([_member(self, member, numbers)]))
+        blocks = [_joined(self, group.parts) for group in groups]
+        return (*blocks, *_single_nodes(self, blocks))
+
+    @property
+    def turning_by_one(self) -> Scalar:
+        """1/w of the first block that turns about one axis; 1 where none does."""
+        for part in chain(_bodies(self), _members(self)):
+            turning = [k for k, w in enumerate(part.numbers[:3]) if abs(w) > tolerances.ZERO_AT_50]
+            if len(turning) == 1:
+                return self.simple(over(1, part.motion()[0][turning[0]]))
+        return 1
+
+    @property
+    def resting_blocks(self) -> tuple[str, ...]:
+        """Names of the bodies and trusses that are at rest."""
+        links = self.system.motion.links
+        bodies = tuple(link.name for link in links if link.name not in self.moving and not is_node(link.name))
+        trusses = dict.fromkeys(link.name.partition(".")[0] for link in links if is_node(link.name))
+        awake = {name.partition(".")[0] for name in self.moving if is_node(name)}
+        return (*bodies, *(name for name in trusses if name not in awake))
+
+    @property
+    def in_words(self) -> str:
+        """body 'AC' can turn about (4*a, 0), with it body 'CD' about (16*a, 0)"""
+        (name, (verb, _, how)), *others = [(_named(block), _motion(self, block)) for block in self.blocks]
+        following = [f"{other} {doing} {how}" for other, (_, doing, how) in others[:MOST_MOTIONS]]
+        following += [f"{len(others) - MOST_MOTIONS} more blocks"] if len(others) > MOST_MOTIONS else []
+        return f"{name} can {verb} {how}" + (f", with it {' and '.join(following)}" if following else "")
+
 
 # -------- blocks ----------------------------------------------------------------------------------------------
 # Plan -> Blocks: the bodies and truss members that move as one rigid body, as a textbook numbers them.
@@ -261,45 +310,6 @@ class RigidBlock:
     def center(self, plan: VelocityPlan) -> PlanCenter:
         """Its centre of rotation in the plane."""
         return plan.center(VelocityField(v=self.velocity, w=self.spin))
-
-
-def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
-    """The blocks that move, in the order of the model; what is in none of them stays at rest."""
-    groups: list[_Group] = []
-    for part in _bodies(plan):
-        group = next((g for g in groups if _agree(g.parts[0].numbers, part.numbers)), None)
-        if group is None:
-            groups.append(_Group([part]))
-        else:
-            group.parts.append(part)
-    members = _moving_members(plan)
-    nodes = _nodes_of(plan, members)
-    for member in members:
-        group = next((g for g in groups if all(g.carries(node, nodes(node)) for node in member[2])), None)
-        if group is not None:
-            group.parts.append(_member(plan, member, ()))
-        elif numbers := _numbers_of(*map(nodes, member[2])):
-            groups.append(_Group([_member(plan, member, numbers)]))
-    blocks = [_joined(plan, group.parts) for group in groups]
-    return (*blocks, *_single_nodes(plan, blocks))
-
-
-def turning_by_one(plan: VelocityPlan) -> Scalar:
-    """1/w of the first block that turns about one axis; 1 where none does."""
-    for part in chain(_bodies(plan), _members(plan)):
-        turning = [k for k, w in enumerate(part.numbers[:3]) if abs(w) > tolerances.ZERO_AT_50]
-        if len(turning) == 1:
-            return plan.simple(over(1, part.motion()[0][turning[0]]))
-    return 1
-
-
-def resting_blocks(plan: VelocityPlan) -> tuple[str, ...]:
-    """Names of the bodies and trusses that are at rest."""
-    links = plan.system.motion.links
-    bodies = tuple(link.name for link in links if link.name not in plan.moving and not is_node(link.name))
-    trusses = dict.fromkeys(link.name.partition(".")[0] for link in links if is_node(link.name))
-    awake = {name.partition(".")[0] for name in plan.moving if is_node(name)}
-    return (*bodies, *(name for name in trusses if name not in awake))
 
 
 def numeral(number: int) -> str:
@@ -432,3 +442,59 @@ def _single_nodes(plan: VelocityPlan, blocks: list[RigidBlock]) -> list[RigidBlo
     carried = {node for block in blocks for member in block.members for node in ends[member]}
     alone = [name for name in plan.moving if is_node(name) and name not in carried]
     return [RigidBlock((), (), (name,), ZERO, plan.raw_velocity((name, ZERO))) for name in alone]
+
+
+# -------- motions in words ------------------------------------------------------------------------------------
+# Plan -> in words, how bodies that nothing holds can move: "body 'CD' can turn about (2*a, 0)".
+
+
+MOST_MOTIONS = 3  # that are described in words
+MOST_NAMES = 6  # of parts that move together
+
+
+def _named(block: RigidBlock) -> str:
+    """Its bodies; of trusses its members, or its nodes."""
+    members = [member for _, member in block.members]
+    kinds: list[tuple[str, str, Sequence[str]]] = [
+        ("body", "bodies", block.bodies),
+        ("member", "members", members),
+        ("node", "nodes", block.nodes),
+    ]
+    return " and ".join(_of_kind(one, many, names) for one, many, names in kinds if names)
+
+
+def _of_kind(one: str, many: str, names: Sequence[str]) -> str:
+    shown = ", ".join(f"'{name}'" for name in names[:MOST_NAMES])
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return f"{one if len(names) == 1 else many} {shown}{more}"
+
+
+def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
+    """(slide, sliding, along x), (turn, turning, about (a, 0))"""
+    if plan.vanishes(block.spin):
+        return "slide", "sliding", f"along {_direction(plan, vector_of(map(plan.simple, block.velocity)))}"
+    place = block.center(plan).place if plan.system.scope.model.space == "plane" else None
+    return "turn", "turning", _screw(plan, block) if place is None else f"about {_tuple(place[:2])}"
+
+
+def _screw(plan: VelocityPlan, block: RigidBlock) -> str:
+    """Description of a screw motion in space: the axis through w x v_O / w.w along w, and the advance along it."""
+    w, v = block.spin, block.velocity
+    square = dot(w, w)
+    place = tuple(plan.simple(over(x, square)) for x in cross(w, v))
+    turning = f"about the axis through {_tuple(place)} along {_direction(plan, w)}"
+    return turning if plan.vanishes((dot(w, v),)) else f"{turning}, advancing along it"
+
+
+def _direction(plan: VelocityPlan, vector: Vector) -> str:
+    """x, y, z, or the components against the first that is not 0."""
+    kept = [k for k in range(3) if not plan.vanishes((vector[k],))]
+    if len(kept) == 1:
+        return "xyz"[kept[0]]
+    ratio = times(over(1, vector[kept[0]]), vector)
+    size = 2 if plan.system.scope.model.space == "plane" else 3
+    return _tuple([plan.simple(x) if k in kept else 0 for k, x in enumerate(ratio)][:size])
+
+
+def _tuple(scalars: Iterable[Scalar]) -> str:
+    return f"({', '.join(to_text(x) for x in scalars)})"

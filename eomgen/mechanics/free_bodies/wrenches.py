@@ -209,6 +209,7 @@ def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]
 # System -> Components: every scalar reaction of joints and constraints, and what a unit of it does to the bodies.
 
 
+FORCE, COUPLE = "N", "N*m"
 EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
@@ -278,6 +279,12 @@ class Component:
             return f"drive({self.side or self.owner})"
         owner = f"{self.owner}.{self.side}" if self.side else self.owner
         return f"reaction_{self.label.replace(' ', '_')}({owner})"
+
+    @property
+    def unit(self) -> str:
+        """Unit of a component: FORCE, or COUPLE if it has no force on any body."""
+        forces = any(not is_zero(x) for effect in self.effects for x in effect.force)
+        return FORCE if forces else COUPLE
 
 
 def components_of(system: System, axes: Axes) -> tuple[Component, ...]:

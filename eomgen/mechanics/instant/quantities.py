@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Indeterminate, Reactions, drive, multiplier, reactions_of, refuse_placeless
+from eomgen.mechanics.free_bodies import DrivingForces, Indeterminate, Reactions, reactions_of, refuse_placeless
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
@@ -304,7 +304,7 @@ class Quantities:
         rows = [row for row in self.system.constraints.rows if row.constraint == constraint]
         if any(row.pushes for row in rows) and not self._acts_at_no_place:
             return self.reactions.multiplier(constraint)
-        return multiplier(self.system, constraint)
+        return DrivingForces(self.system).multiplier(constraint)
 
     @cached_property
     def _acts_at_no_place(self) -> bool:
@@ -317,7 +317,7 @@ class Quantities:
 
     def drive(self, coordinate: str) -> Scalar:
         """Force or moment of the drive that moves a driven coordinate as given."""
-        return drive(self.system, coordinate)
+        return DrivingForces(self.system).along(coordinate)
 
     def section(self, body: str) -> SectionForces:
         """The section forces along a body."""

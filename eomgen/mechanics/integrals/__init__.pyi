@@ -3,23 +3,11 @@
 # A momentum of the whole system that stays constant, or the square of one
 from eomgen.mechanics.integrals.first_integrals import Constant as Constant
 
+# Quantities that stay constant along every motion of a system
+from eomgen.mechanics.integrals.first_integrals import FirstIntegrals as FirstIntegrals
+
 # A function of the motion that stays constant
 from eomgen.mechanics.integrals.first_integrals import Integral as Integral
-
-# (T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ()
-from eomgen.mechanics.integrals.first_integrals import energy_integral as energy_integral
-
-# Components of momentum and angular momentum that stay constant and are not among those known
-from eomgen.mechanics.integrals.first_integrals import momenta_of_the_whole as momenta_of_the_whole
-
-# p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one
-from eomgen.mechanics.integrals.first_integrals import momentum_integrals as momentum_integrals
-
-# True for each function of q, u and t that is constant along every motion, in every piece
-from eomgen.mechanics.integrals.first_integrals import stay_constant as stay_constant
-
-# Extent in which all conserved momenta are constant; results that follow from them hold there
-from eomgen.mechanics.integrals.first_integrals import where_momenta_hold as where_momenta_hold
 
 # W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k
 from eomgen.mechanics.integrals.first_integrals import work_of_constant_forces as work_of_constant_forces

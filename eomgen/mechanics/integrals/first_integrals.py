@@ -84,37 +84,132 @@ class Integral:
     held: Extent = Extent(True)
 
 
-def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
-    """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
+@dataclass(frozen=True)
+class FirstIntegrals:
+    """Quantities that stay constant along every motion of a system."""
 
-    Where something moves by itself, Jacobi's integral if that stays. One that stays in every piece goes before one that
-    stays in that of the start.
-    """
-    if not equations.M:
-        return ()
-    within: list[Integral] = []
-    for V in (equations.V, equations.V - work_of_constant_forces(equations.system)):
-        held = WellPosed(replace(equations, V=V)).where_conservative
-        if held.everywhere:
-            return (Integral("energy", equations.T + V),)
-        if held:
-            within.append(Integral("energy", equations.T + V, held=held))
-    found = jacobi(equations)
-    if found is not None:
-        integral = Integral("jacobi", found[0], held=found[1])
-        if integral.held.everywhere:
-            return (integral,)
-        within.append(integral)
-    return tuple(within[:1])
+    equations: EquationsOfMotion
 
+    @property
+    def of_energy(self) -> tuple[Integral, ...]:
+        """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
 
-def where_momenta_hold(equations: EquationsOfMotion) -> Extent:
-    """Extent in which all conserved momenta are constant; results that follow from them hold there."""
-    held = Extent(True)
-    for each in momentum_integrals(equations):
-        if not depends_on(each.expression, (equations.symbols.t,)):
-            held = held & each.held
-    return held
+        Where something moves by itself, Jacobi's integral if that stays. One that stays in every piece goes before one
+        that stays in that of the start.
+        """
+        if not self.equations.M:
+            return ()
+        within: list[Integral] = []
+        for V in (self.equations.V, self.equations.V - work_of_constant_forces(self.equations.system)):
+            held = WellPosed(replace(self.equations, V=V)).where_conservative
+            if held.everywhere:
+                return (Integral("energy", self.equations.T + V),)
+            if held:
+                within.append(Integral("energy", self.equations.T + V, held=held))
+        found = self.jacobi
+        if found is not None:
+            integral = Integral("jacobi", found[0], held=found[1])
+            if integral.held.everywhere:
+                return (integral,)
+            within.append(integral)
+        return tuple(within[:1])
+
+    @property
+    def where_momenta_hold(self) -> Extent:
+        """Extent in which all conserved momenta are constant; results that follow from them hold there."""
+        held = Extent(True)
+        for each in self.of_momentum:
+            if not depends_on(each.expression, (self.equations.symbols.t,)):
+                held = held & each.held
+        return held
+
+    @property
+    def of_momentum(self) -> tuple[Integral, ...]:
+        """p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one."""
+        symbols, scope = self.equations.symbols, self.equations.system.scope
+        momenta = gradient(self.equations.T, symbols.u)
+        drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
+        others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
+        free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in self.equations.J]))]
+        rates = [drifts[k] + self.equations.forcing[k] for k in free]
+        for k, (rate, held) in zip(free, _of_time_alone(self.equations, rates, others), strict=True):
+            u, p = symbols.u[k], momenta[k]
+            if rate is None:
+                continue
+            try:
+                gained = integral_from_zero(rate, symbols.t, "") if type(rate) is Node else rate * symbols.t
+            except DerivationError:  # no closed form
+                continue
+            name = u.name.removesuffix("'")
+            found.append(Integral(f"momentum({name})", p - gained, name, held))
+        return tuple(found)
+
+    def stay_constant(self, functions: Sequence[Scalar]) -> tuple[bool, ...]:
+        """True for each function of q, u and t that is constant along every motion, in every piece.
+
+        With closing constraints or friction, or where the test cannot decide, all are False.
+        """
+        return tuple(held.everywhere for held in self.where_constant(functions))
+
+    def where_constant(self, functions: Sequence[Scalar]) -> tuple[Extent, ...]:
+        """Extent in which each function of q, u and t is constant along every motion."""
+        if self.equations.J or self.equations.friction or not self.equations.M:
+            return (Extent(False),) * len(functions)
+        try:
+            drifts = self.equations.system.scope.time_derivative(tuple(functions))
+        except DerivationError:  # an input, which a caller may replace
+            return (Extent(False),) * len(functions)
+        slopes = [gradient(f, self.equations.symbols.u) for f in functions]
+        rows = [[*row, force] for row, force in zip(self.equations.M, self.equations.forcing, strict=True)]
+        requested = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
+        flat = [x for row in (*rows, *requested) for x in row]
+        division = division_of(self.equations, flat)
+        if division is None:
+            return tuple(Extent(True) if yes else Extent(False) for yes in _following(rows, requested))
+        known: dict[Choices, tuple[bool, ...]] = {}
+
+        def found(piece: Choices) -> tuple[bool, ...]:
+            if piece not in known:
+                values = iter(as_chosen(flat, division.nodes, piece))
+                table = [[next(values) for _ in row] for row in (*rows, *requested)]
+                known[piece] = _following(table[: len(rows)], table[len(rows) :])
+            return known[piece]
+
+        return tuple(division.where(lambda piece, k=k: found(piece)[k]) for k in range(len(functions)))  # type: ignore[misc]
+
+    @property
+    def jacobi(self) -> tuple[Scalar, Extent] | None:
+        """(u . dT/du - T + V, in which pieces it stays constant): drives at a steady rate take energy in and out."""
+        symbols = self.equations.symbols
+        if depends_on(self.equations.V, (symbols.t,)) or all(is_zero(x) for x in self.equations.nu):
+            return None
+        found = inner(symbols.u, gradient(self.equations.T, symbols.u)) - self.equations.T + self.equations.V
+        (held,) = self.where_constant((found,))
+        return (found, held) if held else None
+
+    def momenta_of_the_whole(self, known: Sequence[Scalar]) -> tuple[Constant, ...]:
+        """Components of momentum and angular momentum that stay constant and are not among those known.
+
+        Angular momenta about the point about which most of them stay, of such points the one about which least is new.
+        """
+        system = self.equations.system
+        bodies = [link.name for link in system.motion.links if _has_inertia(system, link.name)]
+        many = len(self.equations.M) > MOST_SPEEDS
+        in_space = system.scope.model.space == "space"
+        if not bodies or many or (in_space and SystemInertia(system.motion).shapeless(bodies)):
+            return ()
+        heavy = [body for body in bodies if not is_zero(system.scope.mass_properties(body).m)]
+        P = _momentum(system, heavy)
+        constant = self.stay_constant(P) if heavy else (False,) * 3
+        places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
+        moments = [_constant_moments(self.equations, bodies, about, point) for about, point in places.items()]
+        found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
+        most = max(map(len, moments))
+        new = [_new(each, known) for each in moments if len(each) == most]
+        return (
+            *_new(found, known),
+            *min(new, key=lambda each: (len(each), sum(text_size(x.expression) for x in each))),
+        )
 
 
 def work_of_constant_forces(system: System) -> Scalar:
@@ -147,27 +242,6 @@ def _is_constant(system: System, *scalars: Scalar) -> bool:
     symbols = system.symbols
     moving = (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values())
     return not any(depends_on(x, moving) for x in scalars)
-
-
-def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
-    """p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one."""
-    symbols, scope = equations.symbols, equations.system.scope
-    momenta = gradient(equations.T, symbols.u)
-    drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
-    others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
-    free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in equations.J]))]
-    rates = [drifts[k] + equations.forcing[k] for k in free]
-    for k, (rate, held) in zip(free, _of_time_alone(equations, rates, others), strict=True):
-        u, p = symbols.u[k], momenta[k]
-        if rate is None:
-            continue
-        try:
-            gained = integral_from_zero(rate, symbols.t, "") if type(rate) is Node else rate * symbols.t
-        except DerivationError:  # no closed form
-            continue
-        name = u.name.removesuffix("'")
-        found.append(Integral(f"momentum({name})", p - gained, name, held))
-    return tuple(found)
 
 
 def _of_time_alone(
@@ -271,41 +345,6 @@ class Constant:
     expression: Scalar
 
 
-def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
-    """True for each function of q, u and t that is constant along every motion, in every piece.
-
-    With closing constraints or friction, or where the test cannot decide, all are False.
-    """
-    return tuple(held.everywhere for held in where_constant(equations, functions))
-
-
-def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Extent, ...]:
-    """Extent in which each function of q, u and t is constant along every motion."""
-    if equations.J or equations.friction or not equations.M:
-        return (Extent(False),) * len(functions)
-    try:
-        drifts = equations.system.scope.time_derivative(tuple(functions))
-    except DerivationError:  # an input, which a caller may replace
-        return (Extent(False),) * len(functions)
-    slopes = [gradient(f, equations.symbols.u) for f in functions]
-    rows = [[*row, force] for row, force in zip(equations.M, equations.forcing, strict=True)]
-    requested = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
-    flat = [x for row in (*rows, *requested) for x in row]
-    division = division_of(equations, flat)
-    if division is None:
-        return tuple(Extent(True) if yes else Extent(False) for yes in _following(rows, requested))
-    known: dict[Choices, tuple[bool, ...]] = {}
-
-    def found(piece: Choices) -> tuple[bool, ...]:
-        if piece not in known:
-            values = iter(as_chosen(flat, division.nodes, piece))
-            table = [[next(values) for _ in row] for row in (*rows, *requested)]
-            known[piece] = _following(table[: len(rows)], table[len(rows) :])
-        return known[piece]
-
-    return tuple(division.where(lambda piece, k=k: found(piece)[k]) for k in range(len(functions)))  # type: ignore[misc]
-
-
 def _following(rows: Sequence[Sequence[Scalar]], requested: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
     """True for each requested row that depends linearly on the rows, at random states: exact, or else of 50 digits."""
     flat = [x for row in (*rows, *requested) for x in row]
@@ -331,45 +370,13 @@ def _real_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
     return real_values(flat, rng, fifty_digits())
 
 
-def jacobi(equations: EquationsOfMotion) -> tuple[Scalar, Extent] | None:
-    """(u . dT/du - T + V, in which pieces it stays constant): drives at a steady rate take energy in and out."""
-    symbols = equations.symbols
-    if depends_on(equations.V, (symbols.t,)) or all(is_zero(x) for x in equations.nu):
-        return None
-    found = inner(symbols.u, gradient(equations.T, symbols.u)) - equations.T + equations.V
-    (held,) = where_constant(equations, (found,))
-    return (found, held) if held else None
-
-
-def momenta_of_the_whole(equations: EquationsOfMotion, known: Sequence[Scalar]) -> tuple[Constant, ...]:
-    """Components of momentum and angular momentum that stay constant and are not among those known.
-
-    Angular momenta about the point about which most of them stay, of such points the one about which least is new.
-    """
-    system = equations.system
-    bodies = [link.name for link in system.motion.links if _has_inertia(system, link.name)]
-    many = len(equations.M) > MOST_SPEEDS
-    in_space = system.scope.model.space == "space"
-    if not bodies or many or (in_space and SystemInertia(system.motion).shapeless(bodies)):
-        return ()
-    heavy = [body for body in bodies if not is_zero(system.scope.mass_properties(body).m)]
-    P = _momentum(system, heavy)
-    constant = stay_constant(equations, P) if heavy else (False,) * 3
-    places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
-    moments = [_constant_moments(equations, bodies, about, point) for about, point in places.items()]
-    found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
-    most = max(map(len, moments))
-    new = [_new(each, known) for each in moments if len(each) == most]
-    return (*_new(found, known), *min(new, key=lambda each: (len(each), sum(text_size(x.expression) for x in each))))
-
-
 def _constant_moments(equations: EquationsOfMotion, bodies: Sequence[str], about: str, point: Vector) -> list[Constant]:
     """The components of the angular momentum about a point that stay, and in space the square of one body's."""
     system = equations.system
     in_space = system.scope.model.space == "space"
     axes = "xyz" if in_space else "z"
     L = SystemInertia(system.motion).angular_momentum(point, bodies)[-len(axes) :]
-    constant = stay_constant(equations, L)
+    constant = FirstIntegrals(equations).stay_constant(L)
     found = [Constant("L", axis, about, x) for axis, x, yes in zip(axes, L, constant, strict=True) if yes]
     if in_space and all(constant) and len(bodies) == 1:
         found.append(Constant("L", "", about, _square(system, point, bodies[0])))

@@ -9,7 +9,9 @@ from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System
-from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals, where_momenta_hold
+from eomgen.mechanics.integrals.first_integrals import (
+    FirstIntegrals,
+)
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.kinematics import primitive
 from eomgen.symbolic.exact import sign_of_terms, simplest
@@ -72,7 +74,7 @@ def rates_and_extent(
     relations = relations_of(equations, start, at)
     if relations is None:
         return None
-    speeds, held = relations.speeds, where_momenta_hold(equations)
+    speeds, held = relations.speeds, FirstIntegrals(equations).where_momenta_hold
     if relations.speed is None:
         return speeds, held
     there = start_in_numbers(equations.system, start) if there is None else there
@@ -127,7 +129,7 @@ class FreeSpeed:
         By the energy where it is conserved; else along the path, where it is lost or stored without a potential; else
         by the energy in the piece in which it is conserved.
         """
-        energies = energy_integral(self.equations)
+        energies = FirstIntegrals(self.equations).of_energy
         if not any(energy.held.everywhere for energy in energies):
             square = self._square_by_path()
             if square is not None:
@@ -296,7 +298,7 @@ def relations_of(
         return None
     rows: list[dict[int, Scalar]] = [dict(enumerate(row)) for row in equations.J]
     right: list[Scalar] = [-sigma for sigma in equations.sigma]
-    for integral in momentum_integrals(equations):
+    for integral in FirstIntegrals(equations).of_momentum:
         if depends_on(integral.expression, (symbols.t,)):
             continue
         (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))

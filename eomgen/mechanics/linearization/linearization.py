@@ -12,10 +12,10 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import fork_at, refuse_undetermined
+from eomgen.mechanics.constraints import Assembly, refuse_undetermined
 from eomgen.mechanics.dynamics import System, Valueless
 from eomgen.mechanics.equilibrium import standing_system, states_beside
-from eomgen.mechanics.free_bodies import frictions
+from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.first_order import (
     Choice,
@@ -206,7 +206,7 @@ def _refuse_fork(reference: ReferenceMotion) -> None:
         DerivationError: it is one.
     """
     try:
-        fork = fork_at(reference.system.constraints, dict(reference.numbers))
+        fork = Assembly(reference.system.constraints).fork_at(dict(reference.numbers))
     except (DerivationError, MissingValues):  # the constraints close nowhere near: there is but this place
         return
     if fork is not None:
@@ -498,7 +498,11 @@ def refuse_corners(
             x: fifty_digits().number(1) * tolerances.SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)
         }
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
-            rough = [f"the friction of '{name}'" for name, factor, _ in frictions(first.system) if _cornered((factor,))]
+            rough = [
+                f"the friction of '{name}'"
+                for name, factor, _ in SystemFriction(first.system).named
+                if _cornered((factor,))
+            ]
             named = [*filter(None, [first.system.loads.acting(_cornered)]), *dict.fromkeys(rough)]
             raise DerivationError(
                 f"{' and '.join(named) or 'the forces'}: a corner or a jump at the place of reference",

@@ -13,20 +13,15 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
+    Assembly,
     Closure,
     Fork,
     Row,
-    fork_at,
-    is_at_rest,
     is_guess,
     is_typed,
-    leads_on,
     open_at,
     open_by,
-    speeds_along,
-    that_stay,
     tiers_of,
-    with_gaps_closed,
 )
 from eomgen.mechanics.dynamics import System, Valueless, mass
 from eomgen.mechanics.state import Doubles, Numbers
@@ -155,7 +150,7 @@ def start_of_motion(
     sought = system.constraints.fixed_by_position
     state = (Closure(system.constraints).closed(before, sought) or before) if sought else before
     called = _called(system, start or {})
-    state, open_gaps = with_gaps_closed(system.constraints, state, called)
+    state, open_gaps = Assembly(system.constraints).with_gaps_closed(state, called)
     refuse_open_gaps(system, state)
     state, open_rates = _with_rates_closed(system, state, called, parameters)
     state, hit = _after_impact(system, state, parameters)
@@ -174,7 +169,7 @@ def _with_rates_closed(
 ) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which speeds agree with the constraints, the constraints that did not hold)."""
     apart = open_at(((row, row.velocity) for row in system.constraints.closing), system.symbols.u, state)
-    constraints = that_stay(system.constraints, apart)
+    constraints = Assembly(system.constraints).that_stay(apart)
     opened = tuple(name for name in apart if any(row.constraint == name for row in constraints.rows))
     if not opened:
         return state, ()
@@ -242,12 +237,16 @@ def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tup
         DerivationError: they lead along none.
     """
     try:
-        fork = fork_at(system.constraints, state)
+        fork = Assembly(system.constraints).fork_at(state)
     except (DerivationError, MissingValues):  # the constraints close nowhere near: there is but this place
         return state, None, ()
-    if fork is None or is_at_rest(system.constraints, state) or leads_on(system.constraints, fork, state):
+    if (
+        fork is None
+        or Assembly(system.constraints).is_at_rest(state)
+        or Assembly(system.constraints).leads_on(fork, state)
+    ):
         return state, fork, ()
-    found = speeds_along(system.constraints, fork, state, _tiers(system, called))
+    found = Assembly(system.constraints).speeds_along(fork, state, _tiers(system, called))
     if found is None:
         what = f"the start lies in {fork.words}, and no motion continues from it with its speeds"
         raise DerivationError(

@@ -12,7 +12,7 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints import rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
-from eomgen.mechanics.free_bodies import Reactions, equations_of_motion, frictions, reactions_of
+from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion, reactions_of
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
@@ -236,7 +236,7 @@ class _StartNumbers:
         """The contacts with dry friction that do not slide at the start."""
         system = system_of(self.model, opened)
         state, rough = _state(system, self.drawn), {c.name for c in self.model.contacts if c.mu is not None}
-        sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in frictions(system) if name in rough]
+        sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in SystemFriction(system).named if name in rough]
         values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
         return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= tolerances.CARRIED}
 

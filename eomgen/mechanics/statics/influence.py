@@ -16,9 +16,10 @@ from typing import TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Effect, Structure, VelocityPlan, argument_name, name_of, named_reactions
+from eomgen.mechanics.free_bodies import Effect, Structure, VelocityPlan, named_reactions
 from eomgen.mechanics.statics.forces_in_sections import KINDS, place_of
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, sizes_of
+from eomgen.mechanics.statics.virtual_work import argument_name, name_of
 from eomgen.model import is_node, nearest
 from eomgen.symbolic.expression import (
     ZERO,

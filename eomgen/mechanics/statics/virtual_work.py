@@ -7,7 +7,7 @@ With one reaction R released the bodies have one motion. In it all other reactio
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -24,17 +24,25 @@ from eomgen.mechanics.free_bodies import (
     VelocityPlan,
     determinate_sums,
     efforts_of,
-    name_of,
     named_reactions,
     reactions_of,
-    refuse_loose,
     structure_of,
-    turning_by_one,
 )
 from eomgen.mechanics.kinematics import SystemScene
-from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, nearest
+from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, ends_requested, nearest
 from eomgen.symbolic.exact import equal_at_random_states, simplest
-from eomgen.symbolic.expression import Node, Scalar, depends_on, over, parse, substituted, times
+from eomgen.symbolic.expression import (
+    Call,
+    Expression,
+    Node,
+    Reference,
+    Scalar,
+    depends_on,
+    over,
+    parse,
+    substituted,
+    times,
+)
 from eomgen.symbolic.numeric import Work
 from eomgen.symbolic.print import text_size
 
@@ -160,7 +168,7 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
     if not structure.determines(combination):
         return None
     plan = structure.released(combination)
-    along = turning_by_one(plan)
+    along = plan.turning_by_one
     plan = plan.scaled(along)
     still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or one is the requested force
     loads = loads_at_rest(structure)
@@ -304,7 +312,7 @@ def static_reactions_of(
         DerivationError: bodies can move; a force acts at no place.
     """
     structure = structure_of(system, at)
-    refuse_loose(structure)
+    structure.refuse_loose()
     return reactions_in(structure, only=only)
 
 
@@ -380,3 +388,16 @@ def _balanced(balance: Reactions, structure: Structure, named: NamedReaction) ->
         return None
     (given,) = substituted((given,), balance.unknowns)
     return value + given
+
+
+def name_of(call: Call, names: Container[str]) -> str:
+    """Name in a table that a call means: the ends of a member may be in either order."""
+    ends = ends_requested(call) if call.name == "tension" and call.args else None
+    either = () if ends is None else (ends, ends[::-1])
+    written = (f"tension({argument_name(call.args[0])}, {a}-{b})" for a, b in either)
+    return next((name for name in written if name in names), str(call))
+
+
+def argument_name(argument: Reference | Expression) -> str:
+    """An argument of a call as it was written."""
+    return argument.name if isinstance(argument, Reference) else argument.text
