@@ -41,7 +41,7 @@ from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, start_state
 from eomgen.mechanics.statics import contacts_at_start
 from eomgen.model import BALANCE, MASSES, Model
-from eomgen.symbolic.exact import legible, readable_all
+from eomgen.symbolic.exact import LinearSystem, general_solution, legible, readable_all
 from eomgen.symbolic.expression import (
     Call,
     Expression,
@@ -56,7 +56,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import FLOAT, Work, evaluate, growing, number_of, numbers_of, tolerances
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import LinearSystem, general_solution
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
     from eomgen.codegen import Matrices, Program, RequestedOutputs

@@ -9,10 +9,10 @@ import pytest
 from each import each
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.exact.cramer import components, determinant, matching, solution_by_minors
 from eomgen.symbolic.expression.derivatives import symbols_of
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import RATIONAL, evaluate
-from eomgen.symbolic.solve.cramer import components, determinant, matching, solution_by_minors
 
 
 def random_system(seed: int, n: int, density: float):

@@ -7,12 +7,12 @@ from fractions import Fraction
 from each import each
 
 from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
+from eomgen.symbolic.exact.linear import LinearSystem, Pivots, sparse_solution
 from eomgen.symbolic.expression.derivatives import symbols_of
 from eomgen.symbolic.expression.formula import cos, function, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, sparse_solution
 
 
 def system(rows, right, unknowns, **how):

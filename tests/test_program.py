@@ -33,12 +33,12 @@ from eomgen.codegen.targets.base import Role
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.errors import DerivationError
+from eomgen.symbolic.exact.factorization import factor_solution, operation_count
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.solve.factorization import factor_solution, operation_count
 
 MODELS = Path(__file__).parent.parent / "models"
 

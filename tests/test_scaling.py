@@ -5,13 +5,13 @@ from __future__ import annotations
 from fractions import Fraction
 
 from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.linear import LinearSystem, Pivots, monomial, scaled_solution, without_common_factors
 from eomgen.symbolic.expression.derivatives import symbols_of
 from eomgen.symbolic.expression.formula import sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots, monomial, scaled_solution, without_common_factors
 
 
 def values(scalars):

@@ -9,13 +9,13 @@ import pytest
 from each import each
 
 from eomgen.symbolic.exact.normal_forms import sign_of_terms, simplest
+from eomgen.symbolic.exact.solving import has_period, outside_of_turns, roots
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import has_period, outside_of_turns, roots
 
 NAMES = "x a b c g l m v".split()
 

@@ -22,10 +22,10 @@ from eomgen.codegen.rhs import compiled
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.symbolic.exact.factorization import zeros_of, zeros_with_constraints
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.solve.factorization import zeros_of, zeros_with_constraints
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"

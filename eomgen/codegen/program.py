@@ -20,8 +20,8 @@ from eomgen.codegen.statements import INT, Table
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
+from eomgen.symbolic.exact import PlaceLists, Zeros, factorization, zeros_of, zeros_with_constraints
 from eomgen.symbolic.expression import FREE, Count, Node, Scalar, ScalarRow, Symbols, is_zero, order, substituted
-from eomgen.symbolic.solve import PlaceLists, Zeros, factorization, zeros_of, zeros_with_constraints
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 

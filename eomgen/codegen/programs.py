@@ -19,8 +19,8 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import FEW, Indeterminate, Inverse, Reactions, by_independent, named_reactions
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.model import OF_A_RUN, SMALL_MOTIONS, Output
+from eomgen.symbolic.exact import cramer, factor_solution
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, ScalarRows, depends_on, is_zero, jacobian, substituted
-from eomgen.symbolic.solve import cramer, factor_solution
 
 # -------- requested outputs -----------------------------------------------------------------------------------
 # System -> the [outputs] of its model as functions of the state, for emitted code.

@@ -440,7 +440,7 @@ def virtual_movie(found: VirtualDisplacement, frames: int) -> Movie:
 # Model -> a picture of it where it starts, with its coordinates and lengths.
 
 
-WIDTHS, HEIGHT, TITLE = (3.4, 8.0), 4.2, 0.4  # [inches]
+WIDTHS_AT_REST, HEIGHT_AT_REST, TITLE_AT_REST = (3.4, 8.0), 4.2, 0.4  # [inches]
 
 
 def rest_picture(model: Model) -> Picture:
@@ -463,8 +463,8 @@ def picture_of_scene(scene: Scene) -> Picture:
     drawing = drawing_at_rest(scene)
     low, high = limits(drawing) if scene.plane else page_limits(drawing)
     ratio = float(high[0] - low[0]) / float(high[1] - low[1])
-    width = min(max(HEIGHT * ratio, WIDTHS[0]), WIDTHS[1])
-    height = min(HEIGHT, width / ratio + TITLE)
+    width = min(max(HEIGHT_AT_REST * ratio, WIDTHS_AT_REST[0]), WIDTHS_AT_REST[1])
+    height = min(HEIGHT_AT_REST, width / ratio + TITLE_AT_REST)
 
     def fill(figure: Any) -> None:
         (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))

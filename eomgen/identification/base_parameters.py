@@ -36,7 +36,7 @@ from eomgen.identification.constrained_rows import (
     sampled_rows,
 )
 from eomgen.mechanics.dynamics import System
-from eomgen.symbolic.exact import exact_state, simplest
+from eomgen.symbolic.exact import LinearSystem, Pivots, exact_state, simplest, sparse_solution
 from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
@@ -60,7 +60,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import PRIME, PRIME_FIELD, NoMeaning, NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
-from eomgen.symbolic.solve import LinearSystem, Pivots, sparse_solution
 
 MOST_LENGTHS = 8  # of a formula: more have too many monomials
 

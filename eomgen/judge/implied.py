@@ -48,6 +48,7 @@ from eomgen.judge.reading import HandEquation
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model import AtRest, WrittenEquation
 from eomgen.questions import Answer
+from eomgen.symbolic.exact import determinant
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -62,7 +63,6 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.solve import determinant
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,9 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.exact import simplest, vanishes
 from eomgen.symbolic.expression import Node, Scalar, inner, is_zero, over, substituted
 from eomgen.symbolic.numeric import FLOAT, Work, dense, evaluate, fifty_digits, floats_of, tolerances
-from eomgen.symbolic.solve import vanishes
 
 # -------- fields ----------------------------------------------------------------------------------------------
 # Graph scalars at one state, and the little algebra of matrices that holds in every field.

@@ -33,6 +33,7 @@ from eomgen.frozen import dataclass
 from eomgen.model import Model, loads
 from eomgen.robots.sympy_joints import Words, file_texts, lagrangian_method, speeds_as_rates, tables_of_joints
 from eomgen.robots.tables import Entries, Nine, Triple, toml_text, without_empty
+from eomgen.symbolic.exact import LinearSystem, unique_solution, vanishes
 from eomgen.symbolic.expression import (
     IDENTITY,
     LONGEST,
@@ -55,7 +56,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import LinearSystem, unique_solution, vanishes
 
 HALF = Fraction(1, 2)
 

@@ -16,9 +16,9 @@ from eomgen.mechanics.integrals import Relations, position_equations, rates_and_
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_model import PhaseModel
+from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, State, depends_on, inner, substituted
 from eomgen.symbolic.numeric import FLOAT, all_roots, evaluate, least_left, tolerances
-from eomgen.symbolic.solve import vanishes
 
 # -------- rest departure --------------------------------------------------------------------------------------
 # System, start -> where a motion goes from a rest or a dead centre: along the configurations, by the energy theorem.

@@ -24,10 +24,10 @@ from eomgen.simulation.phase_models import PhaseModels, one_phase
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import Flow, ended_where_singular, march_across
 from eomgen.simulation.solvers import AUTO
+from eomgen.symbolic.exact import roots
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on
 from eomgen.symbolic.numeric import FLOAT, evaluate, nodes_between, tolerances, transform
 from eomgen.symbolic.print import to_text
-from eomgen.symbolic.solve import roots
 
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
 MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work

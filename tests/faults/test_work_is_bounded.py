@@ -25,6 +25,7 @@ from eomgen.simulation import integrator as pace
 from eomgen.simulation import motion as simulation_motion
 from eomgen.simulation.integrator import Stepping, march
 from eomgen.symbolic.exact.expansion import expanded
+from eomgen.symbolic.exact.linear import LinearSystem, general_solution
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric import work
@@ -39,7 +40,6 @@ from eomgen.symbolic.numeric.work import (
     patience,
 )
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear import LinearSystem, general_solution
 
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = """

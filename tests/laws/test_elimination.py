@@ -20,8 +20,8 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints import elimination
 from eomgen.mechanics.dynamics.system import free_system_of, system_of
 from eomgen.proof import identities
+from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.solve import cramer
 
 pytestmark = pytest.mark.slow
 

@@ -12,8 +12,8 @@ from scipy.optimize import fsolve
 import eomgen
 from eomgen.mechanics.dynamics.system import free_system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.symbolic.exact.cramer import LARGEST_BLOCK
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.solve.cramer import LARGEST_BLOCK
 
 pytestmark = pytest.mark.slow
 

@@ -16,10 +16,10 @@ import eomgen
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces, section_forces
+from eomgen.symbolic.exact.solving import vanishes
 from eomgen.symbolic.expression.derivatives import derivative, symbols_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import vanishes
 
 HEAD = 'eomgen = 1\nname = "beam"\nspace = "plane"\n'
 

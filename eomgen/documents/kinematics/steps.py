@@ -44,7 +44,7 @@ from eomgen.mechanics.instant import (
     composition_of,
     readable_at,
 )
-from eomgen.symbolic.exact import book_form
+from eomgen.symbolic.exact import book_form, vanishes
 from eomgen.symbolic.expression import (
     ZERO,
     Fraction,
@@ -62,7 +62,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size, to_text
-from eomgen.symbolic.solve import vanishes
 
 # -------- field steps -----------------------------------------------------------------------------------------
 # BodyMotion, Centrodes, Composition -> the steps about the motion of bodies, and the same as plain data.

@@ -21,9 +21,9 @@ from eomgen.mechanics.constraints.closure import Closure
 from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics import Scope, shorter
 from eomgen.mechanics.state import Split
+from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations, order, substituted
 from eomgen.symbolic.numeric import NoValue, dense, rank, tolerances
-from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]
 FAR = (3.0, 1.0, 0.3)  # distances from the start at which chosen rows are tested

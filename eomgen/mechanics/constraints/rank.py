@@ -25,7 +25,7 @@ from eomgen.mechanics.kinematics import (
 )
 from eomgen.mechanics.state import Numbers
 from eomgen.model import ModelOrPath, Values, model_at, unbuilt_constraints
-from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.exact import LinearSystem, Pivots, general_solution, simplest
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -49,7 +49,6 @@ from eomgen.symbolic.numeric import (
     tolerances,
 )
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
 
 # -------- freedom ---------------------------------------------------------------------------------------------
 # Model -> Freedom: the degrees of freedom by rank and by the count of formulas; redundant constraints by name.

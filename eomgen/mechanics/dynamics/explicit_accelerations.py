@@ -15,9 +15,9 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.dynamics.wellposed import WellPosed
+from eomgen.symbolic.exact import cramer, factor_solution
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, inner, is_zero, over
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import cramer, factor_solution
 
 MOST = 6  # unknowns that are written out for a reader
 

@@ -12,7 +12,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
-from eomgen.symbolic.exact import readable
+from eomgen.symbolic.exact import readable, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -45,7 +45,6 @@ from eomgen.symbolic.numeric import (
     tolerances,
 )
 from eomgen.symbolic.print import to_text
-from eomgen.symbolic.solve import vanishes
 
 # -------- pieces ----------------------------------------------------------------------------------------------
 # Equations of motion, scalars -> the pieces of which these are made, and in which of them something holds.

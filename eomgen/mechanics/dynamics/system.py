@@ -29,6 +29,7 @@ from eomgen.mechanics.kinematics import (
     shorter,
 )
 from eomgen.model import Model, rate_matrix_of
+from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -43,7 +44,6 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import transplanted
-from eomgen.symbolic.solve import cramer
 
 # -------- system ----------------------------------------------------------------------------------------------
 # Model -> System: motion, loads and constraints of one model, over one graph.

@@ -18,9 +18,9 @@ from eomgen.mechanics.constraints import is_guess
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import place_near
 from eomgen.mechanics.state import Split
+from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import Node, jacobian
 from eomgen.symbolic.numeric import dense, rank, tolerances
-from eomgen.symbolic.solve import vanishes
 
 ASIDE = 0.01  # distance from the first equilibrium at which another one is sought
 

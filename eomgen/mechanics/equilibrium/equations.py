@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import System, reduced_system, system_of
 from eomgen.mechanics.kinematics import Scope, loads_of, motion_of
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
-from eomgen.symbolic.exact import readable_all, simplest
+from eomgen.symbolic.exact import readable_all, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -34,7 +34,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
-from eomgen.symbolic.solve import vanishes
 
 # -------- static equations ------------------------------------------------------------------------------------
 # System -> Static equations: the expressions that vanish at an equilibrium.

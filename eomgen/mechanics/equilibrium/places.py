@@ -15,7 +15,18 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.kinematics import Located, Motion
-from eomgen.symbolic.exact import readable, readable_all, simplest
+from eomgen.symbolic.exact import (
+    LinearSystem,
+    Solution,
+    cramer,
+    general_solution,
+    has_period,
+    outside_of_turns,
+    readable,
+    readable_all,
+    simplest,
+    vanishes,
+)
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -46,15 +57,6 @@ from eomgen.symbolic.numeric import (
     tolerances,
 )
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import (
-    LinearSystem,
-    Solution,
-    cramer,
-    general_solution,
-    has_period,
-    outside_of_turns,
-    vanishes,
-)
 
 # -------- rest places -----------------------------------------------------------------------------------------
 # Static equations -> the equilibria in numbers, and whether those are all.

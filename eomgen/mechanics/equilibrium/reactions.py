@@ -12,10 +12,9 @@ from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_sys
 from eomgen.mechanics.equilibrium.search import Equilibrium
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions, reactions_of
 from eomgen.mechanics.start import values_where_at_rest
-from eomgen.symbolic.exact import readable_all, simplest
+from eomgen.symbolic.exact import LinearSystem, Solution, general_solution, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import Work, digits_at
-from eomgen.symbolic.solve import LinearSystem, Solution, general_solution, vanishes
 
 # -------- resting reactions -----------------------------------------------------------------------------------
 # An equilibrium -> every reaction there, by the balance of the bodies.

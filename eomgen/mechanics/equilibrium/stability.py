@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.symbolic.exact import readable, sign_of_terms, simplest
+from eomgen.symbolic.exact import LinearSystem, cramer, general_solution, readable, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import Node, Scalar, gradient, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import (
     NoValue,
@@ -27,7 +27,6 @@ from eomgen.symbolic.numeric import (
     tolerances,
     without_noise,
 )
-from eomgen.symbolic.solve import LinearSystem, cramer, general_solution, vanishes
 
 # -------- stability -------------------------------------------------------------------------------------------
 # An equilibrium -> whether it is stable: the second variation of the potential energy along the constraints.

@@ -21,7 +21,7 @@ from eomgen.mechanics.free_bodies.wrenches import (
 )
 from eomgen.mechanics.kinematics import GROUND, BodyLink, SystemInertia
 from eomgen.model import PointForce
-from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.exact import Solution, readable_all
 from eomgen.symbolic.expression import (
     Matrix,
     Node,
@@ -44,7 +44,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
-from eomgen.symbolic.solve import Solution
 
 # -------- balance ---------------------------------------------------------------------------------------------
 # System -> Balance: every body's own equations, its reactions and its inertia force and couple included.

@@ -25,6 +25,7 @@ from eomgen.mechanics.free_bodies.solution import (
     values_at_a_state,
 )
 from eomgen.mechanics.free_bodies.wrenches import Component, joint_friction, normals_of_round, sliding_friction
+from eomgen.symbolic.exact import LinearSystem, Solution, ValuesAt, components, cramer, unique_solution
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -40,7 +41,6 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.solve import LinearSystem, Solution, ValuesAt, components, cramer, unique_solution
 
 # -------- friction --------------------------------------------------------------------------------------------
 # Equations of motion -> the same with friction: the contacts' own reactions solved together with the accelerations.

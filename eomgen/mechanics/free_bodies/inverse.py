@@ -38,6 +38,7 @@ from eomgen.mechanics.free_bodies.reactions import reactions_of
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import Table, nearest
+from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -51,7 +52,6 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import dense, tolerances, transplanted
-from eomgen.symbolic.solve import cramer
 
 NAME = "name the actuated coordinates or inputs, one for each degree of freedom"
 

@@ -35,6 +35,7 @@ from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.mechanics.state import Numbers
 from eomgen.model import called, declared_at
+from eomgen.symbolic.exact import Solution
 from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
@@ -56,7 +57,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import Work, tolerances
-from eomgen.symbolic.solve import Solution
 
 
 @dataclass(frozen=True)

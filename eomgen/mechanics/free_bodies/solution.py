@@ -20,10 +20,9 @@ from eomgen.mechanics.free_bodies.balance import (
     with_what_is_carried,
 )
 from eomgen.mechanics.free_bodies.wrenches import Effect
-from eomgen.symbolic.exact import readable_all, sign_of_terms
+from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, general_solution, readable_all, sign_of_terms
 from eomgen.symbolic.expression import Node, Scalar, SparseRow, is_zero, substituted
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits
-from eomgen.symbolic.solve import LinearSystem, Pivots, Solution, general_solution
 
 TRIES = 20
 SURE = 1  # the largest rank of what vanishes at no state: numbers, products of parameters that are not 0

@@ -18,7 +18,7 @@ from eomgen.mechanics.free_bodies.velocity_plan import (
 from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.model import BodyPoint, Constraint, declared_at
-from eomgen.symbolic.exact import readable_all
+from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, general_solution, readable_all
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -33,7 +33,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, sparse_rank
-from eomgen.symbolic.solve import LinearSystem, Pivots, Solution, general_solution
 
 # -------- structure -------------------------------------------------------------------------------------------
 # System, a configuration -> Structure: the reactions that hold the bodies there, and the motions left to them.

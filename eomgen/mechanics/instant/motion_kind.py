@@ -16,7 +16,7 @@ from eomgen.mechanics.constraints import Closure, Rank
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import VelocityField
 from eomgen.mechanics.state import Numbers
-from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.exact import simplest, vanishes
 from eomgen.symbolic.expression import (
     ZERO,
     Fraction,
@@ -40,7 +40,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, of_50_digits, tolerances
-from eomgen.symbolic.solve import vanishes
 
 # -------- motion kind -----------------------------------------------------------------------------------------
 # System -> Kind: what kind of motion a body makes, from its field of velocities along every possible motion.

@@ -23,7 +23,7 @@ from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.start import start_state, values_where_at_rest
 from eomgen.model import Model, WrittenEquation, freed, is_node
-from eomgen.symbolic.exact import collected_in, legible, readable_all
+from eomgen.symbolic.exact import LinearSystem, Pivots, collected_in, general_solution, legible, readable_all
 from eomgen.symbolic.expression import (
     Expression,
     Fraction,
@@ -37,7 +37,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, independent_rows, lengths_of, tolerances
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import LinearSystem, Pivots, general_solution
 
 SHORT = 80  # characters of where a coordinate is that stands for it in formulas
 LONG = 400  # characters from which a value is no easier to read than it came

@@ -12,7 +12,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion, waves
 from eomgen.mechanics.integrals.speeds import Relations, rates_of, relations_of
 from eomgen.mechanics.kinematics import Located, integral_from_zero, primitive
-from eomgen.symbolic.exact import sign_of_terms, simplest
+from eomgen.symbolic.exact import sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -29,7 +29,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import vanishes
 
 # -------- laws ------------------------------------------------------------------------------------------------
 # Accelerations, start -> laws of motion: q(t) and u(t) in closed form, where there is one.

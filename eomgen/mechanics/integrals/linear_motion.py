@@ -12,7 +12,7 @@ from collections.abc import Callable
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import integral_from_zero
-from eomgen.symbolic.exact import readable
+from eomgen.symbolic.exact import readable, vanishes
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -27,7 +27,6 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import PIECEWISE
-from eomgen.symbolic.solve import vanishes
 
 HIGHEST_DEGREE = 6  # of a polynomial on the right side
 

@@ -14,7 +14,7 @@ from eomgen.mechanics.integrals.first_integrals import (
 )
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.kinematics import primitive
-from eomgen.symbolic.exact import sign_of_terms, simplest
+from eomgen.symbolic.exact import LinearSystem, Solution, general_solution, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -31,7 +31,6 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import FLOAT, PIECEWISE, Work, digits_at, evaluate, tolerances
-from eomgen.symbolic.solve import LinearSystem, Solution, general_solution, vanishes
 
 # -------- speeds ----------------------------------------------------------------------------------------------
 # First integrals, start -> every speed as a function of the coordinates, without time.

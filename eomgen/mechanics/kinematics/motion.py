@@ -11,6 +11,7 @@ from eomgen.errors import DerivationError, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope, shorter
 from eomgen.model import Couple, PointForce, Z, oriented
+from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
     ZERO,
     Fraction,
@@ -45,7 +46,6 @@ from eomgen.symbolic.expression import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.solve import vanishes
 
 # -------- kinematics ------------------------------------------------------------------------------------------
 # Scope -> Motion: where every body is and how it moves, over the scalars of the graph.

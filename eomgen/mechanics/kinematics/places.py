@@ -16,7 +16,7 @@ from itertools import combinations
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.exact import has_period, roots, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -32,7 +32,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import FLOAT, Work, evaluate, tolerances
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import has_period, roots, vanishes
 
 PAGE = 1000  # characters of a root, and of an equation of a loop that is solved for one
 SHORT = 40  # characters of a root that is put into other equations first

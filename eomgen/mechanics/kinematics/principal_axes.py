@@ -7,7 +7,7 @@ from functools import cached_property, cmp_to_key
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.symbolic.exact import common_factor, sign_of_terms, simplest
+from eomgen.symbolic.exact import common_factor, roots, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     IDENTITY,
     Fraction,
@@ -31,7 +31,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import Work, number_of
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import roots, vanishes
 
 # -------- principal -------------------------------------------------------------------------------------------
 # Inertia tensor -> principal moments and axes, exact wherever they have a closed form.

@@ -14,19 +14,21 @@ from eomgen.symbolic.exact import (
     Key,
     Terms,
     TooLarge,
+    coefficients,
     content,
+    cramer,
     factored,
     simplest,
     simplest_sum,
     square_root,
     terms_plus,
     terms_scaled,
+    wave_free,
     written_shortest,
 )
 from eomgen.symbolic.expression import Node, Number, Owner, Scalar, is_zero, over, sqrt, substituted, symbols_of
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import coefficients, cramer, wave_free
 
 # -------- polynomial ------------------------------------------------------------------------------------------
 # LinearEquations, exact -> characteristic polynomial, frequencies in closed form.

@@ -18,11 +18,10 @@ from eomgen.mechanics.linearization.first_order import Choice, FirstOrder, choic
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, dependent_speeds, floats, unsettled
 from eomgen.mechanics.linearization.reference import Family, ReferenceMotion
 from eomgen.mechanics.state import Exact, Numbers, Split
-from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.exact import simplest, vanishes
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, is_zero, operations, substituted
 from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size
-from eomgen.symbolic.solve import vanishes
 
 # -------- steady ----------------------------------------------------------------------------------------------
 # Reference near the start -> the speeds and places of a steady motion, by Newton's method.

@@ -13,10 +13,9 @@ from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.state import Entries, Exact
-from eomgen.symbolic.exact import Expansion, TooLarge, reduced
+from eomgen.symbolic.exact import Expansion, TooLarge, cramer, reduced
 from eomgen.symbolic.expression import Node, is_zero, operations, over
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
-from eomgen.symbolic.solve import cramer
 
 # -------- transfer --------------------------------------------------------------------------------------------
 # LinearEquations with inputs -> transfer functions, exact by Cramer's rule, or in floats.

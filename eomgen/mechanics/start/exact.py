@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
 from eomgen.mechanics.state import Doubles, Numbers, Split
-from eomgen.symbolic.exact import simplest
+from eomgen.symbolic.exact import LinearSystem, general_solution, simplest, unique_solution
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -42,7 +42,6 @@ from eomgen.symbolic.numeric import (
     of_50_digits,
     tolerances,
 )
-from eomgen.symbolic.solve import LinearSystem, general_solution, unique_solution
 
 # -------- exact start -----------------------------------------------------------------------------------------
 # System -> ExactStart: the one start that every verb takes, in closed form where it has one, in numbers else.

@@ -22,6 +22,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, effects_of_load, joint_effects
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
+from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
     ZERO,
     Fraction,
@@ -39,7 +40,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.print import to_text
-from eomgen.symbolic.solve import vanishes
 
 KINDS = ("axial_force", "shear_force", "bending_moment")
 HALF, SIXTH = Fraction(1, 2), Fraction(1, 6)

@@ -21,6 +21,7 @@ from eomgen.mechanics.statics.forces_in_sections import KINDS, place_of
 from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.virtual_work import argument_name, name_of
 from eomgen.model import is_node, nearest
+from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
     ZERO,
     Call,
@@ -39,7 +40,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.print import to_text
-from eomgen.symbolic.solve import vanishes
 
 Thing = TypeVar("Thing")
 LoadPoint = tuple[str, Vector]

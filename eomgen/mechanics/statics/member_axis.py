@@ -15,7 +15,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion
-from eomgen.symbolic.exact import readable, readable_all, sign_of_terms, simplest
+from eomgen.symbolic.exact import readable, readable_all, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     ZERO,
     Graph,
@@ -35,7 +35,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
-from eomgen.symbolic.solve import vanishes
 
 
 @dataclass(frozen=True)

@@ -7,6 +7,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import GROUND, OutputContext, OutputFunction, Trial, ValueOf, along, component, names_of
+from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
     AnyScalar,
     Call,
@@ -27,7 +28,6 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import NoValue
-from eomgen.symbolic.solve import vanishes
 
 # -------- position --------------------------------------------------------------------------------------------
 # x, y, z: the place of a point.

@@ -1,5 +1,11 @@
 """Door of the folder: what other folders may import from `eomgen.symbolic.exact`."""
 
+# Square linear equations over the graph -> their solution by determinants
+from eomgen.symbolic.exact import cramer as cramer
+
+# M, F -> a with M a = F, written out: the factors of M and of J M^-1 J^T, their zeros left out
+from eomgen.symbolic.exact import factorization as factorization
+
 # Expressions with a symbol for each square root of a sum
 from eomgen.symbolic.exact.book_forms import Rooted as Rooted
 
@@ -14,6 +20,12 @@ from eomgen.symbolic.exact.book_forms import readable_over as readable_over
 
 # The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r
 from eomgen.symbolic.exact.book_forms import rooted as rooted
+
+# Groups that need one another, each after the groups that it needs (Tarjan's strongly connected components)
+from eomgen.symbolic.exact.cramer import components as components
+
+# det of a small matrix, by its minors
+from eomgen.symbolic.exact.cramer import determinant as determinant
 
 # Result of a comparison of pairs of expressions
 from eomgen.symbolic.exact.equality import Equality as Equality
@@ -38,6 +50,38 @@ from eomgen.symbolic.exact.equality import rounding_decides as rounding_decides
 
 # The expanded forms of the nodes of one graph
 from eomgen.symbolic.exact.expansion import Expansion as Expansion
+from eomgen.symbolic.exact.factorization import PlaceLists as PlaceLists
+
+# Places of the factors' entries that are not zero
+from eomgen.symbolic.exact.factorization import Zeros as Zeros
+
+# The accelerations a of M a = F, as expressions
+from eomgen.symbolic.exact.factorization import factor_solution as factor_solution
+
+# Places of the entries that are not zero in the factors of M, eliminated in row order, and in L^-1 J^T
+from eomgen.symbolic.exact.factorization import zeros_of as zeros_of
+
+# The same of M + J^T W J with any diagonal W
+from eomgen.symbolic.exact.factorization import zeros_with_constraints as zeros_with_constraints
+
+# sum over j of rows[i][j] x_j = right[i]
+from eomgen.symbolic.exact.linear import LinearSystem as LinearSystem
+
+# Rules for pivots: what may be divided by, and in which order
+from eomgen.symbolic.exact.linear import Pivots as Pivots
+
+# x of  A x = b,  as far as the rows determine it
+from eomgen.symbolic.exact.linear import Solution as Solution
+from eomgen.symbolic.exact.linear import ValuesAt as ValuesAt
+
+# x as far as the rows determine it, by elimination; common factors are divided out first where any are named
+from eomgen.symbolic.exact.linear import general_solution as general_solution
+
+# Solution by elimination: pivots are plain numbers if there are any; least fill-in comes first (Markowitz)
+from eomgen.symbolic.exact.linear import sparse_solution as sparse_solution
+
+# x of as many rows as unknowns: by minors where the unknowns are few, else by elimination
+from eomgen.symbolic.exact.linear import unique_solution as unique_solution
 
 # Scalars as a person writes them, each made so once
 from eomgen.symbolic.exact.normal_forms import Legibly as Legibly
@@ -84,14 +128,8 @@ from eomgen.symbolic.exact.normal_forms import simplest_sum as simplest_sum
 # The same of a sum of terms
 from eomgen.symbolic.exact.normal_forms import written_shortest as written_shortest
 
-# Angles of which those of all waves are whole combinations
-from eomgen.symbolic.exact.polynomials import axes_of as axes_of
-
 # The factors of f that hold more than one term, and their multiplicities; f itself where it is too large
 from eomgen.symbolic.exact.polynomials import factored as factored
-
-# (monomial, exponents of cosine and sine of each axis, coefficient) of each term, s^2 eliminated
-from eomgen.symbolic.exact.polynomials import in_powers as in_powers
 
 # g with g^2 = f, its first coefficient positive; None where f is no square
 from eomgen.symbolic.exact.polynomials import square_root as square_root
@@ -99,22 +137,34 @@ from eomgen.symbolic.exact.polynomials import square_root as square_root
 # (numerator, denominator) without common factor as polynomials in cosines and sines, in each of their forms
 from eomgen.symbolic.exact.quotient import reduced as reduced
 
+# f = sum of part * atom^n, as {n: part}
+from eomgen.symbolic.exact.solving import coefficients as coefficients
+
+# True if equation(x + period) is the same function as equation(x)
+from eomgen.symbolic.exact.solving import has_period as has_period
+
+# The symbols that stand elsewhere than in the argument of a sine or cosine, times a whole number
+from eomgen.symbolic.exact.solving import outside_of_turns as outside_of_turns
+
+# The real x with equation(x) = 0 that have a closed form; of an equation in angles those of one turn
+from eomgen.symbolic.exact.solving import roots as roots
+
+# True if x is 0 at all values of its symbols; False where it has a value at no state that was tried
+from eomgen.symbolic.exact.solving import vanishes as vanishes
+
+# (f with symbols C, S for the cosine and sine of each angle and S^2 eliminated, {symbol: what it stands for})
+from eomgen.symbolic.exact.solving import wave_free as wave_free
+
 # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
 from eomgen.symbolic.exact.sums import BRACKETS as BRACKETS
 
 # x with the parts that are squares of sums, of one product of parameters each, as squares
 from eomgen.symbolic.exact.sums import with_squares as with_squares
 from eomgen.symbolic.exact.terms import Key as Key
-
-# ((atom's index, exponent), ...) ascending; (-6, 1) stands for sqrt(6)
-from eomgen.symbolic.exact.terms import Monomial as Monomial
 from eomgen.symbolic.exact.terms import Terms as Terms
 
 # The work or size needed is beyond its limit
 from eomgen.symbolic.exact.terms import TooLarge as TooLarge
-
-# The product of the lowest powers of every atom, over all terms (an atom missing in a term has power 0)
-from eomgen.symbolic.exact.terms import common_monomial as common_monomial
 
 # The common number of the coefficients
 from eomgen.symbolic.exact.terms import content as content

@@ -17,21 +17,11 @@ from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact import (
-    Expansion,
-    Monomial,
-    Terms,
-    axes_of,
-    common_monomial,
-    equal_at_random_states,
-    factored,
-    in_powers,
-    sign_of_terms,
-    simplest,
-    square_root,
-    terms_plus,
-    terms_scaled,
-)
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.normal_forms import sign_of_terms, simplest
+from eomgen.symbolic.exact.polynomials import axes_of, factored, in_powers, square_root
+from eomgen.symbolic.exact.terms import Monomial, Terms, common_monomial, terms_plus, terms_scaled
 from eomgen.symbolic.expression import (
     Fraction,
     Node,

@@ -24,7 +24,8 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.exact import equal_at_real_states
+from eomgen.symbolic.exact import cramer
+from eomgen.symbolic.exact.equality import equal_at_real_states
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -38,7 +39,6 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import PIECEWISE, check_patience, lengths_of, tolerances
-from eomgen.symbolic.solve import cramer
 
 __all__ = ["LinearSystem", "Pivots", "Solution", "general_solution", "unique_solution"]
 
