@@ -42,7 +42,7 @@ from eomgen.mechanics.dynamics import (
     reported_of_nodes,
     system_of,
 )
-from eomgen.mechanics.free_bodies import Reactions, equations_of_motion, inverse_of
+from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
 from eomgen.mechanics.start import start_state
 from eomgen.model import Model, nearest
 from eomgen.proof import Certificate, Printed
@@ -358,7 +358,7 @@ class Equations(Result):
             UsageError: an unknown name; too few or too many actuators.
             DerivationError: Coulomb friction; an input that does not act linearly.
         """
-        return InverseDynamics(inverse_of(self.system, actuated))
+        return InverseDynamics(Inverse.of(self.system, actuated))
 
     @cached_property
     def in_print(self) -> EquationsOfMotion:

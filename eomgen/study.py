@@ -162,9 +162,8 @@ class Study:
         Raises:
             DerivationError: an unsupported body; a force that acts at no place.
         """
-        from eomgen.mechanics.free_bodies import reactions_of
 
-        return reactions_of(self.system)
+        return Reactions.of(self.system)
 
     @cached_property
     def reaction_values(self) -> dict[str, Scalar]:
@@ -274,12 +273,12 @@ class Study:
         Raises:
             DerivationError: a coordinate has no value at the start.
         """
-        from eomgen.mechanics.integrals import relations_of
+        from eomgen.mechanics.integrals import Relations
 
         start = self.start_of(at_rest=at_rest).values
 
         def found() -> tuple[dict[Node, Scalar], Extent] | None:
-            relations = relations_of(self.equations, start)
+            relations = Relations.of(self.equations, start)
             return None if relations is None else (relations.speeds, FirstIntegrals(self.equations).where_momenta_hold)
 
         return recalled(self, ("rates by one", at_rest), found)

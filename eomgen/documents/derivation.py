@@ -21,7 +21,7 @@ from eomgen.documents.reading import Reader, Written, with_coefficients_througho
 from eomgen.documents.statements import Formula, Law, Prose, Step, notation_step
 from eomgen.documents.text import prose_text, side_text
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by, inertia_by_energies
-from eomgen.mechanics.free_bodies import reactions_of
+from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.kinematics import BodyEnergy, SystemInertia
 from eomgen.proof import Printed
 from eomgen.symbolic.exact import equal_at_random_states
@@ -91,7 +91,7 @@ def _by_method(
     system = equations.system
     if method == "kinetostatic":
         if isinstance(letters, str):
-            letters = lettered(reactions_of(system.free or system), system.scope.names)  # raises what it says
+            letters = lettered(Reactions.of(system.free or system), system.scope.names)  # raises what it says
         return kinetostatic_steps(equations, reader, letters)
     steps, result = _BY_METHOD[method](equations, reader)
     if equations.friction and not isinstance(letters, str):

@@ -31,7 +31,7 @@ from eomgen.errors import (
     Problem,
 )
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.start import Start
 from eomgen.model import Model, Unit
 from eomgen.proof import Certificate, Check, Tally, differing
 from eomgen.study import study_of
@@ -314,7 +314,7 @@ def with_start_reported(document: Document, model: Model, run: Trajectory | None
 def with_constraints_closed(document: Document, system: System) -> Document:
     """The document of a result that needs no start; with a warning where nothing closes the constraints near it."""
     try:
-        start_of_motion(system)
+        Start.of(system)
     except OpenConstraints as error:
         return with_open_constraints(document, error)
     except (DerivationError, ModelError):  # reported by the verbs that need a start
@@ -340,7 +340,7 @@ def named_open(model: Model, error: OpenConstraints) -> OpenConstraints:
 
 def _words_of_start(model: Model) -> str:
     """The changes by which a model starts otherwise than it is written, "" where there are none."""
-    return start_of_motion(study_of(model).system).words
+    return Start.of(study_of(model).system).words
 
 
 def nearest_name(name: str, names: Iterable[str]) -> str:

@@ -18,7 +18,7 @@ from eomgen.documents.reading import LONGEST, TRIED, Reader, free_names, length_
 from eomgen.documents.statements import Code, Formula, Law, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
-from eomgen.mechanics.free_bodies import BodyEquation, Reactions, reactions_of
+from eomgen.mechanics.free_bodies import BodyEquation, Reactions
 from eomgen.mechanics.integrals import rates_and_extent
 from eomgen.mechanics.start import known_start
 from eomgen.model import called
@@ -36,7 +36,7 @@ VERB = Code("eomgen reactions MODEL")
 def letters_of(system: System) -> Lettered | str:
     """The reactions of a system with their symbols, or why they cannot be derived."""
     try:
-        return lettered(reactions_of(shown_system(system), short=True), system.scope.names)
+        return lettered(Reactions.of(shown_system(system), short=True), system.scope.names)
     except DerivationError as error:
         return f"{error.what}; {error.fix}" if error.fix else error.what
 

@@ -39,7 +39,6 @@ from eomgen.mechanics.free_bodies import (
     determinate_sums,
     named_reactions,
     reactions_by_sides,
-    reactions_of,
 )
 from eomgen.model import PointForce, ReactionSymbols, trusses_of
 from eomgen.symbolic.exact import book_form, never_vanishes
@@ -203,9 +202,9 @@ def vanishing_divisors(x: Scalar) -> frozenset[Node]:
 
 
 def _ways(system: System) -> tuple[Reactions, ...]:
-    few = reactions_of(system, short=True)
+    few = Reactions.of(system, short=True)
     size = len(few.balance.equations) * len(few.components)
-    return (few,) if size > TOO_MANY else (few, reactions_of(system))
+    return (few,) if size > TOO_MANY else (few, Reactions.of(system))
 
 
 # -------- reaction names --------------------------------------------------------------------------------------

@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import Samples
 from eomgen.judge.terms import angles_in
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, balance_of, effects_of_load, efforts_of
+from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, effects_of_load, efforts_of
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.statics import KINDS, MemberAxis
@@ -112,7 +112,7 @@ def what_acts(system: System) -> tuple[ActingForce, ...]:
 
 
 def _reactions(system: System) -> Iterator[ActingForce]:
-    balance = balance_of(system)
+    balance = Balance.of(system)
     for symbol, c in zip(symbols_of_reactions(balance), balance.components, strict=True):
         yield ActingForce(_in_words(c), _pushes(system, c.effects, symbol), c.owner, symbol, kind="reaction")
         if c.friction_effects:
@@ -150,7 +150,7 @@ def _loads(system: System) -> Iterator[ActingForce]:
 
 def _inertia(system: System) -> Iterator[ActingForce]:
     rows: dict[str, dict[int, Scalar]] = {}
-    for equation in balance_of(system).equations:
+    for equation in Balance.of(system).equations:
         rows.setdefault(equation.body, {})[equation.direction] = -equation.inertia
     for i, (link, mass) in enumerate(zip(system.motion.links, Axes(system.motion).masses, strict=True)):
         own, center = rows.get(link.name, {}), link.pose.point(mass.com)

@@ -19,7 +19,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
+from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
 from eomgen.model import FUNCTIONS
 from eomgen.symbolic.expression import SLOPE, Call, Expression, Instruction, Reference, Scalar, parse, parse_equation
 from eomgen.symbolic.print import Symbol
@@ -175,7 +175,7 @@ class Reading:
         """(a reaction that can be requested, how, the number of its strand or ""); none where nothing is held."""
         found = []
         with suppress(DerivationError):
-            for each in named_reactions(balance_of(self.system)):
+            for each in named_reactions(Balance.of(self.system)):
                 function, _, arguments = each.name.removesuffix(")").partition("(")
                 owner, _, number = arguments.partition(", ")
                 strand = (Expression.number(int(number)),) if function == "tension" and number.isdigit() else ()
@@ -186,7 +186,7 @@ class Reading:
     def _declared_letters(self) -> Iterator[tuple[str, Call]]:
         """The symbols that joints and constraints give their reactions, as plain names, and what each stands for."""
         for each, call, _ in self._named:
-            symbol = own_symbol(balance_of(self.system), each)
+            symbol = own_symbol(Balance.of(self.system), each)
             if symbol is not None:
                 yield plain_name(symbol), call
 

@@ -35,7 +35,7 @@ from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import system_of, with_nodes_balanced
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
-from eomgen.mechanics.free_bodies import structure_of
+from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.statics import modes_at_rest, released_in
 from eomgen.model import Model, ModelOrPath, Typed, Values, model_at
 from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
@@ -251,7 +251,7 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
     """
     system = system_of(model, modes_at_rest(model))
     stands = not has_degrees_of_freedom(system)
-    structure = structure_of(with_drives_held(system)[0] if stands else system)
+    structure = Structure.of(with_drives_held(system)[0] if stands else system)
     if stands:
         structure.refuse_loose()
     return VirtualDisplacement(structure, released_in(structure, reaction)), stands

@@ -17,7 +17,7 @@ from eomgen.codegen import RightHandSide, compiled, right_hand_side
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
-from eomgen.mechanics.free_bodies import Balance, Indeterminate, reactions_of
+from eomgen.mechanics.free_bodies import Balance, Indeterminate, Reactions
 from eomgen.mechanics.instant import Quantities
 from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.check import differing
@@ -121,7 +121,7 @@ class NumericState:
     @cached_property
     def _balancing(self) -> tuple[np.ndarray, np.ndarray]:
         known = self.values | (self.unknowns if self.equations.symbols.u else {})
-        return balanced_least(reactions_of(self.equations.system, short=True).balance, known)
+        return balanced_least(Reactions.of(self.equations.system, short=True).balance, known)
 
     def number(self, scalar: Scalar) -> float:
         """A function of the state, of accelerations and multipliers."""
@@ -142,7 +142,7 @@ class NumericState:
     def reactions(self) -> dict[str, float]:
         """Every reaction that has a single value, by its name in outputs."""
         try:
-            columns = ReactionColumns(reactions_of(self.equations.system), self._rhs)
+            columns = ReactionColumns(Reactions.of(self.equations.system), self._rhs)
             found = columns.along(np.array([self.t]), self.x[None, :], self.p)[0]
         except DerivationError:
             return {}

@@ -26,9 +26,9 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, system_of
-from eomgen.mechanics.free_bodies import SystemFriction, reactions_of
+from eomgen.mechanics.free_bodies import Reactions, SystemFriction
 from eomgen.mechanics.kinematics import ContactMode, SystemInertia
-from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Resistance
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
@@ -375,7 +375,7 @@ def leaving_at_start(equations: EquationsOfMotion) -> str:
         return ""
     try:
         free = system_of(model, {**modes, **dict.fromkeys(ending, OPEN)})
-        start = start_of_motion(free)
+        start = Start.of(free)
     except (DerivationError, ModelError, UsageError) as error:
         raise NoValue(str(error).splitlines()[0]) from None
     given = {x.name for x in free.symbols.q}
@@ -411,7 +411,7 @@ def pushing_otherwise(equations: EquationsOfMotion, start: State, moving: Callab
         if not mode.closed or mode.sense is not None:  # a phase of a motion: its own start is another
             continue
         try:
-            normal = reactions_of(system).normal(name)
+            normal = Reactions.of(system).normal(name)
         except DerivationError:
             continue
         (N,) = evaluate((normal,), moving(start), fifty_digits())

@@ -24,11 +24,11 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row, constraints_of
+from eomgen.mechanics.constraints import Closure, Constraints, Freedom, Row
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.kinematics import Applied, ContactModes, Scope, motion_of, scope_of
-from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.kinematics import Applied, ContactModes, Motion, Scope
+from eomgen.mechanics.start import Start
 from eomgen.model import Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
@@ -55,7 +55,7 @@ def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
     if found.by_rank is None:
         return ""
     try:
-        constraints = constraints_of(motion_of(scope_of(model)), modes=modes)
+        constraints = Constraints.of(Motion.of(Scope.of(model)), modes=modes)
         if wrong := _unnamed(constraints, found):
             return wrong
         if not constraints.closing or len(constraints.motion.scope.symbols.u) > MOST:
@@ -269,7 +269,7 @@ def pulled_at_start(system: System) -> str:
         NoValue: the start is not known in numbers.
     """
     try:
-        start = start_of_motion(system).values
+        start = Start.of(system).values
     except (DerivationError, MissingValues, ModelError) as error:
         raise NoValue(str(error).splitlines()[0]) from None
     symbols = system.symbols

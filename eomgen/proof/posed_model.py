@@ -20,9 +20,9 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import (
     BodyLink,
+    Motion,
+    Scope,
     SystemScene,
-    motion_of,
-    scope_of,
 )
 from eomgen.model import (
     BodyLine,
@@ -68,7 +68,7 @@ class PosedModel:
     """Model and values of its coordinates, quaternions of norm 1; some may be set to other values."""
 
     def __init__(self, model: Model, values: Mapping[str, float] | None = None) -> None:
-        self.model, self.motion = model, motion_of(scope_of(model))
+        self.model, self.motion = model, Motion.of(Scope.of(model))
         self.values = {q: FIRST + STEP * k for k, q in enumerate(model.coordinates)} | dict(values or {})
         for turn in map(quaternion_names, every_joint(model)):
             size = math.hypot(*(self.values[e] for e in turn))

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations
-from eomgen.mechanics.free_bodies import SystemFriction, imbalance, reactions_of
+from eomgen.mechanics.free_bodies import Reactions, SystemFriction, imbalance
 from eomgen.mechanics.kinematics import ContactMode, spin_between
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
@@ -419,7 +419,7 @@ class Trials:
     def balance(self) -> Iterable[Check]:
         """D'Alembert's principle for every body, every pair and the whole; none where reactions do not follow."""
         try:
-            reactions = reactions_of(self.equations.system)
+            reactions = Reactions.of(self.equations.system)
         except DerivationError:
             return
         shares = (x for own in reactions.solution.shares.values() for x in own.values())
@@ -484,7 +484,7 @@ def _columns(equations: EquationsOfMotion) -> Iterable[Sequence[Scalar]]:
 
 def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:
     """(contact, (F, factor, N_1, N_2)) of every bilateral contact with friction."""
-    reactions = reactions_of(system)
+    reactions = Reactions.of(system)
     rounds = [contact for contact in SystemFriction(system).contacts(reactions.components) if contact.normals]
     return [(r.name, (reactions.value(r.component), r.factor, *map(reactions.value, r.normals))) for r in rounds]
 

@@ -17,7 +17,7 @@ import numpy as np
 from eomgen.codegen import parameter_vector
 from eomgen.errors import EomgenError, ExpressionError, UsageError
 from eomgen.frozen import dataclass, with_fields
-from eomgen.mechanics.start import start_of_motion
+from eomgen.mechanics.start import Start
 from eomgen.model import (
     Model,
     Parameter,
@@ -258,11 +258,11 @@ def _starts(plan: _Plan, phase: PhaseModel, equations: Any) -> np.ndarray:
         rows = []
         for i in range(plan.runs):
             parameters, start = plan.of(i)
-            rows.append(phase.state(start_of_motion(system, parameters, start).values))
+            rows.append(phase.state(Start.of(system, parameters, start).values))
         return np.array(rows)
     names = [*phase.coordinates, *phase.speeds]
     parameters, start = plan.of(0)
-    found = np.tile(phase.state(start_of_motion(system, parameters, start).values), (plan.runs, 1))
+    found = np.tile(phase.state(Start.of(system, parameters, start).values), (plan.runs, 1))
     for name, values in plan.start.items():
         found[:, names.index(name)] = values
     return found

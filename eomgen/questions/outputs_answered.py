@@ -36,7 +36,7 @@ from eomgen.errors import (
 )
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
-from eomgen.mechanics.instant import InstantKinematics, instant_kinematics_of, requests_motion, requests_of
+from eomgen.mechanics.instant import InstantKinematics, requests_motion, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
     FUNCTIONS,
@@ -218,7 +218,7 @@ class _Solver:
 
     @cached_property
     def instant_kinematics(self) -> InstantKinematics:
-        return instant_kinematics_of(self.model, by_coordinates=True)
+        return InstantKinematics.of(self.model, by_coordinates=True)
 
     def _of_the_instant(self, output: Output) -> Answer:
         scalar = self.instant_kinematics.value(output.value)

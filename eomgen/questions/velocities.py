@@ -14,7 +14,7 @@ from math import isfinite
 from eomgen.documents import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints import Rank, refuse_undetermined
-from eomgen.mechanics.instant import InstantKinematics, Kinds, KinematicState, instant_kinematics_of
+from eomgen.mechanics.instant import InstantKinematics, Kinds, KinematicState
 from eomgen.mechanics.start import refuse_lost
 from eomgen.model import (
     Given,
@@ -58,7 +58,7 @@ def state_of(model: Model, at: WrittenEquation | None = None) -> KinematicState:
 
 
 def _of_instant_kinematics(model: Model) -> KinematicState:
-    instant_kinematics = instant_kinematics_of(model)
+    instant_kinematics = InstantKinematics.of(model)
     known = instant_kinematics.velocities
     instant_kinematics.refuse_several()
     rate, symbol = instant_kinematics.open_rate, None

@@ -18,7 +18,7 @@ from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, reactions_of
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.model import BALANCE, FUNCTIONS, OF_A_RUN, SMALL_MOTIONS, Model
 from eomgen.simulation.phase_functions import PhaseFunctions
@@ -77,7 +77,7 @@ class OutputColumns:
         if apart:
             functions = PhaseFunctions(phase.declared_equations, phase.p, phase.target)
             formulas = {name: self.formulas[name] for name in apart}
-            yield _Columns(phase.declared, functions, formulas, lambda: reactions_of(phase.declared))
+            yield _Columns(phase.declared, functions, formulas, lambda: Reactions.of(phase.declared))
 
     @property
     def _along_degrees_of_freedom(self) -> tuple[str, ...]:

@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row, rows_of_constraint
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Indeterminate, Reactions, reactions_of
+from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.model import Contact, Model, Table
 from eomgen.simulation.event_location import Measured
@@ -94,7 +94,7 @@ class ContactEvents:
     @cached_property
     def reactions(self) -> Reactions:
         """Every reaction of joints and constraints; open contacts have none."""
-        return reactions_of(self.system)
+        return Reactions.of(self.system)
 
     @cached_property
     def signals(self) -> tuple[Signal, ...]:

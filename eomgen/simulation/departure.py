@@ -12,7 +12,7 @@ from eomgen.codegen import compiled, program_of
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
-from eomgen.mechanics.integrals import Relations, position_equations, rates_and_extent, relations_of
+from eomgen.mechanics.integrals import Relations, position_equations, rates_and_extent
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_model import PhaseModel
@@ -107,7 +107,7 @@ class RestDeparture:
         """Every speed by one of them, homogeneous; None where there are more degrees of freedom, or momenta that are
         not 0."""
         try:
-            found = relations_of(self.equations, self._exact_start)
+            found = Relations.of(self.equations, self._exact_start)
         except DerivationError:  # a start without values
             return None
         if found is None or found.speed is None or not all(map(vanishes, found.constants.values())):

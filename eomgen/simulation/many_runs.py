@@ -179,7 +179,7 @@ def function_at(address: Address) -> MarchFunction:
 # -------- many starts -----------------------------------------------------------------------------------------
 # PhaseModel, parameters and starts of many runs -> the states at which they begin, in doubles and all at once.
 #
-# Dependent coordinates are sought as `start_of_motion` seeks them, by the same steps from the same guesses:
+# Dependent coordinates are sought as `Start.of` seeks them, by the same steps from the same guesses:
 #
 #     (A^T A + min(|phi|, 1)^2 1) d = -A^T phi,   A = d phi/dq of what is sought,   q <- q + d
 #

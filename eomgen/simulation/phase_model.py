@@ -23,7 +23,7 @@ from eomgen.mechanics.dynamics import (
     WellPosed,
 )
 from eomgen.mechanics.free_bodies import Reactions, equations_of_motion
-from eomgen.mechanics.start import Start, start_of_motion
+from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Edge
 from eomgen.simulation.constraint_drift import (
     EnergyLevel,
@@ -185,7 +185,7 @@ class PhaseModel:
         Raises:
             DerivationError: the constraints do not hold at the start.
         """
-        begun = start_of_motion(self.declared, parameters, start)
+        begun = Start.of(self.declared, parameters, start)
         return begun, self.with_rates(t, begun.values)
 
     def with_rates(self, t: float, values: Values) -> dict[str, float]:

@@ -10,10 +10,10 @@ from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Freedom, freedom_of
 from eomgen.mechanics.dynamics import WellPosed, assembled_by_recursion, system_of
-from eomgen.mechanics.free_bodies import Structure, structure_of
+from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.instant import mobility_of
-from eomgen.mechanics.kinematics import ContactModes, SystemScene, motion_of, scope_of
-from eomgen.mechanics.start import Branches, Start, branches_of_loops, start_of_motion
+from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
+from eomgen.mechanics.start import Branches, Start
 from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
 from eomgen.model import Catalog, Model, Table, unbuilt, value_of
 
@@ -94,7 +94,7 @@ def checked_model(model: Model) -> Checked:
         freedom,
         tuple(name for name, mode in modes.items() if not mode.closed),
         mobility=mobility_of(model) if still else None,
-        structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
+        structure=Structure.of(system_of(model, modes_at_rest(model))) if still else None,
         start=start,
         cautions=(
             *_open(model, start),
@@ -157,7 +157,7 @@ def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Prob
 def _misplaced(model: Model) -> Iterator[Problem]:
     """Constraints whose start is probably a mistake: inside a bowl that is to be rolled on outside."""
     try:
-        motion = motion_of(scope_of(model))
+        motion = Motion.of(Scope.of(model))
         for name, constraint in model.constraints.items():
             what, fix = constraint.misplaced(SystemScene(motion, f"constraints.{name}"))
             if what:
@@ -186,8 +186,8 @@ def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> Loop
         system = system_of(model, {name: mode for name, mode in modes.items() if mode.closed})
         if not freedom.closing:
             return LoopStart()
-        begun = start_of_motion(system)
-        return LoopStart(begun, None if begun.fork else branches_of_loops(system, begun.values))
+        begun = Start.of(system)
+        return LoopStart(begun, None if begun.fork else Branches.of(system, begun.values))
     except MissingValues:
         return LoopStart()
     except ModelError:

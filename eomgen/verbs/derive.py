@@ -8,7 +8,7 @@ from eomgen import pipeline
 from eomgen.documents import Document, Grid, Step, proven, with_constraints_closed
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
+from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
 from eomgen.model import Model, load
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
@@ -56,6 +56,6 @@ def _with_units(equations: Equations, document: Document) -> Document:
 def _reacting(equations: Equations) -> tuple[NamedReaction, ...]:
     """The reactions; () where forces act at no place, or a body is unsupported."""
     try:
-        return tuple(named_reactions(balance_of(equations.system)))
+        return tuple(named_reactions(Balance.of(equations.system)))
     except DerivationError:
         return ()

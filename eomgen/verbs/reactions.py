@@ -36,7 +36,7 @@ from eomgen.documents import (
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.dynamics import System, refuse_jump, system_of, with_nodes_balanced
-from eomgen.mechanics.free_bodies import NamedReaction, balance_of, named_reactions
+from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
 from eomgen.mechanics.statics import resting_contacts
 from eomgen.model import (
     FUNCTIONS,
@@ -123,7 +123,7 @@ def reactions(
     held = bool(model.unknowns_in_loads())
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system
-    requested = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
+    requested = [named for named in named_reactions(Balance.of(system)) if _function(named.name) in FUNCTIONS]
     answered = partial(_answers, _at_rest(model, from_rest), at=at, from_rest=bool(from_rest))
     found: dict[str, Quantity]
     proof: Callable[[Mapping[str, Quantity]], Certificate]
@@ -158,7 +158,7 @@ def reactions_document(
     found = reactions(model, at=at, from_rest=from_rest)
     equations = found.equations
     system = system_of(model) if equations is None else equations.system
-    requested = [named for named in named_reactions(balance_of(system)) if named.name in found]
+    requested = [named for named in named_reactions(Balance.of(system)) if named.name in found]
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
@@ -329,7 +329,7 @@ def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str
     Args:
         below: the self-stresses of indeterminate ones follow below.
     """
-    balance = balance_of(system)
+    balance = Balance.of(system)
     rows = []
     for named in requested:
         answer = found[named.name]

@@ -199,14 +199,14 @@ def test_a_wrong_sign_in_any_equation_of_a_body_is_out_of_balance(name, monkeypa
     """One term of a coefficient, a load, an inertia force or couple, or one of two opposite forces."""
     equations = derived(name)
     system, state = equations.system, in_motion(equations)
-    right = reactions.balance_of(system)
-    assert imbalance(reactions.reactions_of(system), state, Random(1)) == ""
+    right = Balance.of(system)
+    assert imbalance(reactions.Reactions.of(system), state, Random(1)) == ""
     planted = 0
     for what, wrong in balance_mutants(right):
-        monkeypatch.setattr(reactions, "balance_of", lambda *_, wrong=wrong: wrong)
+        monkeypatch.setattr(Balance, "of", lambda *_, wrong=wrong: wrong)
         planted += 1
         try:
-            seen = imbalance(reactions.reactions_of(replace(system)), state, Random(1))
+            seen = imbalance(reactions.Reactions.of(replace(system)), state, Random(1))
         except DerivationError as error:  # refused at once: a body would be held by nothing
             seen = error.what
         assert seen, f"a wrong sign in {what} was not seen"

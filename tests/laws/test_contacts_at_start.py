@@ -16,7 +16,7 @@ from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.kinematics.scene import ContactMode
 from eomgen.mechanics.start import state as open_constraints
-from eomgen.mechanics.start.state import start_of_motion
+from eomgen.mechanics.start.state import Start
 from eomgen.proof.contact_phases import leaving_at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.verbs.reactions import reactions_document
@@ -217,6 +217,6 @@ def test_how_near_ties_come_to_closing_is_sought_for_a_reader_alone(monkeypatch)
     assert eomgen.simulate(model, time=0.1, target="numpy").ok
     assert not sought
     with pytest.raises(OpenConstraints) as refused:
-        start_of_motion(system_of(model))
+        Start.of(system_of(model))
     assert "open by 0.5" in str(pickle.loads(pickle.dumps(refused.value)))
     assert sought == [1]

@@ -12,8 +12,8 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.mechanics.start.assembly_modes import branches_of_loops
-from eomgen.mechanics.start.state import start_of_motion
+from eomgen.mechanics.start.assembly_modes import Branches
+from eomgen.mechanics.start.state import Start
 from eomgen.model.model import Model
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.integration import integrate
@@ -327,12 +327,12 @@ def test_each_branch_that_check_lists_is_chosen_by_a_start_near_it(name):
     """From 0.01 beside each of the ways the loops close on that way, whose constraints hold; no two are the same."""
     model = eomgen.load(MODELS / f"{name}.toml")
     system = eomgen.derive(model).system
-    found = branches_of_loops(system, start_of_motion(system).values)
+    found = Branches.of(system, Start.of(system).values)
     ways = (found.here, *found.others)
     assert len(ways) > 1 and len({str(way) for way in ways}) == len(ways)
     for way in ways:
         near = {q: x + 0.01 for q, x in way.values.items()}
-        again = start_of_motion(system, start=near)
+        again = Start.of(system, start=near)
         turns = [(again.values[q] - x) / (2 * math.pi) for q, x in way.values.items()]
         assert list(turns) == pytest.approx(list(np.round(turns)), abs=2e-3), (name, str(way))
 
@@ -340,7 +340,7 @@ def test_each_branch_that_check_lists_is_chosen_by_a_start_near_it(name):
 def test_the_side_of_a_pin_tells_the_ways_of_a_four_bar():
     """Im conj(Q - P) (R - P) > 0: R to the left of the way from the crank's end P to the rocker's foot Q."""
     system = eomgen.derive(eomgen.loads(OPEN_FOUR_BAR.format(a=30, l=2.5))).system
-    found = branches_of_loops(system, start_of_motion(system).values)
+    found = Branches.of(system, Start.of(system).values)
     P, Q = np.exp(1j * math.pi / 6), 4.0
     for way in (found.here, *found.others):
         R = P + 2.5 * np.exp(1j * (math.pi / 6 + way.values["b"]))
@@ -463,7 +463,7 @@ roll = {{ kind = "rolling", body = "wheel", line = {{ at = [0, 0], normal = [0, 
 def test_a_given_speed_moves_only_for_the_ties_that_need_it(how):
     """x' = 1 and ph' = 3 contradict x' + ph'/5 = 0, and move; a' of the linkage, whose b' and c' are free, stays."""
     system = eomgen.derive(eomgen.loads(TWO_CONSTRAINTS.format(how=how))).system
-    found = start_of_motion(system).values
+    found = Start.of(system).values
     assert found["a'"] == math.radians(100) and found["x'"] + found["ph'"] / 5 == pytest.approx(0, abs=1e-15)
 
 

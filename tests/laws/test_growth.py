@@ -14,8 +14,8 @@ import eomgen
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.equations import static_equations
 from eomgen.mechanics.free_bodies import velocity_plan as blocks
-from eomgen.mechanics.free_bodies.structure import structure_of
-from eomgen.mechanics.linearization.first_order import FirstOrder, first_order_of
+from eomgen.mechanics.free_bodies.structure import Structure
+from eomgen.mechanics.linearization.first_order import FirstOrder
 from eomgen.mechanics.statics.virtual_work import by_virtual_work, requested_reactions
 from eomgen.symbolic.exact.equality import real_values
 from eomgen.symbolic.exact.normal_forms import simple_constants
@@ -28,7 +28,7 @@ chain = runpy.run_path(str(MODELS / "chain.py"))["chain"]
 
 
 def at_rest(model: eomgen.Model) -> FirstOrder:
-    return replace(first_order_of(system_of(model)), at_rest=True)
+    return replace(FirstOrder.of(system_of(model)), at_rest=True)
 
 
 def nodes_of(rows: Any) -> int:
@@ -69,7 +69,7 @@ def test_members_have_closed_forms_only_where_they_are_told(monkeypatch: pytest.
     requested: list[tuple[str, str]] = []
     right = blocks._of_ends
     monkeypatch.setattr(blocks, "_of_ends", lambda plan, ends: requested.append(ends) or right(plan, ends))
-    structure = structure_of(system_of(eomgen.load(MODELS / "k_truss.toml")))
+    structure = Structure.of(system_of(eomgen.load(MODELS / "k_truss.toml")))
     for named in requested_reactions(structure).values():
         requested.clear()
         work = by_virtual_work(structure, named)

@@ -10,8 +10,8 @@ from each import each
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.free_bodies.structure import structure_of
-from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
+from eomgen.mechanics.free_bodies.structure import Structure
+from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 
@@ -65,7 +65,7 @@ B = { kind = "support", point = "T.b3", normal = [0, 1] }
 
 
 def line(text: str, requested: str) -> InfluenceLine:
-    return influence_line(structure_of(system_of(eomgen.loads(text))), requested)
+    return InfluenceLine.of(Structure.of(system_of(eomgen.loads(text))), requested)
 
 
 def numbers(*scalars) -> list[float]:

@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from slow_run import usual
 
 import eomgen
-from eomgen.mechanics.start.assembly_modes import branches_of_loops
-from eomgen.mechanics.start.state import start_of_motion
+from eomgen.mechanics.start.assembly_modes import Branches
+from eomgen.mechanics.start.state import Start
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")]
 MODELS = Path(__file__).parents[2] / "models"
@@ -134,7 +134,7 @@ points = ["table.end", "C.end"]
 
 def begun(b: str, c: str, **start: float):
     text = CRANKS.replace("b = B", f"b = {b}").replace("c = C", f"c = {c}")
-    return start_of_motion(eomgen.derive(eomgen.loads(text)).system, None, start)
+    return Start.of(eomgen.derive(eomgen.loads(text)).system, None, start)
 
 
 def test_values_that_nobody_gave_move_before_those_that_somebody_gave():
@@ -168,7 +168,7 @@ def test_a_start_that_is_far_off_is_refused():
     """Given angles would have to turn by more than 1 rad, or to where the links lie in line."""
     far = CRANKS.replace("b = B", "b = -1.0").replace("c = C", "c = 1.0").replace("start = 1.0", "start = 2.6")
     with pytest.raises(eomgen.DerivationError, match="does not close at the start"):
-        start_of_motion(eomgen.derive(eomgen.loads(far)).system)
+        Start.of(eomgen.derive(eomgen.loads(far)).system)
 
 
 def test_a_start_that_was_changed_is_told(run_verb):
@@ -226,7 +226,7 @@ def test_an_event_in_a_singular_position_is_met():
 def test_a_four_bar_closes_in_two_ways():
     """The triangle of coupler and rocker over the diagonal from the crank's end, and its mirror image."""
     system = eomgen.derive(model("four_bar")).system
-    found = branches_of_loops(system, start_of_motion(system).values)
+    found = Branches.of(system, Start.of(system).values)
     (other,) = found.others
     end, foot = 0.4 * np.exp(1j), 1.1
     for branch in (found.here, other):
@@ -241,9 +241,9 @@ def test_a_four_bar_closes_in_two_ways():
 def test_a_branch_is_picked_by_a_guess_near_it(other):
     """Whatever `near` says first, each branch of those found is the nearest to itself."""
     system = eomgen.derive(model("spatial_four_bar")).system
-    found = branches_of_loops(system, start_of_motion(system).values)
+    found = Branches.of(system, Start.of(system).values)
     branch = found.others[0] if other else found.here
-    again = start_of_motion(system, start=dict(branch.values)).values
+    again = Start.of(system, start=dict(branch.values)).values
     assert {q: again[q] for q in branch.values} == pytest.approx(branch.values)
 
 
@@ -282,7 +282,7 @@ def test_a_loop_closes_at_the_place_nearest_to_the_guess(guess):
 
     def found(near: float) -> float:
         model = eomgen.loads(RSSR.replace("near = 1", f"near = {near}"))
-        return start_of_motion(eomgen.derive(model).system).values["b"]
+        return Start.of(eomgen.derive(model).system).values["b"]
 
     start, ways = found(guess), [found(-0.2), found(2.9)]
     every = [way + 2 * np.pi * turns for way in ways for turns in (-1, 0, 1)]

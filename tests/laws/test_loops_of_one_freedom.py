@@ -16,8 +16,8 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.errors import EomgenError
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.start.assembly_modes import branches_of_loops
-from eomgen.mechanics.start.state import start_of_motion
+from eomgen.mechanics.start.assembly_modes import Branches
+from eomgen.mechanics.start.state import Start
 
 pytestmark = [
     pytest.mark.slow,
@@ -452,7 +452,7 @@ def test_a_linkage_that_reaches_only_to_its_folded_place_does_not_start_there():
     """With L - b > |OP| the loops cannot close; where all bars lie in line they meet to second order alone."""
     model = eomgen.loads(PEAUCELLIER.replace("L = 0.9", "L = 1").replace("c = 0.35", "c = 0.3"))
     with pytest.raises(EomgenError, match="does not close at the start"):
-        start_of_motion(system_of(model))
+        Start.of(system_of(model))
 
 
 def test_check_says_that_a_start_does_not_close(run_verb, tmp_path):
@@ -465,7 +465,7 @@ def test_check_says_that_a_start_does_not_close(run_verb, tmp_path):
 def test_hinges_and_welds_do_not_close_turned_over():
     """n_1 . n_2 = -1 satisfies the rows of a hinge too, and is another machine."""
     system = system_of(eomgen.loads(VICE))
-    found = branches_of_loops(system, start_of_motion(system).values)
+    found = Branches.of(system, Start.of(system).values)
     turns = [(each.values["ps"] + 0.3) / math.tau for each in (found.here, *found.others)]
     assert turns[0] == pytest.approx(0)
     assert all(turn == pytest.approx(round(turn), abs=1e-9) for turn in turns)
@@ -483,7 +483,7 @@ def with_start(**lines: str) -> str:
 
 def test_speeds_in_a_change_point_are_completed_along_a_branch():
     """J u = 0 leaves two speeds free there; a branch leads on only where n^T gamma(u) = 0: here c' = a', b' = 0."""
-    found = start_of_motion(system_of(eomgen.loads(PARALLELOGRAM)))
+    found = Start.of(system_of(eomgen.loads(PARALLELOGRAM)))
     assert found.fork is not None
     assert found.values["c'"] == pytest.approx(2)
     assert found.values["b'"] == pytest.approx(0, abs=1e-9)

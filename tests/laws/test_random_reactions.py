@@ -15,7 +15,7 @@ from slow_run import usual
 import eomgen
 from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.mechanics.free_bodies.inverse import DrivingForces
-from eomgen.mechanics.free_bodies.reactions import reactions_of
+from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.solution import Indeterminate
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -112,7 +112,7 @@ def compared(text: str, seed: int, t: float = 0.0, derived: str = "") -> tuple[i
     tree, system = state(text, seed, t), system_of(eomgen.loads(derived or text))
     size = max(1.0, float(np.max(np.abs(tree.balance.right))))
     assert tree.balance.residual < 1e-8 * size, "the reference itself is in balance"
-    reactions = reactions_of(system)
+    reactions = Reactions.of(system)
     along = (0, 1) if tree.plane else (0, 1, 2)
     many = unknown = 0
     for owner in dict.fromkeys(c.owner for c in reactions.components):

@@ -10,10 +10,10 @@ from random_frames import stiff_frame
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.free_bodies.structure import structure_of
-from eomgen.mechanics.statics.forces_in_sections import KINDS, section_forces
-from eomgen.mechanics.statics.influence import influence_line
-from eomgen.mechanics.statics.virtual_work import static_reactions_of
+from eomgen.mechanics.free_bodies.structure import Structure
+from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
+from eomgen.mechanics.statics.influence import InfluenceLine
+from eomgen.mechanics.statics.virtual_work import StaticReactions
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow
@@ -36,11 +36,11 @@ def test_a_section_carries_what_acts_before_it(seed, members):
     """N = -F_t, V = F_n, M = sum of F_n (x - s) - couples, at two random places of every member."""
     frame, rng = stiff_frame(seed, members), Random(seed)
     system = system_of(eomgen.loads(frame.text))
-    found = static_reactions_of(system)
+    found = StaticReactions.of(system)
     assert not found.disagreeing
     a = system.scope.names["a"]
     for i, length in enumerate(frame.length):
-        forces = section_forces(found.balance, f"m{i}")
+        forces = SectionForces.of(found.balance, f"m{i}")
         for _ in range(2):
             x = between(rng, length)
             values = numbers(system, *(forces.value(kind, x * a) for kind in KINDS))
@@ -52,11 +52,11 @@ def test_an_influence_line_is_the_force_under_a_load_of_1_at_any_place(seed, mem
     """N, V or M at a section of one member, the load anywhere on any other or on the same one."""
     frame, rng = stiff_frame(seed, members), Random(seed)
     system = system_of(eomgen.loads(frame.text))
-    structure = structure_of(system)
+    structure = Structure.of(system)
     kind, i = rng.choice(KINDS), rng.randrange(members)
     x = between(rng, frame.length[i])
     way = ", ".join(f"m{j}" for j in range(members))
-    spans = influence_line(structure, f"{kind}(m{i}, {x}*a): {way}").spans
+    spans = InfluenceLine.of(structure, f"{kind}(m{i}, {x}*a): {way}").spans
     assert {span.name for span in spans} == {f"m{j}" for j in range(members)}
     for span in spans:
         share, j = Fraction(rng.randint(1, 9), 10), int(span.name[1:])

@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.constraints.assembly import Assembly
-from eomgen.mechanics.start.state import start_of_motion
+from eomgen.mechanics.start.state import Start
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 TIED = """
@@ -57,7 +57,7 @@ def test_a_spring_of_the_starts_length_is_slack_where_the_ties_put_it(gap, start
     """V(q_0) = 0 where phi(q_0) = 0; not at the guess, nor where a value given breaks the constraints."""
     text = TIED.replace("R\n", STARTS[start] + "\n", 1).replace("GAP", GAPS[gap])
     equations = eomgen.derive(eomgen.loads(text))
-    symbols, begun = equations.graph.symbols, start_of_motion(equations.system).values
+    symbols, begun = equations.graph.symbols, Start.of(equations.system).values
     state = {x: begun[x.name] for x in symbols.q} | {
         x: {"m": 1, "k": 40, "L": 0.3}[x.name] for x in symbols.parameters.values()
     }

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.mechanics.dynamics.system import system_of
-from eomgen.mechanics.start.assembly_modes import branches_of_loops
+from eomgen.mechanics.start.assembly_modes import Branches
 
 pytestmark = pytest.mark.slow
 
@@ -474,7 +474,7 @@ P1 = { kind = "pin", points = ["c1.end", "r1.end"] }
 P2 = { kind = "pin", points = ["c2.end", "r2.end"] }
 """
     )
-    branches = branches_of_loops(system_of(eomgen.loads(text)), {"q": 0, "a1": 0, "b1": 0, "a2": 0, "b2": 0})
+    branches = Branches.of(system_of(eomgen.loads(text)), {"q": 0, "a1": 0, "b1": 0, "a2": 0, "b2": 0})
     assert branches is not None
     small = [x for way in branches.others for x in way.values.values() if abs(x) < 1e-6]
     assert small

@@ -15,7 +15,7 @@ from eomgen.documents import rendered
 from eomgen.mechanics.integrals.first_integrals import (
     FirstIntegrals,
 )
-from eomgen.mechanics.linearization.linearization import small_motions_of
+from eomgen.mechanics.linearization.linearization import SmallMotions
 
 pytestmark = pytest.mark.slow
 
@@ -116,7 +116,7 @@ joint = { kind = "free", position = ["x", "y", "z"], """
 
 
 def small(text: str, about: str = "equilibrium"):
-    return small_motions_of(eomgen.derive(eomgen.loads(text)).system, about)
+    return SmallMotions.of(eomgen.derive(eomgen.loads(text)).system, about)
 
 
 def frequencies(found) -> list[float]:

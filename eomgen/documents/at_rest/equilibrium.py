@@ -45,7 +45,7 @@ from eomgen.mechanics.equilibrium import (
     standing_system,
 )
 from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.linearization import first_order_of
+from eomgen.mechanics.linearization import FirstOrder
 from eomgen.mechanics.start import shown_numbers
 from eomgen.model import Model, Unit
 from eomgen.proof import (
@@ -99,7 +99,7 @@ class Resting(Result):
             return Certificate(())
         balanced = (balance_check(self.places), pushes_check(self.places))
         try:
-            first = first_order_of(standing_system(self.places[0].statics.system))
+            first = FirstOrder.of(standing_system(self.places[0].statics.system))
             base = certify(first.equations, begins=False)
         except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
             return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))

@@ -33,8 +33,6 @@ from eomgen.mechanics.statics import (
     StaticReactions,
     WorkEquation,
     conditions_of,
-    influence_line,
-    static_reactions_of,
 )
 from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import (
@@ -225,7 +223,7 @@ def why_not_at_rest(model: Model, system: System) -> str:
     """
     if model.coordinates or not model.contacts:
         return ""
-    return "; ".join(Statics(model, static_reactions_of(system)).broken)
+    return "; ".join(Statics(model, StaticReactions.of(system)).broken)
 
 
 def _text(value: Scalar | None) -> str | None:
@@ -283,8 +281,8 @@ def statics(
         _refuse_for_resting(reaction=reaction, influence=influence)
         return Resting(model, study.equilibria)
     held, _ = with_drives_held(study.system)  # what the model drives is held where it starts
-    found = static_reactions_of(held, only=reaction)
-    line = None if influence is None else influence_line(found.structure, influence)
+    found = StaticReactions.of(held, only=reaction)
+    line = None if influence is None else InfluenceLine.of(found.structure, influence)
     return Statics(model, found, line)
 
 

@@ -10,7 +10,7 @@ from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.statics import KINDS, InfluenceLine, SectionForces, SectionPiece, section_forces
+from eomgen.mechanics.statics import KINDS, InfluenceLine, SectionForces, SectionPiece
 from eomgen.model import is_node
 from eomgen.proof import ReportedSections
 from eomgen.symbolic.expression import Node, Scalar
@@ -46,7 +46,7 @@ def sections_of(reactions: Reactions) -> Sections:
     bodies = [link.name for link in system.motion.links if not is_node(link.name)]
     for body in bodies if system.scope.model.space == "plane" else ():
         try:
-            found[body] = section_forces(reactions, body)
+            found[body] = SectionForces.of(reactions, body)
         except DerivationError as error:
             if NO_LINE not in error.what:
                 reasons[body] = f"{error.what}; {error.fix}" if error.fix else error.what

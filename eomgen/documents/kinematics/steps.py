@@ -42,7 +42,6 @@ from eomgen.mechanics.instant import (
     all_centrodes,
     body_motions,
     composition_of,
-    readable_at,
 )
 from eomgen.symbolic.exact import book_form, vanishes
 from eomgen.symbolic.expression import (
@@ -329,7 +328,7 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
     Args:
         state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
     """
-    readable, letters = readable_at(system, state), axes(system)
+    readable, letters = Readable.of(system, state), axes(system)
     parts = velocity_parts(system, point, body, readable)
     title = f"{point}, seen from {body}"
     steps = (
@@ -356,7 +355,7 @@ def relative_steps(system: System, point: str, body: str, state: Mapping[Node, S
 
 def relative_payload(system: System, point: str, body: str, state: Mapping[Node, Scalar]) -> dict[str, Any]:
     """The parts as texts, axes of the body."""
-    parts = velocity_parts(system, point, body, readable_at(system, state))
+    parts = velocity_parts(system, point, body, Readable.of(system, state))
     return {"point": point, "body": body, **{name: [to_text(x) for x in vector] for name, vector in parts.items()}}
 
 

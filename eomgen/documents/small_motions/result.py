@@ -33,9 +33,6 @@ from eomgen.mechanics.linearization import (
     SmallMotions,
     Spectrum,
     StateMatrices,
-    exact_state_space,
-    small_motions_of,
-    with_outputs,
 )
 from eomgen.mechanics.state import Entries
 from eomgen.model import (
@@ -158,11 +155,11 @@ class Linearization(Result):
 
     def _state_spaces(self, outputs: Sequence[str]) -> tuple[StateMatrices | None, StateMatrices | None]:
         """(exact, in numbers), as far as they are known."""
-        exact = exact_state_space(self.small, outputs)
+        exact = StateMatrices.exact(self.small, outputs)
         if not self.valued:
             return exact, None
         A, B = self.small.state_matrix.tolist(), self.small.input_matrix.tolist()
-        return exact, with_outputs(self.small.numbers, A, B, outputs)
+        return exact, StateMatrices.of(self.small.numbers, A, B, outputs)
 
     @property
     def spectrum(self) -> Spectrum:
@@ -478,7 +475,7 @@ def linearize(
             raise UsageError(f"no coordinate '{name}'", fix=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
     study = study_at_rest(model) if about == EQUILIBRIUM and not model.rough_contacts else study_of(model)
-    modes = Modes(small_motions_of(study.system, about, wanted))
+    modes = Modes(SmallMotions.of(study.system, about, wanted))
     return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *study.assumptions))
 
 

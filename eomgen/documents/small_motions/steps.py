@@ -41,10 +41,9 @@ from eomgen.mechanics.linearization import (
     Modes,
     Polynomial,
     ReferenceMotion,
+    StateMatrices,
     TransferFunction,
-    exact_state_space,
     laplace_variable,
-    with_outputs,
 )
 from eomgen.mechanics.state import Entries
 from eomgen.proof import PrintedModes
@@ -394,10 +393,10 @@ def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
     """State matrices that are not empty: exact where all can be printed, else in numbers; () without either."""
     small = modes.small
     outputs = tuple(q.name for q in small.numbers.coordinates)
-    ways = [exact_state_space(small, outputs)]
+    ways = [StateMatrices.exact(small, outputs)]
     if small.reference.valued:
         A, B = small.state_matrix.tolist(), small.input_matrix.tolist()
-        ways.append(with_outputs(small.numbers, A, B, outputs))
+        ways.append(StateMatrices.of(small.numbers, A, B, outputs))
     for found in ways:
         if found is not None:
             parts = (found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,)

@@ -35,9 +35,6 @@ from eomgen.mechanics.constraints.elimination import PLACE as PLACE
 # Result of the elimination of dependent coordinates
 from eomgen.mechanics.constraints.elimination import Elimination as Elimination
 
-# The dependent coordinates of a model eliminated through its constraints
-from eomgen.mechanics.constraints.elimination import elimination_of as elimination_of
-
 # Refuse a place at which rates of dependent coordinates are divided by zero
 from eomgen.mechanics.constraints.elimination import refuse_undetermined as refuse_undetermined
 
@@ -64,9 +61,6 @@ from eomgen.mechanics.constraints.rows import Constraints as Constraints
 
 # One scalar row of a constraint
 from eomgen.mechanics.constraints.rows import Row as Row
-
-# The rows of every constraint of the model
-from eomgen.mechanics.constraints.rows import constraints_of as constraints_of
 
 # Edges of all constraints of the model except the open ones
 from eomgen.mechanics.constraints.rows import edges_of as edges_of

@@ -66,6 +66,35 @@ class Elimination:
     used: dict[Label, str]
     blocks: tuple[DependentBlock, ...]
 
+    @staticmethod
+    def of(constraints: Constraints) -> Elimination:
+        """The dependent coordinates of a model eliminated through its constraints.
+
+        Args:
+            constraints: all of them, over the scope in which dependent coordinates are free.
+        Raises:
+            DerivationError: a dependent coordinate that no constraint determines.
+        """
+        scope = constraints.motion.scope
+        names = scope.dependent
+        dependent = tuple(k for k, u in enumerate(scope.symbols.u) if u.name[:-1] in names)
+        kept = tuple(k for k in range(len(scope.symbols.u)) if k not in dependent)
+        J = _numbers(constraints)
+        rows = _determining_rows(constraints, J[:, dependent])
+        if len(rows) < len(dependent):
+            raise _undetermined(names, J[np.ix_(rows, dependent)], constraints)
+        follow = _following(J, rows, dependent, kept)
+        sharing = [i for i in follow if np.any(J[i, dependent])]
+        system = _LinearRows(constraints, J, rows, dependent, kept)
+        if sharing and system.lean(sharing):
+            system = system.where_closed().joined(sharing)
+        A, b, blocks = system.solved()
+        scope = _reduced(scope, dependent, kept, A, b)
+        own = [names[j] for j in _released_by(J[np.ix_(rows, dependent)])]
+        found = dict(zip(rows, own, strict=True)) | dict.fromkeys(follow, "")
+        used = {(constraints.closing[i].constraint, constraints.closing[i].number): name for i, name in found.items()}
+        return Elimination(scope, used, tuple(_named(constraints, names, system.rows, block) for block in blocks))
+
 
 def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[DependentBlock, ...]:
     """The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good."""
@@ -92,35 +121,6 @@ def refuse_undetermined(elimination: Elimination | None, scope: Scope, place: Ma
         if is_zero(substituted((block.determinant,), place)[0]):
             fix = "start near it, or leave out `dependent`: then their rates belong to the state"
             raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
-
-
-def elimination_of(constraints: Constraints) -> Elimination:
-    """The dependent coordinates of a model eliminated through its constraints.
-
-    Args:
-        constraints: all of them, over the scope in which dependent coordinates are free.
-    Raises:
-        DerivationError: a dependent coordinate that no constraint determines.
-    """
-    scope = constraints.motion.scope
-    names = scope.dependent
-    dependent = tuple(k for k, u in enumerate(scope.symbols.u) if u.name[:-1] in names)
-    kept = tuple(k for k in range(len(scope.symbols.u)) if k not in dependent)
-    J = _numbers(constraints)
-    rows = _determining_rows(constraints, J[:, dependent])
-    if len(rows) < len(dependent):
-        raise _undetermined(names, J[np.ix_(rows, dependent)], constraints)
-    follow = _following(J, rows, dependent, kept)
-    sharing = [i for i in follow if np.any(J[i, dependent])]
-    system = _LinearRows(constraints, J, rows, dependent, kept)
-    if sharing and system.lean(sharing):
-        system = system.where_closed().joined(sharing)
-    A, b, blocks = system.solved()
-    scope = _reduced(scope, dependent, kept, A, b)
-    own = [names[j] for j in _released_by(J[np.ix_(rows, dependent)])]
-    found = dict(zip(rows, own, strict=True)) | dict.fromkeys(follow, "")
-    used = {(constraints.closing[i].constraint, constraints.closing[i].number): name for i, name in found.items()}
-    return Elimination(scope, used, tuple(_named(constraints, names, system.rows, block) for block in blocks))
 
 
 # -- which rows --------------------------------------------------------------------------------------

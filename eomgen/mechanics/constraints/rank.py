@@ -11,17 +11,16 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints.closure import Closure
-from eomgen.mechanics.constraints.elimination import elimination_of
-from eomgen.mechanics.constraints.rows import Constraints, Row, constraints_of, holds_identically
+from eomgen.mechanics.constraints.elimination import Elimination
+from eomgen.mechanics.constraints.rows import Constraints, Row, holds_identically
 from eomgen.mechanics.kinematics import (
     GROUND,
     BodyLink,
     ContactModes,
     Motion,
+    Scope,
     SystemScene,
-    motion_of,
     primitive,
-    scope_of,
 )
 from eomgen.mechanics.state import Numbers
 from eomgen.model import ModelOrPath, Values, model_at, unbuilt_constraints
@@ -137,11 +136,11 @@ def freedom_of(
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
     try:
-        constraints = constraints_of(motion_of(scope_of(model)), modes=modes)
+        constraints = Constraints.of(Motion.of(Scope.of(model)), modes=modes)
     except NotYet as error:
         return Freedom(not_counted=error.what)
     if constraints.motion.scope.dependent:
-        elimination_of(constraints)
+        Elimination.of(constraints)
     count, formula = Rank(constraints).counted()
     identical = tuple((row.constraint, row.number) for row in constraints.rows if row.identical)
     closing = tuple((row.constraint, row.number) for row in constraints.closing)

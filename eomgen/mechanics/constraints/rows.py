@@ -18,9 +18,8 @@ from eomgen.mechanics.kinematics import (
     ContactMode,
     ContactModes,
     Motion,
+    Scope,
     SystemScene,
-    motion_of,
-    scope_of,
 )
 from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, unbuilt_constraints
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
@@ -173,36 +172,36 @@ class Constraints:
         names = scope.dependent
         return [q for q in scope.symbols.q if q.name in names and q in standing]
 
+    @staticmethod
+    def of(
+        motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: ContactModes | None = None
+    ) -> Constraints:
+        """The rows of every constraint of the model.
 
-def constraints_of(
-    motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: ContactModes | None = None
-) -> Constraints:
-    """The rows of every constraint of the model.
-
-    Args:
-        used: {(constraint, number): coordinate} of the rows through which dependent coordinates were eliminated.
-        modes: how contacts are that can end, slide or stick.
-    Raises:
-        NotYet: a kind whose rows this version does not build.
-    """
-    for where, what in unbuilt_constraints(motion.scope.model):
-        raise NotYet(
-            f"the rows of '{what}' are not built yet",
-            where,
-            fix="declare it by constraints that are: see eomgen schema",
-        )
-    rows = []
-    for name, constraint in motion.scope.model.constraints.items():
-        scene = SystemScene(motion, f"{constraint.table}.{name}")
-        mode = (modes or {}).get(name, ContactMode())
-        for number, constraint_row in enumerate(mode.rows_of(constraint, constraint.rows(scene)), start=1):
-            label = (name, number)
-            row = _row(motion, name, number, constraint_row, used=label in (used or {}))
-            row = replace(row, eliminates=(used or {}).get(label, ""))
-            rows.append(_with_friction(scene, constraint, row, mode))
-    stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
-    rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
-    return Constraints(motion, tuple(rows))
+        Args:
+            used: {(constraint, number): coordinate} of the rows through which dependent coordinates were eliminated.
+            modes: how contacts are that can end, slide or stick.
+        Raises:
+            NotYet: a kind whose rows this version does not build.
+        """
+        for where, what in unbuilt_constraints(motion.scope.model):
+            raise NotYet(
+                f"the rows of '{what}' are not built yet",
+                where,
+                fix="declare it by constraints that are: see eomgen schema",
+            )
+        rows = []
+        for name, constraint in motion.scope.model.constraints.items():
+            scene = SystemScene(motion, f"{constraint.table}.{name}")
+            mode = (modes or {}).get(name, ContactMode())
+            for number, constraint_row in enumerate(mode.rows_of(constraint, constraint.rows(scene)), start=1):
+                label = (name, number)
+                row = _row(motion, name, number, constraint_row, used=label in (used or {}))
+                row = replace(row, eliminates=(used or {}).get(label, ""))
+                rows.append(_with_friction(scene, constraint, row, mode))
+        stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
+        rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
+        return Constraints(motion, tuple(rows))
 
 
 def rows_of_constraint(motion: Motion, name: str) -> tuple[Row, ...]:
@@ -440,7 +439,7 @@ def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, 
     """
     if not len(t) or not any(constraint.thread() for constraint in model.constraints.values()):
         return ()
-    motion, found = motion_of(scope_of(model)), []
+    motion, found = Motion.of(Scope.of(model)), []
     symbols, known = motion.scope.symbols, model.exact_parameters()
     p = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     looked = np.unique(np.linspace(0, len(t) - 1, LOOKED).round().astype(int))

@@ -14,8 +14,6 @@ from eomgen.mechanics.constraints import (
     Constraints,
     Elimination,
     Rank,
-    constraints_of,
-    elimination_of,
     holds_identically,
 )
 from eomgen.mechanics.kinematics import (
@@ -23,9 +21,6 @@ from eomgen.mechanics.kinematics import (
     Loads,
     Motion,
     Scope,
-    loads_of,
-    motion_of,
-    scope_of,
     shorter,
 )
 from eomgen.model import Model, rate_matrix_of
@@ -134,14 +129,14 @@ def free_system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
 ) -> System:
     """Motion, loads and constraints of a model in which dependent coordinates are as free as others."""
-    motion = motion_of(scope_of(model, with_laws=with_laws))
-    constraints = constraints_of(motion, modes=modes)
+    motion = Motion.of(Scope.of(model, with_laws=with_laws))
+    constraints = Constraints.of(motion, modes=modes)
     begun: Mapping[Node, Scalar] = {}
     if begun_as is not None:
         begun = _carried_places(begun_as, motion.scope)
     elif any(force.of_the_start for force in model.forces.values()):
         begun = Assembly(constraints).begun_places()
-    return System(motion, loads_of(motion, begun), constraints, modes or {})
+    return System(motion, Loads.of(motion, begun), constraints, modes or {})
 
 
 def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:
@@ -159,14 +154,14 @@ def reduced_system(free: System) -> System:
         DerivationError: a dependent coordinate that no constraint determines.
         ModelError: declared speeds that do not determine the rates.
     """
-    elimination = elimination_of(free.constraints) if free.scope.dependent else None
+    elimination = Elimination.of(free.constraints) if free.scope.dependent else None
     scope = free.scope if elimination is None else elimination.scope
     solved: tuple[Solved, ...] = ()
     if scope.model.speeds:
         scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
-    motion = motion_of(scope)
-    constraints = constraints_of(motion, {} if elimination is None else elimination.used, free.modes)
-    return System(motion, loads_of(motion, free.loads.begun), constraints, free.modes, elimination, free, solved)
+    motion = Motion.of(scope)
+    constraints = Constraints.of(motion, {} if elimination is None else elimination.used, free.modes)
+    return System(motion, Loads.of(motion, free.loads.begun), constraints, free.modes, elimination, free, solved)
 
 
 # -------- equations of motion ---------------------------------------------------------------------------------
@@ -189,7 +184,7 @@ class EquationsOfMotion:
         T, V: kinetic and potential energy [J].
         accelerations: a as explicit expressions where the formulation gives them (articulated body), else None.
         friction: the part of Q that contacts with friction make, nu; () where there is no friction.
-        alike: of each constraint row the number of its group of alike rows (`rows_alike`); () of few.
+        alike: of each constraint row the number of its group of alike rows (`Rank.alike`); () of few.
     """
 
     system: System

@@ -12,9 +12,9 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Rank, constraints_of
+from eomgen.mechanics.constraints import Constraints, Rank
 from eomgen.mechanics.dynamics import System, reduced_system, system_of
-from eomgen.mechanics.kinematics import Scope, loads_of, motion_of
+from eomgen.mechanics.kinematics import Loads, Motion, Scope
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
 from eomgen.symbolic.exact import readable_all, simplest, vanishes
@@ -390,6 +390,6 @@ def standing_system(system: System) -> System:
 def _made_of(free: System, scope: Scope) -> System:
     """The system of another scope over the rates, dependent coordinates eliminated."""
     scope = replace(scope, model=scope.model.altered(speeds=Table({})))
-    motion = motion_of(scope)
-    made = System(motion, loads_of(motion, free.loads.begun), constraints_of(motion, modes=free.modes), free.modes)
+    motion = Motion.of(scope)
+    made = System(motion, Loads.of(motion, free.loads.begun), Constraints.of(motion, modes=free.modes), free.modes)
     return reduced_system(made) if scope.dependent else made

@@ -10,7 +10,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium
-from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions, reactions_of
+from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.symbolic.exact import LinearSystem, Solution, general_solution, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
@@ -56,7 +56,7 @@ def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, 
         DerivationError: a force acts at no place, so that reactions do not follow.
     """
     system, state = system_at_rest(place), state_at_rest(place)
-    reactions = reactions_of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
+    reactions = Reactions.of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
     positive = system.scope.positive
     found = []
     for named in named_reactions(reactions.balance):

@@ -19,7 +19,7 @@ from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coor
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
 from eomgen.mechanics.equilibrium.stability import Stability, stability_of
-from eomgen.mechanics.free_bodies import Indeterminate, reactions_of
+from eomgen.mechanics.free_bodies import Indeterminate, Reactions
 from eomgen.mechanics.kinematics import ContactMode, Located, Lock, Motion
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.state import Doubles
@@ -411,7 +411,7 @@ def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mappi
     if not names:
         return ()
     try:
-        reactions = reactions_of(system, state)
+        reactions = Reactions.of(system, state)
     except DerivationError:  # what acts at no place has no reactions
         return ()
     found = []

@@ -6,9 +6,6 @@ from eomgen.mechanics.free_bodies.balance import Balance as Balance
 # One scalar equation of one body: sum of coefficients * reactions + applied = inertia
 from eomgen.mechanics.free_bodies.balance import BodyEquation as BodyEquation
 
-# The equations of every body; those that say 0 = 0 are left out
-from eomgen.mechanics.free_bodies.balance import balance_of as balance_of
-
 # Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them
 from eomgen.mechanics.free_bodies.balance import refuse_placeless as refuse_placeless
 
@@ -42,9 +39,6 @@ from eomgen.mechanics.free_bodies.inverse import Inverse as Inverse
 # a and lam, where the constraints leave few degrees of freedom; redundant rows are left out, their lam 0
 from eomgen.mechanics.free_bodies.inverse import by_independent as by_independent
 
-# tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them
-from eomgen.mechanics.free_bodies.inverse import inverse_of as inverse_of
-
 # sum of combination * components + given
 from eomgen.mechanics.free_bodies.names_of_reactions import NamedReaction as NamedReaction
 
@@ -56,9 +50,6 @@ from eomgen.mechanics.free_bodies.reactions import Reactions as Reactions
 
 # Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0
 from eomgen.mechanics.free_bodies.reactions import determinate_sums as determinate_sums
-
-# Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew
-from eomgen.mechanics.free_bodies.reactions import reactions_of as reactions_of
 
 # The model and the modes of the phase after the constraint has ended; the coordinates keep their names
 from eomgen.mechanics.free_bodies.release import released as released
@@ -74,9 +65,6 @@ from eomgen.mechanics.free_bodies.solution import values_at_a_state as values_at
 
 # Bodies and the reactions on them, at one configuration
 from eomgen.mechanics.free_bodies.structure import Structure as Structure
-
-# The structure at a configuration, at rest
-from eomgen.mechanics.free_bodies.structure import structure_of as structure_of
 
 # Parts that move as one rigid body
 from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock as RigidBlock

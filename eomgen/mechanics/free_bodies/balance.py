@@ -114,21 +114,21 @@ class Balance:
         """Names of the unknowns of the equations: reaction_x(B), then the unknowns of the loads."""
         return (*(c.name for c in self.components), *(unknown.name for unknown in self.unknowns))
 
+    @staticmethod
+    def of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Balance:
+        """The equations of every body; those that say 0 = 0 are left out.
 
-def balance_of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Balance:
-    """The equations of every body; those that say 0 = 0 are left out.
-
-    Args:
-        sizes: |N| of the bilateral contacts with friction.
-    Raises:
-        DerivationError: a force, an energy or a constraint that acts at no place, named.
-    """
-    if sizes:
-        return _balance(system, sizes)
-    if balance_of not in system.found:
-        system.found[balance_of] = _balance(system, {})
-    found: Balance = system.found[balance_of]
-    return found
+        Args:
+            sizes: |N| of the bilateral contacts with friction.
+        Raises:
+            DerivationError: a force, an energy or a constraint that acts at no place, named.
+        """
+        if sizes:
+            return _balance(system, sizes)
+        if Balance.of not in system.found:
+            system.found[Balance.of] = _balance(system, {})
+        found: Balance = system.found[Balance.of]
+        return found
 
 
 def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:

@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import (
     WellPosed,
     assembled_by_recursion,
 )
-from eomgen.mechanics.free_bodies.balance import Balance, balance_of
+from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.solution import (
     combined_reaction,
     friction_as_load,
@@ -209,7 +209,7 @@ class _WithFriction:
 
     @cached_property
     def _balance(self) -> Balance:
-        return balance_of(self.equations.system, self._symbols)
+        return Balance.of(self.equations.system, self._symbols)
 
     @cached_property
     def _solution(self) -> Solution:

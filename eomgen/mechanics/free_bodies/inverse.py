@@ -34,7 +34,7 @@ from eomgen.mechanics.dynamics import (
     system_of,
 )
 from eomgen.mechanics.free_bodies.friction import SystemFriction
-from eomgen.mechanics.free_bodies.reactions import reactions_of
+from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.start import begun_state
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import Table, nearest
@@ -94,35 +94,37 @@ class Inverse:
         values = [x for (x,) in cramer.solution_by_minors(lines, [(x,) for x in self.right])[0]]
         return substituted(self.tau, dict(zip(self.unknowns, values, strict=True)))
 
+    @staticmethod
+    def of(system: System, actuated: Sequence[str] = ()) -> Inverse:
+        """tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them.
 
-def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
-    """tau that moves the system with accelerations a; where constraints close, J a + gamma = 0 must hold of them.
-
-    Args:
-        actuated: coordinates, speeds, inputs or bodies (in their joint) that act, one for each degree of freedom; ()
-            for all speeds of a system without closing constraints.
-    Raises:
-        UsageError: an unknown name; too few or too many actuators.
-        DerivationError: Coulomb friction; an input that does not act linearly.
-    """
-    if SystemFriction(system).exists:
-        raise DerivationError(
-            "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
-            fix="give the coordinates their `motion`, and use drive(...)",
-        )
-    symbols, closing = system.symbols, system.symbols.lam
-    if not symbols.u:
-        raise UsageError("nothing is free to move: every motion is given", fix="ask for drive(...) of what is driven")
-    if not actuated and closing:
-        raise UsageError("constraints close loops, and nothing says which coordinates are actuated", fix=NAME)
-    names = tuple(actuated) or tuple(_along(u, system) for u in symbols.u)
-    own = {name: symbols.inputs[name] for name in names if name in symbols.inputs}
-    needed = inverse_residual(system)
-    columns = _columns(system, names, needed)
-    _refuse_wrong_number(system, names, columns)
-    r = substituted(needed, dict.fromkeys(own.values(), 0))
-    inputs = {name: value for name, value in system.inputs.items() if name not in own}
-    return _solved_for(Inverse(system, names, inputs, ()), columns, r)
+        Args:
+            actuated: coordinates, speeds, inputs or bodies (in their joint) that act, one for each degree of freedom;
+                () for all speeds of a system without closing constraints.
+        Raises:
+            UsageError: an unknown name; too few or too many actuators.
+            DerivationError: Coulomb friction; an input that does not act linearly.
+        """
+        if SystemFriction(system).exists:
+            raise DerivationError(
+                "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
+                fix="give the coordinates their `motion`, and use drive(...)",
+            )
+        symbols, closing = system.symbols, system.symbols.lam
+        if not symbols.u:
+            raise UsageError(
+                "nothing is free to move: every motion is given", fix="ask for drive(...) of what is driven"
+            )
+        if not actuated and closing:
+            raise UsageError("constraints close loops, and nothing says which coordinates are actuated", fix=NAME)
+        names = tuple(actuated) or tuple(_along(u, system) for u in symbols.u)
+        own = {name: symbols.inputs[name] for name in names if name in symbols.inputs}
+        needed = inverse_residual(system)
+        columns = _columns(system, names, needed)
+        _refuse_wrong_number(system, names, columns)
+        r = substituted(needed, dict.fromkeys(own.values(), 0))
+        inputs = {name: value for name, value in system.inputs.items() if name not in own}
+        return _solved_for(Inverse(system, names, inputs, ()), columns, r)
 
 
 def _columns(system: System, names: Sequence[str], needed: ScalarRow) -> tuple[ScalarRow, ...]:
@@ -310,7 +312,7 @@ def _friction(system: System, free: System, k: int) -> Scalar:
     shares = {name: share for name, share in shares.items() if not is_zero(share)}
     if not shares:
         return 0
-    reactions = reactions_of(system)
+    reactions = Reactions.of(system)
     return sum((share * reactions.normal(name) for name, share in shares.items()), start=0)
 
 

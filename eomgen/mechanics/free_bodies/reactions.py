@@ -20,7 +20,6 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.balance import (
     DIRECTIONS,
     Balance,
-    balance_of,
     balances_of_nodes,
     is_balanced,
     refuse_friction,
@@ -29,7 +28,7 @@ from eomgen.mechanics.free_bodies.balance import (
 from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.solution import SURE, Combination, combined_reaction, solution_of_balance
-from eomgen.mechanics.free_bodies.structure import structure_of
+from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
 from eomgen.mechanics.start import values_where_at_rest
@@ -332,6 +331,31 @@ class Reactions:
         """
         return combined_reaction(self.balance, self.solution, combination, name)
 
+    @staticmethod
+    def of(
+        system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = Work.ANSWER
+    ) -> Reactions:
+        """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
+
+        From as few equations as can be and from sure pivots alone is the same elimination, where all pivots are sure.
+
+        Args:
+            at: exact scalars in place of coordinates, speeds, accelerations and t.
+            short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some
+                states.
+            work: products of terms by which one coefficient is made readable at a configuration.
+        Raises:
+            DerivationError: a body is unsupported; a force acts at no place.
+        """
+        if at or work != Work.ANSWER:
+            return _found(system, at or {}, short, work)
+        if (key := (Reactions.of, short)) not in system.found:
+            other: Reactions | None = system.found.get((Reactions.of, not short))
+            alike = other is not None and other.solution.worst is not None and other.solution.worst <= SURE
+            system.found[key] = other if alike else _found(system, {}, short, work)
+        found: Reactions = system.found[key]
+        return found
+
 
 def determinate_sums(stresses: Sequence[Mapping[Any, Scalar]]) -> list[dict[Any, Scalar]]:
     """Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0.
@@ -355,33 +379,9 @@ def determinate_sums(stresses: Sequence[Mapping[Any, Scalar]]) -> list[dict[Any,
     return found
 
 
-def reactions_of(
-    system: System, at: Mapping[Node, Scalar] | None = None, *, short: bool = False, work: int = Work.ANSWER
-) -> Reactions:
-    """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
-
-    From as few equations as can be and from sure pivots alone it is the same elimination, where all pivots are sure.
-
-    Args:
-        at: exact scalars in place of coordinates, speeds, accelerations and t.
-        short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some states.
-        work: products of terms by which one coefficient is made readable at a configuration.
-    Raises:
-        DerivationError: a body is unsupported; a force acts at no place.
-    """
-    if at or work != Work.ANSWER:
-        return _found(system, at or {}, short, work)
-    if (key := (reactions_of, short)) not in system.found:
-        other: Reactions | None = system.found.get((reactions_of, not short))
-        alike = other is not None and other.solution.worst is not None and other.solution.worst <= SURE
-        system.found[key] = other if alike else _found(system, {}, short, work)
-    found: Reactions = system.found[key]
-    return found
-
-
 def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) -> Reactions:
     sizes = SystemFriction(system).push_sizes()
-    balance = balance_of(system, sizes)
+    balance = Balance.of(system, sizes)
     if balance.unknowns:
         return _at_rest(balance, at, work)
     if at:
@@ -395,7 +395,7 @@ def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) ->
 def _with_sizes(system: System, at: Mapping[Node, Scalar], sizes: Mapping[str, Scalar], work: int) -> Solution:
     """The reactions at a configuration, |N| of bilateral contacts put in at last: multiplied out it is long."""
     symbols = SystemFriction(system).round_symbols
-    solution = solution_of_balance(balance_of(system, symbols), at, work=work)
+    solution = solution_of_balance(Balance.of(system, symbols), at, work=work)
     names, values = list(solution.constants), tuple(solution.constants.values())
     known = dict(zip((symbols[name] for name in sizes), substituted(tuple(sizes.values()), at), strict=True))
     return replace(solution, constants=dict(zip(names, substituted(values, known), strict=True)))
@@ -442,7 +442,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
         if len(left) <= motions or sum(not holds_identically(x) for x in left) <= motions:
             return
         if not system.symbols.u:
-            return structure_of(system).refuse_loose()
+            return Structure.of(system).refuse_loose()
     key = (refuse_unheld, bool(at))
     if key not in system.found:
         system.found[key] = _unheld(balance, touched=bool(at))

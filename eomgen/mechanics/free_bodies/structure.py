@@ -10,7 +10,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
+from eomgen.mechanics.free_bodies.balance import Balance, slope
 from eomgen.mechanics.free_bodies.velocity_plan import (
     MOST_MOTIONS,
     VelocityPlan,
@@ -277,6 +277,32 @@ class Structure:
             what += f"; its {len(self.rows)} reactions are not independent there"
         raise DerivationError(what, declared_at(_culprit(self.loose[0])), _fix(self, enough))
 
+    @staticmethod
+    def of(system: System, at: Mapping[Node, Scalar] | None = None) -> Structure:
+        """The structure at a configuration, at rest.
+
+        Args:
+            at: exact scalars in place of coordinates; None: the start.
+        Raises:
+            DerivationError: there is no body; a force, an energy or a constraint that acts at no place; constraints
+                that do not close; loads that are not linear in an unknown.
+        """
+        if not system.motion.links:
+            raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
+        balance = Balance.of(system)
+        state = values_where_at_rest(system, at)
+        unknowns = balance.unknowns
+        table = {(system.motion.index[e.body], e.direction): e for e in balance.equations}
+        columns = tuple(c for c in _directions(system) if c in table or not _is_point_that_turns(system, c))
+        rows: list[dict[int, Scalar]] = [{} for _ in (*balance.components, *unknowns)]
+        for k, column in enumerate(columns):
+            equation = table.get(column)
+            for j, x in ({} if equation is None else equation.coefficients).items():
+                rows[j][k] = x
+            for j, unknown in enumerate(unknowns, start=len(balance.components)):
+                rows[j][k] = 0 if equation is None else slope(balance, equation, unknown)
+        return Structure(balance, state, columns, _placed(system, rows, state))
+
 
 @dataclass(frozen=True)
 class _Solved:
@@ -291,33 +317,6 @@ class _Solved:
     def velocities(self) -> tuple[Scalar, ...]:
         """xi as functions of delta; those that stay free are 0."""
         return tuple(self.solution.constants.get(j, 0) for j in range(self.size))
-
-
-def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Structure:
-    """The structure at a configuration, at rest.
-
-    Args:
-        at: exact scalars in place of coordinates; None: the start.
-    Raises:
-        DerivationError: there is no body; a force, an energy or a constraint that acts at no place; constraints that
-            do not close;
-            loads that are not linear in an unknown.
-    """
-    if not system.motion.links:
-        raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
-    balance = balance_of(system)
-    state = values_where_at_rest(system, at)
-    unknowns = balance.unknowns
-    table = {(system.motion.index[e.body], e.direction): e for e in balance.equations}
-    columns = tuple(c for c in _directions(system) if c in table or not _is_point_that_turns(system, c))
-    rows: list[dict[int, Scalar]] = [{} for _ in (*balance.components, *unknowns)]
-    for k, column in enumerate(columns):
-        equation = table.get(column)
-        for j, x in ({} if equation is None else equation.coefficients).items():
-            rows[j][k] = x
-        for j, unknown in enumerate(unknowns, start=len(balance.components)):
-            rows[j][k] = 0 if equation is None else slope(balance, equation, unknown)
-    return Structure(balance, state, columns, _placed(system, rows, state))
 
 
 def _placed(system: System, rows: Sequence[Mapping[int, Scalar]], state: State) -> tuple[dict[int, Scalar], ...]:

@@ -14,9 +14,6 @@ from eomgen.mechanics.instant.kinematic_state import body_motions as body_motion
 
 # The motion of a point, seen from a body (or from the ground)
 from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
-
-# The readable values of a system at a state
-from eomgen.mechanics.instant.kinematic_state import readable_at as readable_at
 from eomgen.mechanics.instant.mechanism import FIXED as FIXED
 from eomgen.mechanics.instant.mechanism import POINT as POINT
 
@@ -60,9 +57,6 @@ from eomgen.mechanics.instant.quantities import requests_of as requests_of
 
 # A system at one configuration
 from eomgen.mechanics.instant.velocity_analysis import InstantKinematics as InstantKinematics
-
-# The model at its start, with what it gives of velocities and accelerations
-from eomgen.mechanics.instant.velocity_analysis import instant_kinematics_of as instant_kinematics_of
 
 # Number of degrees of freedom at the start by rank; bodies that only constraints hold are counted as free
 from eomgen.mechanics.instant.velocity_analysis import mobility_of as mobility_of

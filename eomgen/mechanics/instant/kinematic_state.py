@@ -306,10 +306,10 @@ class Readable:
         """The field at the state."""
         return VelocityField(*map(self.vector, (field.p, field.v, field.a, field.w, field.e)))
 
-
-def readable_at(system: System, state: Mapping[Node, Scalar]) -> Readable:
-    """The readable values of a system at a state."""
-    return Readable(state, Legibly(Work.VALUE, system.scope.positive, LARGE_MOTION))
+    @staticmethod
+    def of(system: System, state: Mapping[Node, Scalar]) -> Readable:
+        """The readable values of a system at a state."""
+        return Readable(state, Legibly(Work.VALUE, system.scope.positive, LARGE_MOTION))
 
 
 @dataclass(frozen=True)
@@ -390,7 +390,7 @@ def body_motions(
         state: exact scalars in place of coordinates, speeds, accelerations and t; {}: as functions of them.
         kinds: gives the kinds of motion in the long run.
     """
-    readable, plane = readable_at(system, state), system.scope.model.space == "plane"
+    readable, plane = Readable.of(system, state), system.scope.model.space == "plane"
     return tuple(
         BodyMotion(
             body,

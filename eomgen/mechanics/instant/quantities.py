@@ -9,7 +9,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import DrivingForces, Indeterminate, Reactions, reactions_of, refuse_placeless
+from eomgen.mechanics.free_bodies import DrivingForces, Indeterminate, Reactions, refuse_placeless
 from eomgen.mechanics.instant.kinematic_state import Composition, body_axes, composition_of
 from eomgen.mechanics.instant.motion_kind import finite_center
 from eomgen.mechanics.kinematics import (
@@ -20,7 +20,7 @@ from eomgen.mechanics.kinematics import (
     SystemScene,
     VelocityField,
 )
-from eomgen.mechanics.statics import SectionForces, section_forces
+from eomgen.mechanics.statics import SectionForces
 from eomgen.model import FUNCTIONS, GROUND, Couple, GeneralizedForce, Load, MassProperties, PointForce, UniformField
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
@@ -291,7 +291,7 @@ class Quantities:
     @cached_property
     def reactions(self) -> Reactions:
         """All reactions, of generic coordinates or at the given ones."""
-        return reactions_of(self.system, self.at, short=True) if self.balance is None else self.balance
+        return Reactions.of(self.system, self.at, short=True) if self.balance is None else self.balance
 
     def is_truss(self, name: str) -> bool:
         """True if a name is that of a truss."""
@@ -326,7 +326,7 @@ class Quantities:
                 f"'{body}' is no body with section forces", fix="declare it as a rail or a beam: an axis and its ends"
             )
         if body not in self._sections:
-            self._sections[body] = section_forces(self.reactions, body)
+            self._sections[body] = SectionForces.of(self.reactions, body)
         return self._sections[body]
 
     @cached_property

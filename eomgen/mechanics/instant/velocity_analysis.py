@@ -262,36 +262,40 @@ class InstantKinematics:
         if self.velocities.missing > 1:
             raise self._open(self.velocities, "velocity", "rate")
 
+    @staticmethod
+    def of(model: Model, *, by_coordinates: bool = False) -> InstantKinematics:
+        """The model at its start, with what it gives of velocities and accelerations.
 
-def instant_kinematics_of(model: Model, *, by_coordinates: bool = False) -> InstantKinematics:
-    """The model at its start, with what it gives of velocities and accelerations.
+        Start speeds that the model says count as given.
 
-    Start speeds that the model says count as given.
-
-    Args:
-        by_coordinates: coordinates that the constraints place in no short closed form stay symbols; else they are
-            numbers.
-    Raises:
-        DerivationError: constraints that do not close at the start.
-    """
-    free = free_system_of(freed(model))
-    places, numbers = _places(free)
-    located = {q: numbers[q.name] for q in free.constraints.fixed_by_position if numbers and q not in places}
-    exact = by_coordinates or not located
-    still = (
-        _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
-        if exact
-        else _in_numbers(free, numbers)
-    )
-    if not located:
-        open_gaps(free, still)
-    given = model.given
-    speeds = {
-        f"{name}'": part.speed for name, part in model.coordinates.items() if part.speed is not None and not part.driven
-    }
-    speeds |= {name: part.start for name, part in model.speeds.items() if part.start is not None}
-    velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
-    return InstantKinematics(free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {})
+        Args:
+            by_coordinates: coordinates that the constraints place in no short closed form stay symbols; else they are
+                numbers.
+        Raises:
+            DerivationError: constraints that do not close at the start.
+        """
+        free = free_system_of(freed(model))
+        places, numbers = _places(free)
+        located = {q: numbers[q.name] for q in free.constraints.fixed_by_position if numbers and q not in places}
+        exact = by_coordinates or not located
+        still = (
+            _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
+            if exact
+            else _in_numbers(free, numbers)
+        )
+        if not located:
+            open_gaps(free, still)
+        given = model.given
+        speeds = {
+            f"{name}'": part.speed
+            for name, part in model.coordinates.items()
+            if part.speed is not None and not part.driven
+        }
+        speeds |= {name: part.start for name, part in model.speeds.items() if part.start is not None}
+        velocity, acceleration = (given and given.velocity) or (), (given and given.acceleration) or ()
+        return InstantKinematics(
+            free, still, velocity, acceleration, speeds, exact=exact, located=located if exact else {}
+        )
 
 
 def _places(free: System) -> tuple[State, Mapping[str, float]]:
@@ -332,7 +336,7 @@ def mobility_of(model: Model) -> int:
     Raises:
         DerivationError: constraints that are not satisfied at the start.
     """
-    return instant_kinematics_of(model.altered(given=None)).velocities.degrees_of_freedom
+    return InstantKinematics.of(model.altered(given=None)).velocities.degrees_of_freedom
 
 
 # -------- given rows ------------------------------------------------------------------------------------------

@@ -26,6 +26,3 @@ from eomgen.mechanics.integrals.speeds import Relations as Relations
 
 # (the same, in which pieces the integrals hold that give it)
 from eomgen.mechanics.integrals.speeds import rates_and_extent as rates_and_extent
-
-# Relations between the speeds from momenta and constraint rows, all linear in them; None if several stay free
-from eomgen.mechanics.integrals.speeds import relations_of as relations_of

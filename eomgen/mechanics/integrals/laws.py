@@ -10,7 +10,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion, waves
-from eomgen.mechanics.integrals.speeds import Relations, rates_of, relations_of
+from eomgen.mechanics.integrals.speeds import Relations, rates_of
 from eomgen.mechanics.kinematics import Located, integral_from_zero, primitive
 from eomgen.symbolic.exact import sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
@@ -410,7 +410,7 @@ class ClosedInstant:
 
     def _relations(self, at: State) -> Relations | None:
         try:
-            return relations_of(self.equations, self.start, at)
+            return Relations.of(self.equations, self.start, at)
         except DerivationError:  # a division by 0 at this place, a start without closed form
             return None
 

@@ -70,7 +70,7 @@ def rates_and_extent(
     at: Mapping[Node, Scalar] | None = None,
 ) -> tuple[dict[Node, Scalar], Extent] | None:
     """(the same, in which pieces the integrals hold that give it)."""
-    relations = relations_of(equations, start, at)
+    relations = Relations.of(equations, start, at)
     if relations is None:
         return None
     speeds, held = relations.speeds, FirstIntegrals(equations).where_momenta_hold
@@ -281,43 +281,43 @@ class Relations:
         s = 0 if self.speed is None else self.speed
         return {u: self.constants[u] + self.shares[u] * s for u in self.shares}
 
+    @staticmethod
+    def of(
+        equations: EquationsOfMotion, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
+    ) -> Relations | None:
+        """Relations between the speeds from momenta and constraint rows, all linear in them; None if several stay free.
 
-def relations_of(
-    equations: EquationsOfMotion, start: Mapping[Node, Scalar], at: Mapping[Node, Scalar] | None = None
-) -> Relations | None:
-    """Relations between the speeds from momenta and constraint rows, all linear in them; None if several stay free.
-
-    Args:
-        start: q and u at the start, scalars of the parameters.
-        at: coordinates whose values are put in before anything is solved.
-    """
-    symbols = equations.symbols
-    by_itself = (*equations.sigma, *equations.nu)
-    if not 0 < len(symbols.u) <= MOST_SPEEDS or any(depends_on(x, (symbols.t,)) for x in by_itself):
-        return None
-    rows: list[dict[int, Scalar]] = [dict(enumerate(row)) for row in equations.J]
-    right: list[Scalar] = [-sigma for sigma in equations.sigma]
-    for integral in FirstIntegrals(equations).of_momentum:
-        if depends_on(integral.expression, (symbols.t,)):
-            continue
-        (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
-        rows.append(dict(enumerate(gradient(integral.expression, symbols.u))))
-        right.append(value_at_start(integral.expression, start, symbols) - rest)
-    if at:
-        rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
-        right = list(substituted(tuple(right), at))
-    solution = _solved(equations.system, rows, right, len(symbols.u))
-    if solution is None or len(solution.free) > 1:
-        return None
-    positive = equations.system.scope.positive
-    constants = {symbols.u[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
-    if not solution.free:
-        return Relations(None, dict.fromkeys(symbols.u, 0), constants)
-    (free,) = solution.free
-    speed = symbols.u[free]
-    shares: dict[Node, Scalar] = {speed: 1}
-    shares |= {symbols.u[j]: simplest(-x.get(free, 0), Work.VALUE, positive) for j, x in solution.shares.items()}
-    return Relations(speed, {u: shares[u] for u in symbols.u}, {speed: 0, **constants})
+        Args:
+            start: q and u at the start, scalars of the parameters.
+            at: coordinates whose values are put in before anything is solved.
+        """
+        symbols = equations.symbols
+        by_itself = (*equations.sigma, *equations.nu)
+        if not 0 < len(symbols.u) <= MOST_SPEEDS or any(depends_on(x, (symbols.t,)) for x in by_itself):
+            return None
+        rows: list[dict[int, Scalar]] = [dict(enumerate(row)) for row in equations.J]
+        right: list[Scalar] = [-sigma for sigma in equations.sigma]
+        for integral in FirstIntegrals(equations).of_momentum:
+            if depends_on(integral.expression, (symbols.t,)):
+                continue
+            (rest,) = substituted((integral.expression,), dict.fromkeys(symbols.u, 0))
+            rows.append(dict(enumerate(gradient(integral.expression, symbols.u))))
+            right.append(value_at_start(integral.expression, start, symbols) - rest)
+        if at:
+            rows = [dict(zip(row, substituted(tuple(row.values()), at), strict=True)) for row in rows]
+            right = list(substituted(tuple(right), at))
+        solution = _solved(equations.system, rows, right, len(symbols.u))
+        if solution is None or len(solution.free) > 1:
+            return None
+        positive = equations.system.scope.positive
+        constants = {symbols.u[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
+        if not solution.free:
+            return Relations(None, dict.fromkeys(symbols.u, 0), constants)
+        (free,) = solution.free
+        speed = symbols.u[free]
+        shares: dict[Node, Scalar] = {speed: 1}
+        shares |= {symbols.u[j]: simplest(-x.get(free, 0), Work.VALUE, positive) for j, x in solution.shares.items()}
+        return Relations(speed, {u: shares[u] for u in symbols.u}, {speed: 0, **constants})
 
 
 def _solved(

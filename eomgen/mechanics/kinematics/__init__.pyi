@@ -14,9 +14,6 @@ from eomgen.mechanics.kinematics.loads import JointEffort as JointEffort
 
 # All that is applied to the system
 from eomgen.mechanics.kinematics.loads import Loads as Loads
-
-# Every applied force of the model, as loads and potentials
-from eomgen.mechanics.kinematics.loads import loads_of as loads_of
 from eomgen.mechanics.kinematics.motion import GROUND as GROUND
 
 # One body in the tree
@@ -30,9 +27,6 @@ from eomgen.mechanics.kinematics.motion import Motion as Motion
 
 # The motion of one rigid body at a state, ground axes
 from eomgen.mechanics.kinematics.motion import VelocityField as VelocityField
-
-# Poses and twists of every body of the model
-from eomgen.mechanics.kinematics.motion import motion_of as motion_of
 
 # Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'
 from eomgen.mechanics.kinematics.motion import spin_between as spin_between
@@ -61,9 +55,6 @@ from eomgen.mechanics.kinematics.symbols import integral_from_zero as integral_f
 
 # A function of x whose derivative is f, or None where no closed form was found
 from eomgen.mechanics.kinematics.symbols import primitive as primitive
-
-# The symbols of a model, its kinematic equations, and the meaning of its names
-from eomgen.mechanics.kinematics.symbols import scope_of as scope_of
 
 # x as one quotient without common factors, where that takes fewer operations and x is not long
 from eomgen.mechanics.kinematics.symbols import shorter as shorter

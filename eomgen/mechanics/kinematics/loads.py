@@ -229,27 +229,27 @@ class Loads:
             rows.append(tuple(effort.effort * d for d in gradient(rate, motion.scope.symbols.u)))
         return _summed(rows, size)
 
+    @staticmethod
+    def of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Loads:
+        """Every applied force of the model, as loads and potentials.
 
-def loads_of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Loads:
-    """Every applied force of the model, as loads and potentials.
-
-    Args:
-        begun: where coordinates start that do not start where they are declared to.
-    """
-    applied, begun = [], begun or {}
-    for name, force in motion.scope.model.forces.items():
-        scene = SystemScene(motion, f"forces.{name}", begun)
-        if not force.works:
-            raise NotYet(
-                f"forces of kind '{force.kind}' are not derived yet",
-                f"forces.{name}",
-                fix="declare it by forces that are: see eomgen schema",
-            )
-        loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
-        applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
-    efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
-    _refuse_accelerations(motion, applied, efforts)
-    return Loads(motion, tuple(applied), tuple(efforts), begun)
+        Args:
+            begun: where coordinates start that do not start where they are declared to.
+        """
+        applied, begun = [], begun or {}
+        for name, force in motion.scope.model.forces.items():
+            scene = SystemScene(motion, f"forces.{name}", begun)
+            if not force.works:
+                raise NotYet(
+                    f"forces of kind '{force.kind}' are not derived yet",
+                    f"forces.{name}",
+                    fix="declare it by forces that are: see eomgen schema",
+                )
+            loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
+            applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
+        efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
+        _refuse_accelerations(motion, applied, efforts)
+        return Loads(motion, tuple(applied), tuple(efforts), begun)
 
 
 def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[JointEffort]) -> None:

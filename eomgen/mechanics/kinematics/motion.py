@@ -282,21 +282,21 @@ class Motion:
             return link.S
         return tuple(column for column, s in zip(link.S, link.s, strict=True) if self.moves((s,)))
 
+    @staticmethod
+    def of(scope: Scope) -> Motion:
+        """Poses and twists of every body of the model.
 
-def motion_of(scope: Scope) -> Motion:
-    """Poses and twists of every body of the model.
-
-    Raises:
-        DerivationError: a joint whose place depends on an input.
-        NotYet: a joint kind that this version does not derive.
-    """
-    links: list[BodyLink] = []
-    index: dict[str, int] = {}
-    for name in parents_first(scope.model):
-        link = _link(scope, name, links, index)
-        index[name] = len(links)
-        links.append(link)
-    return Motion(scope, tuple(links))
+        Raises:
+            DerivationError: a joint whose place depends on an input.
+            NotYet: a joint kind that this version does not derive.
+        """
+        links: list[BodyLink] = []
+        index: dict[str, int] = {}
+        for name in parents_first(scope.model):
+            link = _link(scope, name, links, index)
+            index[name] = len(links)
+            links.append(link)
+        return Motion(scope, tuple(links))
 
 
 def parents_first(model: Any) -> list[str]:

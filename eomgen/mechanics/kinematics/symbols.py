@@ -139,7 +139,7 @@ class Scope:
 
     @cached_property
     def composites(self) -> dict[str, Composite]:
-        """Bodies made of parts that were put together already, by name (`made_of` fills it)."""
+        """Bodies made of parts that were put together already, by name (`Scope.made_of` fills it)."""
         return {}
 
     def value(self, expression: Expression | None) -> Scalar:
@@ -260,7 +260,7 @@ class Scope:
 
         Args:
             near: where symbols of the configuration are.
-            shaken: as of `values_of_parameters`.
+            shaken: as of `Scope.values_of_parameters`.
         Raises:
             DerivationError: they have none.
         """
@@ -346,53 +346,53 @@ class Scope:
         """The names of the coordinates that are eliminated, in the model's order."""
         return tuple(name for name, part in self.model.coordinates.items() if part.dependent)
 
+    @staticmethod
+    def of(model: Model, *, with_laws: bool = False) -> Scope:
+        """The symbols of a model, its kinematic equations, and the meaning of its names.
 
-def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
-    """The symbols of a model, its kinematic equations, and the meaning of its names.
+        Every rate is a speed of its own here, of dependent coordinates and of those of a quaternion too.
 
-    Every rate is a speed of its own here, of dependent coordinates and of those of a quaternion too.
-
-    Args:
-        with_laws: rates and accelerations of driven coordinates are names, psi' and psi'', where they are long.
-    Raises:
-        DerivationError: a given acceleration whose integral has no closed form.
-    """
-    model = in_parts(model)
-    zero = parameters_of_zero(model)
-    graph = Graph()
-    t = graph.symbol("t")
-    parameters = {name: graph.constant(name) for name in model.parameters}
-    q = tuple(graph.symbol(name) for name in model.coordinates)
-    free = [name for name, c in model.coordinates.items() if not c.driven]
-    u = tuple(graph.symbol(name + "'") for name in free)
-    a = tuple(graph.symbol(name + "''") for name in free)
-    inputs = {name: graph.symbol(name) for name in model.inputs}
-    unknowns = {name: graph.symbol(name) for name in model.unknowns}
-    symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns)
-    names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, "t": t, "pi": graph.pi}
-    names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
-    N: list[tuple[Scalar, ...]] = []
-    nu: list[Scalar] = []
-    laws: dict[Node, Scalar] = {}
-    speed = dict(zip(free, range(len(free)), strict=True))
-    for name, coordinate in model.coordinates.items():
-        if name in speed:
-            names[name + "'"], names[name + "''"] = u[speed[name]], a[speed[name]]
-            N.append(tuple(int(k == speed[name]) for k in range(len(free))))
-            nu.append(0)
-        else:
-            rate = driven_rate(coordinate, names, t, f"coordinates.{name}", zero)
-            given = {name + "'": rate, name + "''": tangent((rate,), {t: 1})[0]}
-            long = {graph.symbol(each): law for each, law in given.items() if with_laws and _is_long(law, t)}
-            laws |= long
-            names |= {**given, **{x.name: x for x in long}}
-            N.append((0,) * len(free))
-            nu.append(names[name + "'"])
-    quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in model.quaternions)
-    for four in quaternions:
-        graph.hold_on_sphere(four)
-    graph.hold_near(_own_numbers(model, symbols))
-    return Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws).with_speeds_named()
+        Args:
+            with_laws: rates and accelerations of driven coordinates are names, psi' and psi'', where they are long.
+        Raises:
+            DerivationError: a given acceleration whose integral has no closed form.
+        """
+        model = in_parts(model)
+        zero = parameters_of_zero(model)
+        graph = Graph()
+        t = graph.symbol("t")
+        parameters = {name: graph.constant(name) for name in model.parameters}
+        q = tuple(graph.symbol(name) for name in model.coordinates)
+        free = [name for name, c in model.coordinates.items() if not c.driven]
+        u = tuple(graph.symbol(name + "'") for name in free)
+        a = tuple(graph.symbol(name + "''") for name in free)
+        inputs = {name: graph.symbol(name) for name in model.inputs}
+        unknowns = {name: graph.symbol(name) for name in model.unknowns}
+        symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns)
+        names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, "t": t, "pi": graph.pi}
+        names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
+        N: list[tuple[Scalar, ...]] = []
+        nu: list[Scalar] = []
+        laws: dict[Node, Scalar] = {}
+        speed = dict(zip(free, range(len(free)), strict=True))
+        for name, coordinate in model.coordinates.items():
+            if name in speed:
+                names[name + "'"], names[name + "''"] = u[speed[name]], a[speed[name]]
+                N.append(tuple(int(k == speed[name]) for k in range(len(free))))
+                nu.append(0)
+            else:
+                rate = driven_rate(coordinate, names, t, f"coordinates.{name}", zero)
+                given = {name + "'": rate, name + "''": tangent((rate,), {t: 1})[0]}
+                long = {graph.symbol(each): law for each, law in given.items() if with_laws and _is_long(law, t)}
+                laws |= long
+                names |= {**given, **{x.name: x for x in long}}
+                N.append((0,) * len(free))
+                nu.append(names[name + "'"])
+        quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in model.quaternions)
+        for four in quaternions:
+            graph.hold_on_sphere(four)
+        graph.hold_near(_own_numbers(model, symbols))
+        return Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws).with_speeds_named()
 
 
 def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:

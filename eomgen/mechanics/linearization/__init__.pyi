@@ -3,18 +3,12 @@
 # The equations of motion of a system, and their first derivatives, as graph scalars
 from eomgen.mechanics.linearization.first_order import FirstOrder as FirstOrder
 
-# The equations of a system to first order
-from eomgen.mechanics.linearization.first_order import first_order_of as first_order_of
-
 # (d x'/d x, d x'/d w) at a state, x = (q, u)
 from eomgen.mechanics.linearization.first_order import slopes_at as slopes_at
 from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
 
 # The equations of small motions about a reference
 from eomgen.mechanics.linearization.linearization import SmallMotions as SmallMotions
-
-# The equations of small motions of a system
-from eomgen.mechanics.linearization.linearization import small_motions_of as small_motions_of
 
 # A of x' = A x, x = (q_i, u_i)
 from eomgen.mechanics.linearization.linearization import state_matrix_of as state_matrix_of
@@ -61,9 +55,3 @@ from eomgen.mechanics.linearization.transfer import StateMatrices as StateMatric
 
 # q/w = above(s)/below(s), of one coordinate and one input
 from eomgen.mechanics.linearization.transfer import TransferFunction as TransferFunction
-
-# State-space matrices in scalars of the parameters; None where unknown in closed form, or too much work
-from eomgen.mechanics.linearization.transfer import exact_state_space as exact_state_space
-
-# The state space whose outputs are states, or rates of them
-from eomgen.mechanics.linearization.transfer import with_outputs as with_outputs

@@ -124,19 +124,19 @@ class FirstOrder:
         requested = substituted(e.gamma, dict.fromkeys(s.u, 0))
         return dict.fromkeys(s.a, 0) if self.at_rest and all(map(is_zero, requested)) else {}
 
+    @staticmethod
+    def of(system: System) -> FirstOrder:
+        """The equations of a system to first order.
 
-def first_order_of(system: System) -> FirstOrder:
-    """The equations of a system to first order.
-
-    Raises:
-        ModelError: a free coordinate moves no mass.
-    """
-    scope = system.scope
-    relations = [x for x in position_equations(system, scope.start_values()) if depends_on(x, scope.symbols.q)]
-    relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
-    equations = equations_of_motion(system)
-    WellPosed(equations).refuse_massless()
-    return FirstOrder(equations, tuple(relations))
+        Raises:
+            ModelError: a free coordinate moves no mass.
+        """
+        scope = system.scope
+        relations = [x for x in position_equations(system, scope.start_values()) if depends_on(x, scope.symbols.q)]
+        relations += [sum((e * e for e in four), start=-1) for four in scope.quaternions]
+        equations = equations_of_motion(system)
+        WellPosed(equations).refuse_massless()
+        return FirstOrder(equations, tuple(relations))
 
 
 def _held(system: System) -> list[list[Scalar]]:

@@ -21,7 +21,6 @@ from eomgen.mechanics.linearization.first_order import (
     Choice,
     FirstOrder,
     choice_of,
-    first_order_of,
 )
 from eomgen.mechanics.linearization.reduction import (
     LinearEquations,
@@ -124,35 +123,35 @@ class SmallMotions:
         below = np.linalg.solve(floats(e.M), np.array(e.B, dtype=float).reshape(len(e.speeds), w))
         return np.vstack([np.zeros((n, w)), below])
 
+    @staticmethod
+    def of(
+        system: System, about: str, wanted: Sequence[str] = (), guess: Mapping[str, float] | None = None
+    ) -> SmallMotions:
+        """The equations of small motions of a system.
+
+        Args:
+            about: "equilibrium", "start" or "steady".
+            wanted: the coordinates in which they are requested; () for all.
+            guess: values of coordinates in place of `near` and `start`.
+        Raises:
+            DerivationError: no equilibrium; the start is no steady motion; nothing can move; the requested
+                coordinates do not move by themselves.
+        """
+        system.scope.model.refuse_motion()
+        if not system.symbols.u:
+            raise DerivationError(
+                "nothing is free to move: there are no small motions",
+                "coordinates",
+                fix="leave a coordinate free: neither `driven` nor 0 by a constraint",
+            )
+        reference, first = _balanced(system, about, guess, wanted)
+        return _about(first, reference, wanted)
+
 
 def state_matrix_of(e: LinearEquations) -> np.ndarray:
     """A of x' = A x, x = (q_i, u_i)."""
     M, C, K = (floats(x) for x in (e.M, e.C, e.K))
     return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
-
-
-def small_motions_of(
-    system: System, about: str, wanted: Sequence[str] = (), guess: Mapping[str, float] | None = None
-) -> SmallMotions:
-    """The equations of small motions of a system.
-
-    Args:
-        about: "equilibrium", "start" or "steady".
-        wanted: the coordinates in which they are requested; () for all.
-        guess: values of coordinates in place of `near` and `start`.
-    Raises:
-        DerivationError: no equilibrium; the start is no steady motion; nothing can move; the requested coordinates do
-            not move by themselves.
-    """
-    system.scope.model.refuse_motion()
-    if not system.symbols.u:
-        raise DerivationError(
-            "nothing is free to move: there are no small motions",
-            "coordinates",
-            fix="leave a coordinate free: neither `driven` nor 0 by a constraint",
-        )
-    reference, first = _balanced(system, about, guess, wanted)
-    return _about(first, reference, wanted)
 
 
 def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[SmallMotions | None]:
@@ -161,7 +160,7 @@ def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[
     if reference.family is None:
         return
     system = reference.system
-    first = first_order_of(system)
+    first = FirstOrder.of(system)
     here = {x.name: float(reference.numbers[x]) for x in (*system.symbols.q, *system.symbols.u)}
     for place in reference.family.others[1:]:
         given = here | {x.name: value for x, value in place.items()}
@@ -311,7 +310,7 @@ def _balanced(
     """
     if about in (START, STEADY):
         reference = at_the_start(system, at_rest=False)
-        first = first_order_of(system)
+        first = FirstOrder.of(system)
         try:
             reference = _steady(first, reference, wanted) if about == STEADY else with_followers(first, reference)
             wrong = _accelerated(first, reference)
@@ -320,7 +319,7 @@ def _balanced(
         return _near(system, first, reference, wrong, wanted) if wrong else (reference, first)
     try:
         reference = place_of_rest(system, guess)
-        first = first_order_of(reference.system)
+        first = FirstOrder.of(reference.system)
         _refuse_carried(first, reference)
         return reference, first
     except (DerivationError, NotYet) as error:
@@ -343,7 +342,7 @@ def _near(
         found = (
             place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
         )
-        first = first_order_of(found.system)
+        first = FirstOrder.of(found.system)
         if _accelerated(first, found):
             raise DerivationError(what, fix="start from an equilibrium, or a steady motion")
     except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
@@ -394,7 +393,7 @@ def _other_rest(
     Raises:
         EomgenError: `why`, where neither is balanced.
     """
-    first = first_order_of(system)
+    first = FirstOrder.of(system)
     driven = any(part.driven for part in system.scope.model.coordinates.values())
     ways: tuple[Callable[[], ReferenceMotion], ...] = (
         lambda: relative_rest(first.equations, guess),

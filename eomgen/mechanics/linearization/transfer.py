@@ -124,41 +124,43 @@ class StateMatrices:
     C_y: Entries
     D_y: Entries
 
+    @staticmethod
+    def exact(small: SmallMotions, outputs: Sequence[str]) -> StateMatrices | None:
+        """State-space matrices in scalars of the parameters; None where unknown in closed form, or too much work."""
+        e = small.exact
+        if e is None or len(e.speeds) > MOST:
+            return None
+        right = [[*k, *c, *b] for k, c, b in zip(e.K, e.C, e.B, strict=True)]
+        if operations(x for row in (*e.M, *right) for x in row).total > MOST_OPERATIONS:
+            return None
+        reference = small.reference
+        field = Exact({}, reference.system.scope.positive, reference.trial)
+        solved = field.solution(e.M, right)
+        n, width = len(e.coordinates), len(e.coordinates) + len(e.speeds)
+        A = [[*f, *g] for f, g in zip(e.F, e.E, strict=True)] + [
+            [field.tidy(-x) for x in row[:width]] for row in solved
+        ]
+        B: Entries = [[0] * len(e.inputs) for _ in range(n)] + [row[width:] for row in solved]
+        return StateMatrices.of(e, A, B, outputs)
+
+    @staticmethod
+    def of(e: LinearEquations, A: Entries, B: Entries, outputs: Sequence[str]) -> StateMatrices:
+        """The state space whose outputs are states, or rates of them.
+
+        Args:
+            outputs: names of coordinates, speeds, or their derivatives: theta, theta', theta''.
+        Raises:
+            UsageError: another name.
+        """
+        states = state_names(e)
+        rows = [_output(name, states, A, B) for name in outputs]
+        C_y, D_y = [row for row, _ in rows], [through for _, through in rows]
+        return StateMatrices(states, tuple(w.name for w in e.inputs), tuple(outputs), A, B, C_y, D_y)
+
 
 def state_names(e: LinearEquations) -> tuple[str, ...]:
     """x: the coordinates, then the speeds."""
     return tuple(x.name for x in (*e.coordinates, *e.speeds))
-
-
-def exact_state_space(small: SmallMotions, outputs: Sequence[str]) -> StateMatrices | None:
-    """State-space matrices in scalars of the parameters; None where unknown in closed form, or too much work."""
-    e = small.exact
-    if e is None or len(e.speeds) > MOST:
-        return None
-    right = [[*k, *c, *b] for k, c, b in zip(e.K, e.C, e.B, strict=True)]
-    if operations(x for row in (*e.M, *right) for x in row).total > MOST_OPERATIONS:
-        return None
-    reference = small.reference
-    field = Exact({}, reference.system.scope.positive, reference.trial)
-    solved = field.solution(e.M, right)
-    n, width = len(e.coordinates), len(e.coordinates) + len(e.speeds)
-    A = [[*f, *g] for f, g in zip(e.F, e.E, strict=True)] + [[field.tidy(-x) for x in row[:width]] for row in solved]
-    B: Entries = [[0] * len(e.inputs) for _ in range(n)] + [row[width:] for row in solved]
-    return with_outputs(e, A, B, outputs)
-
-
-def with_outputs(e: LinearEquations, A: Entries, B: Entries, outputs: Sequence[str]) -> StateMatrices:
-    """The state space whose outputs are states, or rates of them.
-
-    Args:
-        outputs: names of coordinates, speeds, or their derivatives: theta, theta', theta''.
-    Raises:
-        UsageError: another name.
-    """
-    states = state_names(e)
-    rows = [_output(name, states, A, B) for name in outputs]
-    C_y, D_y = [row for row, _ in rows], [through for _, through in rows]
-    return StateMatrices(states, tuple(w.name for w in e.inputs), tuple(outputs), A, B, C_y, D_y)
 
 
 def _output(name: str, states: tuple[str, ...], A: Entries, B: Entries) -> tuple[list[object], list[object]]:

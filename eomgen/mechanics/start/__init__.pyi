@@ -6,9 +6,6 @@ from eomgen.mechanics.start.assembly_modes import AssemblyMode as AssemblyMode
 # The ways to close the loops of a model at its start
 from eomgen.mechanics.start.assembly_modes import Branches as Branches
 
-# The branches with the start's independent coordinates; None where none follow, or too many
-from eomgen.mechanics.start.assembly_modes import branches_of_loops as branches_of_loops
-
 # Start of a motion; each result is computed at its first use
 from eomgen.mechanics.start.exact import ExactStart as ExactStart
 
@@ -37,11 +34,8 @@ from eomgen.mechanics.start.state import begun_state as begun_state
 # Refuses coordinates of which so few digits are left that a step or a difference is lost
 from eomgen.mechanics.start.state import refuse_lost as refuse_lost
 
-# Every coordinate and independent speed at the start, at which all constraints hold
-from eomgen.mechanics.start.state import start_of_motion as start_of_motion
-
 # Every speed at the start, as functions of the parameters and of where it starts
 from eomgen.mechanics.start.state import start_speeds as start_speeds
 
-# The values of `start_of_motion`, with its arguments and errors
+# The values of `Start.of`, with its arguments and errors
 from eomgen.mechanics.start.state import start_state as start_state

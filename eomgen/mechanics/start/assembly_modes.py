@@ -64,24 +64,24 @@ class Branches:
     here: AssemblyMode
     others: tuple[AssemblyMode, ...]
 
+    @staticmethod
+    def of(system: System, start: Mapping[str, float]) -> Branches | None:
+        """The branches with the start's independent coordinates; None where none follow, or too many.
 
-def branches_of_loops(system: System, start: Mapping[str, float]) -> Branches | None:
-    """The branches with the start's independent coordinates; None where none follow, or too many.
-
-    Args:
-        start: coordinates at which the loops are closed.
-    Raises:
-        MissingValues: parameters without values.
-    """
-    search = _search(system, start)
-    if search is None:
-        return None
-    rng = Random(1)
-    starts = (search.scattered(rng) for _ in range(TRIES * len(search.sought)))
-    found = all_roots(
-        search.other, starts, lambda place: float(np.linalg.norm(search.apart(place, search.here))), search.same
-    )
-    return Branches(search.kept, search.branch(search.here), tuple(map(search.branch, found)))
+        Args:
+            start: coordinates at which the loops are closed.
+        Raises:
+            MissingValues: parameters without values.
+        """
+        search = _search(system, start)
+        if search is None:
+            return None
+        rng = Random(1)
+        starts = (search.scattered(rng) for _ in range(TRIES * len(search.sought)))
+        found = all_roots(
+            search.other, starts, lambda place: float(np.linalg.norm(search.apart(place, search.here))), search.same
+        )
+        return Branches(search.kept, search.branch(search.here), tuple(map(search.branch, found)))
 
 
 @dataclass(frozen=True)

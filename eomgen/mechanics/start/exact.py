@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import SEEDS, hold_identically, is_guess
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
-from eomgen.mechanics.start.state import Start, following_rates, start_of_motion, start_speeds, start_state
+from eomgen.mechanics.start.state import Start, following_rates, start_speeds, start_state
 from eomgen.mechanics.state import Doubles, Numbers, Split
 from eomgen.symbolic.exact import LinearSystem, general_solution, simplest, unique_solution
 from eomgen.symbolic.expression import (
@@ -47,12 +47,12 @@ from eomgen.symbolic.numeric import (
 # System -> ExactStart: the one start that every verb takes, in closed form where it has one, in numbers else.
 #
 # Where the constraints move nothing the start is what the file says. Coordinates that they place, or move, are roots of
-# the gaps; speeds that they complete or change follow from the same least change as in `start_of_motion`, by exact
+# the gaps; speeds that they complete or change follow from the same least change as in `Start.of`, by exact
 # equations:
 #
 #     J d + (J u + sigma) = 0,   W d = J^T y      W: how far each speed moves the gaps, or M
 #
-# What does not agree with the numbers of `start_of_motion` is no closed form: these serve.
+# What does not agree with the numbers of `Start.of` is no closed form: these serve.
 
 
 MOST_UNKNOWNS = 8  # speeds and multipliers of speeds that are sought in closed form
@@ -75,7 +75,7 @@ class ExactStart:
         """q and u in numbers, with the changes that satisfy the constraints; parameters without a value are drawn.
 
         Raises:
-            UsageError, DerivationError: as of `start_of_motion`.
+            UsageError, DerivationError: as of `Start.of`.
         """
         return self._sought[0].begun
 
@@ -188,7 +188,7 @@ class _Sought:
     @cached_property
     def begun(self) -> Start:
         given = {u.name: 0.0 for u in self.system.symbols.u} if self.at_rest else {}
-        return start_of_motion(self.system, self.drawn, given)
+        return Start.of(self.system, self.drawn, given)
 
     @cached_property
     def declared(self) -> dict[Node, Scalar]:

@@ -105,6 +105,37 @@ class Start:
         hold = "holds" if len(self.constraints) == 1 else "hold"
         return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
 
+    @staticmethod
+    def of(
+        system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+    ) -> Start:
+        """Every coordinate and independent speed at the start, at which all constraints hold.
+
+        Args:
+            parameters: values in place of the model's own.
+            start: values of coordinates and speeds in place of the model's own; of dependent ones the first guess.
+        Raises:
+            UsageError: a name in `start` that is no coordinate and no speed.
+            MissingValues: a start value, or a constraint, needs parameters without values.
+            DerivationError: a constraint that does not close near there.
+        """
+        values = _given(system, parameters, start or {})
+        if all(row.identical for row in system.constraints.rows):
+            return Start(values)
+        before = _numbers(system, values, parameters)
+        sought = system.constraints.fixed_by_position
+        state = (Closure(system.constraints).closed(before, sought) or before) if sought else before
+        called = _called(system, start or {})
+        state, open_gaps = Assembly(system.constraints).with_gaps_closed(state, called)
+        refuse_open_gaps(system, state)
+        state, open_rates = _with_rates_closed(system, state, called, parameters)
+        state, hit = _after_impact(system, state, parameters)
+        refuse_open_rates(system, state)
+        state, fork, turned = _along_a_branch(system, state, called)
+        names = tuple(dict.fromkeys((*open_gaps, *open_rates, *hit, *turned)))
+        found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
+        return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
+
 
 def refuse_lost(places: Mapping[Node, Any]) -> None:
     """Refuses coordinates of which so few digits are left that a step or a difference is lost.
@@ -121,44 +152,13 @@ def refuse_lost(places: Mapping[Node, Any]) -> None:
 def start_state(
     system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
 ) -> dict[str, float]:
-    """The values of `start_of_motion`, with its arguments and errors."""
-    return start_of_motion(system, parameters, start).values
+    """The values of `Start.of`, with its arguments and errors."""
+    return Start.of(system, parameters, start).values
 
 
 def begun_state(system: System) -> State:
     """A value of every symbol that stands in the constraints, at the start, with 50 digits."""
     return _numbers(system, start_state(system), None)
-
-
-def start_of_motion(
-    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
-) -> Start:
-    """Every coordinate and independent speed at the start, at which all constraints hold.
-
-    Args:
-        parameters: values in place of the model's own.
-        start: values of coordinates and speeds in place of the model's own; of a dependent coordinate the first guess.
-    Raises:
-        UsageError: a name in `start` that is no coordinate and no speed.
-        MissingValues: a start value, or a constraint, needs parameters without values.
-        DerivationError: a constraint that does not close near there.
-    """
-    values = _given(system, parameters, start or {})
-    if all(row.identical for row in system.constraints.rows):
-        return Start(values)
-    before = _numbers(system, values, parameters)
-    sought = system.constraints.fixed_by_position
-    state = (Closure(system.constraints).closed(before, sought) or before) if sought else before
-    called = _called(system, start or {})
-    state, open_gaps = Assembly(system.constraints).with_gaps_closed(state, called)
-    refuse_open_gaps(system, state)
-    state, open_rates = _with_rates_closed(system, state, called, parameters)
-    state, hit = _after_impact(system, state, parameters)
-    refuse_open_rates(system, state)
-    state, fork, turned = _along_a_branch(system, state, called)
-    names = tuple(dict.fromkeys((*open_gaps, *open_rates, *hit, *turned)))
-    found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
-    return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
 
 
 # -- values at which the constraints hold -------------------------------------------------------------------

@@ -31,17 +31,11 @@ from eomgen.mechanics.statics.forces_in_sections import SectionPiece as SectionP
 # Place of a reaction, body axes: of a couple that of the forces of the same constraint, None where it has none
 from eomgen.mechanics.statics.forces_in_sections import place_of as place_of
 
-# N, V and M along a body in the plane
-from eomgen.mechanics.statics.forces_in_sections import section_forces as section_forces
-
 # X for a unit load that travels along the spans
 from eomgen.mechanics.statics.influence import InfluenceLine as InfluenceLine
 
 # A straight part of the way of the load, on which the influence line is straight
 from eomgen.mechanics.statics.influence import InfluenceSpan as InfluenceSpan
-
-# The influence line of a reaction, a member force or a section force
-from eomgen.mechanics.statics.influence import influence_line as influence_line
 
 # The axis of a body
 from eomgen.mechanics.statics.member_axis import MemberAxis as MemberAxis
@@ -69,6 +63,3 @@ from eomgen.mechanics.statics.virtual_work import loads_at_rest as loads_at_rest
 
 # One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest
 from eomgen.mechanics.statics.virtual_work import released_in as released_in
-
-# Every reaction of a structure at a configuration
-from eomgen.mechanics.statics.virtual_work import static_reactions_of as static_reactions_of

@@ -12,7 +12,7 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints import rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
-from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion, reactions_of
+from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import start_state
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
@@ -186,7 +186,7 @@ class _StartNumbers:
         """True if the held contacts push and the free ones open, with the accelerations at the start."""
         equations = self._equations(modes)
         system = equations.system
-        reactions, scope = reactions_of(system), system.scope
+        reactions, scope = Reactions.of(system), system.scope
         forces = [x for contact in held for x in _forces(reactions, contact)]
         state = _state(system, drawn)
         state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
@@ -222,7 +222,7 @@ class _StartNumbers:
         modes = {c.name: ContactMode(sense=0) if c.name in still else ContactMode(push=signs[c.name]) for c in contacts}
         equations = self._equations({**opened, **modes})
         system = equations.system
-        reactions = reactions_of(system)
+        reactions = Reactions.of(system)
         normals = {c.name: reactions.normal(c.name) for c in contacts}
         entries = (*normals.values(), *equations.forcing, *(x for row in equations.M for x in row))
         if lacking := [x.name for x in symbols_of(entries) if x.name in self.missing]:

@@ -168,26 +168,27 @@ class SectionForces:
                 x = self.sizes.shortest(piece.start + root)
                 yield Extreme(x, self.sizes.shortest(piece.value("bending_moment", x)))
 
+    @staticmethod
+    def of(reactions: Reactions, body: str) -> SectionForces:
+        """N, V and M along a body in the plane.
 
-def section_forces(reactions: Reactions, body: str) -> SectionForces:
-    """N, V and M along a body in the plane.
-
-    Raises:
-        DerivationError: something acts off its axis, or at no place; its mass is no rod's; a reaction is indeterminate.
-    """
-    system = reactions.balance.system
-    motion = system.motion
-    if motion.scope.model.space != "plane":
-        raise DerivationError(
-            "section forces are found in the plane", f"bodies.{body}", fix="fix the beam in a model of the plane"
-        )
-    sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
-    loads = MemberLoads(reactions, body, sizes)
-    actions, spreads = loads.actions, loads.spreads
-    axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
-    placed = [Action(_on_axis(axis, place), force, couple) for place, force, couple in actions]
-    spread = [part for line in spreads for part in _spread(axis, line)]
-    return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
+        Raises:
+            DerivationError: something acts off its axis, or at no place; its mass is no rod's; a reaction is
+                indeterminate.
+        """
+        system = reactions.balance.system
+        motion = system.motion
+        if motion.scope.model.space != "plane":
+            raise DerivationError(
+                "section forces are found in the plane", f"bodies.{body}", fix="fix the beam in a model of the plane"
+            )
+        sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
+        loads = MemberLoads(reactions, body, sizes)
+        actions, spreads = loads.actions, loads.spreads
+        axis = axis_of(motion, body, [place for place, _, _ in actions] + [p for s in spreads for p in s[:2]], sizes)
+        placed = [Action(_on_axis(axis, place), force, couple) for place, force, couple in actions]
+        spread = [part for line in spreads for part in _spread(axis, line)]
+        return SectionForces(axis, tuple(_pieces(axis, placed, spread)))
 
 
 # -- along the axis ----------------------------------------------------------------------------------

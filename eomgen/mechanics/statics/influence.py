@@ -81,32 +81,32 @@ class InfluenceLine:
     cut: Cut | None
     spans: tuple[InfluenceSpan, ...]
 
+    @staticmethod
+    def of(structure: Structure, requested: str, load: Vector = DOWN) -> InfluenceLine:
+        """The influence line of a reaction, a member force or a section force.
 
-def influence_line(structure: Structure, requested: str, load: Vector = DOWN) -> InfluenceLine:
-    """The influence line of a reaction, a member force or a section force.
-
-    Args:
-        requested: as an output writes it: "reaction_y(A)", "tension(T, n1-n2)", "bending_moment(beam, a)". After a
-            colon the bodies or nodes that the load passes: "reaction_y(A): I, II"; without them all horizontal bodies,
-            else all that are not vertical; of a truss the lowest nodes.
-        load: the unit load, ground axes.
-    Raises:
-        UsageError: there is no such force, or no way for the load.
-        DerivationError: it is statically indeterminate.
-    """
-    if structure.system.scope.model.space != "plane":
-        raise UsageError("influence lines are found in the plane", fix="put the load at each place, as a force")
-    requested, along = _way(requested)
-    call = _call(requested)
-    sizes = sizes_of(structure.system.motion, structure.at)
-    if call.name in KINDS:
-        cut = cut_of(structure, call, sizes)
-        plan = structure.released(left_powers(structure, cut))
-    else:
-        cut, plan = None, structure.released(_combination(structure, call))
-    line = _Travelling(structure, plan, cut, load, sizes)
-    spans = tuple(line.spans(along))
-    return InfluenceLine(str(call), load, plan, cut, spans)
+        Args:
+            requested: as an output writes it: "reaction_y(A)", "tension(T, n1-n2)", "bending_moment(beam, a)". After a
+                colon the bodies or nodes that the load passes: "reaction_y(A): I, II"; without them all horizontal
+                bodies, else all that are not vertical; of a truss the lowest nodes.
+            load: the unit load, ground axes.
+        Raises:
+            UsageError: there is no such force, or no way for the load.
+            DerivationError: it is statically indeterminate.
+        """
+        if structure.system.scope.model.space != "plane":
+            raise UsageError("influence lines are found in the plane", fix="put the load at each place, as a force")
+        requested, along = _way(requested)
+        call = _call(requested)
+        sizes = sizes_of(structure.system.motion, structure.at)
+        if call.name in KINDS:
+            cut = cut_of(structure, call, sizes)
+            plan = structure.released(left_powers(structure, cut))
+        else:
+            cut, plan = None, structure.released(_combination(structure, call))
+        line = _Travelling(structure, plan, cut, load, sizes)
+        spans = tuple(line.spans(along))
+        return InfluenceLine(str(call), load, plan, cut, spans)
 
 
 def _way(text: str) -> tuple[str, tuple[str, ...]]:

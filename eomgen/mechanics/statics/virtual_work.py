@@ -25,8 +25,6 @@ from eomgen.mechanics.free_bodies import (
     determinate_sums,
     efforts_of,
     named_reactions,
-    reactions_of,
-    structure_of,
 )
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.model import FUNCTIONS, Couple, PointForce, SpreadLoad, UniformField, ends_requested, nearest
@@ -298,28 +296,26 @@ class StaticReactions:
         loads = len(self.structure.unknowns)
         return (number - loads, f"{text} - {loads} (unknown loads)") if loads else (number, text)
 
+    @staticmethod
+    def of(system: System, at: Mapping[Node, Scalar] | None = None, *, only: str | None = None) -> StaticReactions:
+        """Every reaction of a structure at a configuration.
 
-def static_reactions_of(
-    system: System, at: Mapping[Node, Scalar] | None = None, *, only: str | None = None
-) -> StaticReactions:
-    """Every reaction of a structure at a configuration.
-
-    Args:
-        at: exact places of coordinates; None: the start.
-        only: the one reaction that is found by virtual work too; None: all.
-    Raises:
-        UsageError: there is no such reaction.
-        DerivationError: bodies can move; a force acts at no place.
-    """
-    structure = structure_of(system, at)
-    structure.refuse_loose()
-    return reactions_in(structure, only=only)
+        Args:
+            at: exact places of coordinates; None: the start.
+            only: the one reaction that is found by virtual work too; None: all.
+        Raises:
+            UsageError: there is no such reaction.
+            DerivationError: bodies can move; a force acts at no place.
+        """
+        structure = Structure.of(system, at)
+        structure.refuse_loose()
+        return reactions_in(structure, only=only)
 
 
 def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReactions:
     """Every reaction of a structure in which nothing can move; `only` as of `static_reactions_of`."""
     system = structure.system
-    balance = reactions_of(system, structure.at)
+    balance = Reactions.of(system, structure.at)
     requested, positive = requested_reactions(structure), structure.system.scope.positive
     one = None if only is None else _one_of((*requested, *(unknown.name for unknown in structure.unknowns)), only)
     found = []
