@@ -162,6 +162,7 @@ class Study:
         Raises:
             DerivationError: an unsupported body; a force that acts at no place.
         """
+        from eomgen.mechanics.free_bodies import Reactions
 
         return Reactions.of(self.system)
 
