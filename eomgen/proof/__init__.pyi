@@ -183,6 +183,9 @@ from eomgen.proof.parameters import other_data as other_data
 # A failing check where the numbers used by all other checks are not those of the file; else none
 from eomgen.proof.parameters import other_parameters as other_parameters
 
+# Message that names a pin which is on the other side of its links' hinges than reported; ""
+from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
+
 # Formulas as they are printed
 from eomgen.proof.printed import Printed as Printed
 

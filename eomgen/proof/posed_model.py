@@ -11,19 +11,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import (
+    GROUND,
     BodyLink,
     Motion,
     Scope,
     SystemScene,
 )
+from eomgen.mechanics.start import AssemblySide, Branches
 from eomgen.model import (
     BodyLine,
     FlatSurface,
@@ -131,6 +135,52 @@ def quaternion_names(joint: Joint) -> tuple[str, ...]:
 
 def every_joint(model: Model) -> Iterator[Joint]:
     return (body.joint for body in model.bodies.values() if body.joint is not None)
+
+
+def branches_otherwise(model: Model, start: Mapping[str, float], branches: Branches) -> str:
+    """Message that names a pin which is on the other side of its links' hinges than reported; "".
+
+    A hinge is where a body stays beside its parent, whatever its coordinates are. Where places depend on inputs nothing
+    is decided.
+    """
+    with suppress(DerivationError):
+        for way in (branches.here, *branches.others):
+            here = PosedModel(model, {**start, **way.values})
+            for side in way.sides:
+                left = _is_left(here, side)
+                if left is not None and left != side.left:
+                    found = f"'{side.constraint}' is on the {'left' if left else 'right'} of its links' hinges"
+                    return f"{found} where {way.words}" if way.words else found
+    return ""
+
+
+def _is_left(here: PosedModel, side: AssemblySide) -> bool | None:
+    """True if the pin is on the left of the way from one hinge to the other; None in line, and where one is unknown."""
+    aside = PosedModel(here.model, {q: x + STEP * (k + 1) for k, (q, x) in enumerate(here.values.items())})
+    P, Q = (_hinge(here, aside, body) for body in (side.first, side.second))
+    body, _, name = str(getattr(here.model.constraints[side.constraint], "points", ("",))[0]).partition(".")
+    place = here.motion.points.get(body, {}).get(name)
+    if P is None or Q is None or place is None:
+        return None
+    R, p = here.pose(body)
+    to_hinge, to_pin = (Q - P)[:2], (p + R @ here.at(place) - P)[:2]
+    area = float(to_hinge[0] * to_pin[1] - to_hinge[1] * to_pin[0])
+    size = float(np.linalg.norm(to_hinge) * np.linalg.norm(to_pin))
+    return None if abs(area) <= tolerances.COMPUTED * size else area > 0
+
+
+def _hinge(here: PosedModel, aside: PosedModel, body: str) -> np.ndarray | None:
+    """The place of a body's hinge in the ground: that which two poses beside its parent share; None without one."""
+    above = here.motion.link(body).parent
+    parent = None if above == GROUND else here.motion.links[above].name
+    (R, p), (R1, p1) = (posed.between(parent, body) for posed in (here, aside))
+    turn, moved = (R1 @ R.T)[:2, :2], (p1 - R1 @ R.T @ p)[:2]
+    if abs(np.linalg.det(np.eye(2) - turn)) < tolerances.NEARLY_SINGULAR:
+        return None
+    inside = np.array([*np.linalg.solve(np.eye(2) - turn, moved), 0.0])
+    R0, p0 = here.pose(parent)
+    found: np.ndarray = p0 + R0 @ inside
+    return found
 
 
 def posed_further(pose: FloatPose, *further: FloatPose) -> FloatPose:

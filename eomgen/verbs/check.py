@@ -11,7 +11,7 @@ from eomgen.mechanics.constraints import Freedom
 from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.model import Model, Truss, inferred_units, warnings_of
-from eomgen.proof import counted_otherwise, lines_otherwise, standing_otherwise
+from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
@@ -26,11 +26,17 @@ def check_document(model: Model) -> Document:
     wrong = (
         counted_otherwise(model, found.modes, found.freedom)
         or ("" if found.structure is None else standing_otherwise(found.structure))
+        or _closed_otherwise(found)
         or lines_otherwise(lines, reported, found.freedom)
     )
     entries = {"ok": not wrong, **reported, "problems": [Problem("", wrong).as_dict()] if wrong else []}
     document = plain_document(model, lambda: entries, Lines(tuple(lines)), failed=wrong)
     return replace(document, cautions=found.cautions)
+
+
+def _closed_otherwise(found: Checked) -> str:
+    begun, branches = found.start.begun, found.start.branches
+    return "" if begun is None or branches is None else branches_otherwise(found.model, begun.values, branches)
 
 
 def _declared_lines(found: Checked) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from slow_run import usual
 import eomgen
 from eomgen.mechanics.start.assembly_modes import Branches
 from eomgen.mechanics.start.state import Start
+from eomgen.proof import branches_otherwise
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")]
 MODELS = Path(__file__).parents[2] / "models"
@@ -235,6 +237,18 @@ def test_a_four_bar_closes_in_two_ways():
     diagonal = np.angle(foot - end)
     assert other.values["beta"] - diagonal == pytest.approx(diagonal - found.here.values["beta"])
     assert found.kept == ("alpha",) and {found.here.sign, other.sign} == {1, -1}
+
+
+def test_a_side_that_is_told_the_other_way_round_is_contradicted():
+    """The pin of coupler and rocker is on the left in one branch and on the right in the other, by poses alone."""
+    plain = model("four_bar")
+    system = eomgen.derive(plain).system
+    start = Start.of(system).values
+    found = Branches.of(system, start)
+    assert branches_otherwise(plain, start, found) == ""
+    (side,) = found.here.sides
+    turned = replace(found, here=replace(found.here, sides=(replace(side, left=not side.left),)))
+    assert "'B' is on the left" in branches_otherwise(plain, start, turned)
 
 
 @pytest.mark.parametrize("other", [False, True])
