@@ -53,7 +53,7 @@ from eomgen.proof.contact_phases import contacts_do_as_assumed as contacts_do_as
 # Message that names a number which differs between the file and the model; "" where all agree
 from eomgen.proof.declared_numbers import numbers_otherwise as numbers_otherwise
 
-# Message if the count of degrees of freedom is another by differences; "" too where nothing was counted
+# Message if the count of degrees of freedom, or the rank of a structure, is another in numbers; ""
 from eomgen.proof.degrees_of_freedom import counted_otherwise as counted_otherwise
 
 # Message if a count is printed, or reported to machines, otherwise than it was found; ""
@@ -61,9 +61,6 @@ from eomgen.proof.degrees_of_freedom import lines_otherwise as lines_otherwise
 
 # Rows of constraints that keep a value of the start, with their gaps
 from eomgen.proof.degrees_of_freedom import rows_that_stay as rows_that_stay
-
-# Message if the rank of a structure is another in doubles; ""
-from eomgen.proof.degrees_of_freedom import standing_otherwise as standing_otherwise
 
 # Check that the values set in each run are of their ranges and laws
 from eomgen.proof.drawn_values import drawn_otherwise as drawn_otherwise

@@ -48,8 +48,15 @@ MOST = 60  # speeds, of which the differences are taken
 SUMMAND = re.compile(r"([+-]?)\s*(?:(\d+)\*)?(\d+) \([^)]*\)")  # of a count: "3*2 (bodies) - 4 (joints)"
 
 
-def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
-    """Message if the count of degrees of freedom is another by differences; "" too where nothing was counted."""
+def counted_otherwise(model: Model, modes: ContactModes, found: Freedom, structure: Structure | None = None) -> str:
+    """Message if the count of degrees of freedom, or the rank of a structure, is another in numbers; "".
+
+    "" too where nothing was counted.
+    """
+    return _freer(model, modes, found) or ("" if structure is None else standing_otherwise(structure))
+
+
+def _freer(model: Model, modes: ContactModes, found: Freedom) -> str:
     if found.by_formula is not None and _summed(found.formula) != found.by_formula:
         return f"the count {found.formula} is {_summed(found.formula)}, not {found.by_formula}"
     if found.by_rank is None:

@@ -11,7 +11,7 @@ from eomgen.mechanics.constraints import Freedom
 from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.model import Model, Truss, inferred_units, warnings_of
-from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise, standing_otherwise
+from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
@@ -24,8 +24,7 @@ def check_document(model: Model) -> Document:
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
     reported = {**_declared(found), **_counted(found), **_started(found.start)}
     wrong = (
-        counted_otherwise(model, found.modes, found.freedom)
-        or ("" if found.structure is None else standing_otherwise(found.structure))
+        counted_otherwise(model, found.modes, found.freedom, found.structure)
         or _closed_otherwise(found)
         or lines_otherwise(lines, reported, found.freedom)
     )
