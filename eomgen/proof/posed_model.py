@@ -27,7 +27,7 @@ from eomgen.mechanics.kinematics import (
     Scope,
     SystemScene,
 )
-from eomgen.mechanics.start import AssemblySide, Branches
+from eomgen.mechanics.start import Branches
 from eomgen.model import (
     BodyLine,
     FlatSurface,
@@ -147,18 +147,18 @@ def branches_otherwise(model: Model, start: Mapping[str, float], branches: Branc
         for way in (branches.here, *branches.others):
             here = PosedModel(model, {**start, **way.values})
             for side in way.sides:
-                left = _is_left(here, side)
+                left = _is_left(here, side.constraint, (side.first, side.second))
                 if left is not None and left != side.left:
                     found = f"'{side.constraint}' is on the {'left' if left else 'right'} of its links' hinges"
                     return f"{found} where {way.words}" if way.words else found
     return ""
 
 
-def _is_left(here: PosedModel, side: AssemblySide) -> bool | None:
+def _is_left(here: PosedModel, pin: str, links: Sequence[str]) -> bool | None:
     """True if the pin is on the left of the way from one hinge to the other; None in line, and where one is unknown."""
     aside = PosedModel(here.model, {q: x + STEP * (k + 1) for k, (q, x) in enumerate(here.values.items())})
-    P, Q = (_hinge(here, aside, body) for body in (side.first, side.second))
-    body, _, name = str(getattr(here.model.constraints[side.constraint], "points", ("",))[0]).partition(".")
+    P, Q = (_hinge(here, aside, body) for body in links)
+    body, _, name = str(getattr(here.model.constraints[pin], "points", ("",))[0]).partition(".")
     place = here.motion.points.get(body, {}).get(name)
     if P is None or Q is None or place is None:
         return None

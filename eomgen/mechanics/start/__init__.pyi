@@ -3,9 +3,6 @@
 # One way to close the loops
 from eomgen.mechanics.start.assembly_modes import AssemblyMode as AssemblyMode
 
-# Side of the line between two hinges on which a pin lies
-from eomgen.mechanics.start.assembly_modes import AssemblySide as AssemblySide
-
 # The ways to close the loops of a model at its start
 from eomgen.mechanics.start.assembly_modes import Branches as Branches
 
