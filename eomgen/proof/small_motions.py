@@ -22,10 +22,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization import LinearEquations, Modes, Polynomial, SmallMotions
+from eomgen.mechanics.linearization import LinearEquations, Modes, SmallMotions
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
 from eomgen.proof.neighbouring_motions import Differences, DigitColumn, MotionDifference
+from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, sums_of_products, tolerances
 

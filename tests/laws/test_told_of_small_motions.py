@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 import eomgen
-from eomgen.mechanics.linearization import polynomial as conditions
 from eomgen.proof.reported_small_motions import linear_entries
+from eomgen.symbolic.exact import one_variable as conditions
 
 TURNING = """
 eomgen = 1

@@ -29,7 +29,6 @@ from eomgen.mechanics.linearization import (
     LinearEquations,
     Mode,
     Modes,
-    Polynomial,
     SmallMotions,
     Spectrum,
     StateMatrices,
@@ -56,6 +55,7 @@ from eomgen.proof import (
     small_motions_reported,
 )
 from eomgen.study import study_at_rest, study_of
+from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Call, Expression, Fraction, Scalar
 from eomgen.symbolic.numeric import doing, numbers_of
 from eomgen.symbolic.print import to_text

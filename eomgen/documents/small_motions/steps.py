@@ -39,14 +39,13 @@ from eomgen.mechanics.linearization import (
     LinearEquations,
     Mode,
     Modes,
-    Polynomial,
     ReferenceMotion,
     StateMatrices,
     TransferFunction,
-    laplace_variable,
 )
 from eomgen.mechanics.state import Entries
 from eomgen.proof import PrintedModes
+from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Node, Scalar, depends_on, is_zero, over, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, numbers_of, tolerances
 from eomgen.symbolic.print import text_size, to_text
@@ -234,7 +233,7 @@ def _characteristic(modes: Modes) -> tuple[Step, ...]:
         return ()
     exact, s = modes.small.exact, "s"
     if exact is not None and not isinstance(shown, Law):
-        s = laplace_variable(exact).name
+        s = exact.laplace_variable.name
     law = Law(*(x.format(s=s) for x in (DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT)))
     statements = (prose(f"With displacements that go as exp({s} t):"), Formula((law, shown, 0)))
     return (Step("characteristic", "Characteristic equation", statements),)
@@ -279,7 +278,7 @@ def _latex_number(text: str) -> str:
 def _written(modes: Modes, polynomial: Polynomial) -> Scalar:
     """The highest power first."""
     assert modes.small.exact is not None
-    s, coefficients = laplace_variable(modes.small.exact), [modes.written(c) for c in polynomial.coefficients]
+    s, coefficients = modes.small.exact.laplace_variable, [modes.written(c) for c in polynomial.coefficients]
     total: Scalar = sum((c * s**n for n, c in reversed(list(enumerate(coefficients)))), start=0)
     return total
 
@@ -410,7 +409,7 @@ def _transfers(modes: Modes) -> tuple[Step, ...]:
     if not modes.transfers:
         return ()
     exact = modes.small.exact
-    s = "s" if exact is None else laplace_variable(exact).name
+    s = "s" if exact is None else exact.laplace_variable.name
     statements: list[Statement] = [prose(f"From inputs to coordinates, as functions of {s}:")]
     for f in modes.transfers:
         statements.append(Formula((Place("W", f.coordinate, f.input), _quotient(modes, f))))

@@ -31,12 +31,6 @@ from eomgen.mechanics.linearization.modes import Spectrum as Spectrum
 
 # Derivatives of the reference and of the matrices with respect to a parameter
 from eomgen.mechanics.linearization.parameter_sensitivities import ParameterSlopes as ParameterSlopes
-
-# c0 + c1 s + c2 s^2 + ...: coefficients in that order, of the parameters, or floats
-from eomgen.mechanics.linearization.polynomial import Polynomial as Polynomial
-
-# A symbol s that neither the entries nor the coordinates have
-from eomgen.mechanics.linearization.polynomial import laplace_variable as laplace_variable
 from eomgen.mechanics.linearization.reduction import NAME as NAME
 
 # M du_i' + C du_i + K dq_i = B dw, dq_i' = F dq_i + E du_i

@@ -14,19 +14,11 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside, state_matrix_of
-from eomgen.mechanics.linearization.polynomial import (
-    Conditions,
-    Polynomial,
-    characteristic_polynomial,
-    closed_frequencies,
-    laplace_variable,
-    stability_conditions,
-)
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.mechanics.state import Entries, Numbers
-from eomgen.symbolic.exact import book_form, simplest
+from eomgen.symbolic.exact import Conditions, Polynomial, book_form, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero
 from eomgen.symbolic.numeric import NoValue, Work, dense, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size
@@ -75,7 +67,7 @@ class Modes:
     def polynomial(self) -> Polynomial | None:
         """det(s^2 M + s C + K); None where it is not written exactly."""
         exact = self.small.exact
-        return None if exact is None else characteristic_polynomial(exact, self.positive, in_full=self.in_full)
+        return None if exact is None else exact.characteristic_polynomial(self.positive, in_full=self.in_full)
 
     @cached_property
     def beside(self) -> tuple[str, ...]:
@@ -91,9 +83,8 @@ class Modes:
         """Stability conditions of Routh and Hurwitz."""
         if self.polynomial is None or self.small.exact is None:
             return Conditions()
-        return stability_conditions(
-            self.polynomial,
-            laplace_variable(self.small.exact),
+        return self.polynomial.conditions(
+            self.small.exact.laplace_variable,
             self.positive,
             self.small.reference.trial,
             conservative=self.is_conservative,
@@ -136,7 +127,7 @@ class Modes:
             return []
         if sum(map(text_size, self.polynomial.coefficients)) > LONGEST:
             return []
-        exact = closed_frequencies(self.polynomial, laplace_variable(self.small.exact), self.positive)
+        exact = self.polynomial.frequencies(self.small.exact.laplace_variable, self.positive)
         found = []
         for w in exact:
             try:

@@ -19,7 +19,8 @@ from eomgen.mechanics.linearization.first_order import (
 from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
 from eomgen.model import rotation_of
-from eomgen.symbolic.expression import Matrix, Node, apply, vector_of
+from eomgen.symbolic.exact import Polynomial, cramer
+from eomgen.symbolic.expression import Matrix, Node, apply, symbols_of, vector_of
 from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
 
 # -------- reduction -------------------------------------------------------------------------------------------
@@ -41,6 +42,9 @@ from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
 #
 #     M_r da_i + C du_i + K dq_i = B dw,     dq_i' = F dq_i + E du_i
 #     M_r = Z^T M Z,   C = Z^T (R_u Z + M X_u),   K = Z^T (R_q P + R_u Y + M X_q)
+
+
+LARGEST_PENCIL = 6  # rows of a determinant that is written out
 
 
 @dataclass(frozen=True)
@@ -65,6 +69,39 @@ class LinearEquations:
     F: Entries
     E: Entries
     P: Entries
+
+    @property
+    def laplace_variable(self) -> Node:
+        """A symbol s that neither the entries nor the coordinates have."""
+        entries = [x for A in (self.M, self.C, self.K, self.B) for row in A for x in row]
+        taken = {x.name for x in (*symbols_of(entries), *self.all, *self.inputs)}
+        return self.speeds[0].graph.symbol(next(name for name in ("s", "s_", "s__", "s___") if name not in taken))
+
+    def characteristic_polynomial(self, positive: Collection[Node], *, in_full: bool = True) -> Polynomial | None:
+        """p(s), common factors of its coefficients kept; None where it is too much work.
+
+        p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2 M + s C + K)
+
+        Args:
+            in_full: whether it is brought into its shortest form however long it is.
+        """
+        s = self.laplace_variable
+        pencil = self.pencil(s)
+        return None if pencil is None else Polynomial.of(cramer.determinant(pencil), s, positive, in_full=in_full)
+
+    def pencil(self, s: Node) -> Entries | None:
+        """The matrix whose determinant is p(s); None where it is too large."""
+        n = len(self.speeds)
+        if is_second_order(self):
+            if n > LARGEST_PENCIL:
+                return None
+            rows = zip(self.M, self.C, self.K, strict=True)
+            return [[s * s * m + s * c + k for m, c, k in zip(*row, strict=True)] for row in rows]
+        if n + len(self.coordinates) > LARGEST_PENCIL:
+            return None
+        F, E = self.F, self.E
+        upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in E[i]] for i, row in enumerate(F)]
+        return upper + [[*self.K[i], *(s * m + c for m, c in zip(self.M[i], self.C[i], strict=True))] for i in range(n)]
 
 
 # -- accelerations and multipliers of the reference -------------------------------------------------------

@@ -10,10 +10,9 @@ import numpy as np
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions
-from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.linearization.reduction import LinearEquations
 from eomgen.mechanics.state import Entries, Exact
-from eomgen.symbolic.exact import Expansion, TooLarge, cramer, reduced
+from eomgen.symbolic.exact import Expansion, Polynomial, TooLarge, cramer, reduced
 from eomgen.symbolic.expression import Node, is_zero, operations, over
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
 
@@ -39,17 +38,17 @@ def transfer_functions(
     Args:
         trial: values of the parameters, at which the leading coefficient below is positive, as det M is.
     """
-    s = laplace_variable(e)
-    pencil = pencil_of(e, s) if e.inputs else None
+    s = e.laplace_variable
+    pencil = e.pencil(s) if e.inputs else None
     if pencil is None:
         return ()
-    below = polynomial_in(cramer.determinant(pencil), s, positive)
+    below = Polynomial.of(cramer.determinant(pencil), s, positive)
     right = [[0] * len(e.inputs)] * (len(pencil) - len(e.B)) + e.B
     found = []
     for k, w in enumerate(e.inputs):
         for j, q in enumerate(e.coordinates):
             column = [[right[i][k] if m == j else x for m, x in enumerate(row)] for i, row in enumerate(pencil)]
-            above = polynomial_in(cramer.determinant(column), s, positive)
+            above = Polynomial.of(cramer.determinant(column), s, positive)
             if above is None or below is None:
                 return ()
             found.append(TransferFunction(q, w, *_shortened(above, below, s, positive, trial)))
@@ -71,7 +70,7 @@ def _shortened(
     except TooLarge:
         return plain
     node = expansion.atoms.node
-    upper, lower = (polynomial_in(node(part), s, positive) for part in parts)
+    upper, lower = (Polynomial.of(node(part), s, positive) for part in parts)
     if upper is None or lower is None:
         return plain
     leading = evaluate((lower.coefficients[-1],), trial, fifty_digits())[0]

@@ -122,23 +122,14 @@ from eomgen.symbolic.exact.normal_forms import simple_constants as simple_consta
 # The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside
 from eomgen.symbolic.exact.normal_forms import simplest as simplest
 
-# The same of a sum of terms, by as much work as the expansion may take
-from eomgen.symbolic.exact.normal_forms import simplest_sum as simplest_sum
+# Conditions of stability: expressions that must be positive
+from eomgen.symbolic.exact.one_variable import Conditions as Conditions
 
-# The same of a sum of terms
-from eomgen.symbolic.exact.normal_forms import written_shortest as written_shortest
-
-# The factors of f that hold more than one term, and their multiplicities; f itself where it is too large
-from eomgen.symbolic.exact.polynomials import factored as factored
-
-# g with g^2 = f, its first coefficient positive; None where f is no square
-from eomgen.symbolic.exact.polynomials import square_root as square_root
+# c0 + c1 s + c2 s^2 + ...: coefficients in that order, of the parameters, or floats
+from eomgen.symbolic.exact.one_variable import Polynomial as Polynomial
 
 # (numerator, denominator) without common factor as polynomials in cosines and sines, in each of their forms
 from eomgen.symbolic.exact.quotient import reduced as reduced
-
-# f = sum of part * atom^n, as {n: part}
-from eomgen.symbolic.exact.solving import coefficients as coefficients
 
 # True if equation(x + period) is the same function as equation(x)
 from eomgen.symbolic.exact.solving import has_period as has_period
@@ -152,28 +143,14 @@ from eomgen.symbolic.exact.solving import roots as roots
 # True if x is 0 at all values of its symbols; False where it has a value at no state that was tried
 from eomgen.symbolic.exact.solving import vanishes as vanishes
 
-# (f with symbols C, S for the cosine and sine of each angle and S^2 eliminated, {symbol: what it stands for})
-from eomgen.symbolic.exact.solving import wave_free as wave_free
-
 # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
 from eomgen.symbolic.exact.sums import BRACKETS as BRACKETS
 
 # x with the parts that are squares of sums, of one product of parameters each, as squares
 from eomgen.symbolic.exact.sums import with_squares as with_squares
-from eomgen.symbolic.exact.terms import Key as Key
-from eomgen.symbolic.exact.terms import Terms as Terms
 
 # The work or size needed is beyond its limit
 from eomgen.symbolic.exact.terms import TooLarge as TooLarge
-
-# The common number of the coefficients
-from eomgen.symbolic.exact.terms import content as content
-
-# a + factor b
-from eomgen.symbolic.exact.terms import terms_plus as terms_plus
-
-# c a
-from eomgen.symbolic.exact.terms import terms_scaled as terms_scaled
 
 # Writes the terms of one expansion as nodes of its graph
 from eomgen.symbolic.exact.writing import Writer as Writer

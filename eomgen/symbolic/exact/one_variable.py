@@ -1,4 +1,4 @@
-"""LinearEquations -> characteristic polynomial, frequencies in closed form, conditions of stability."""
+"""Polynomials in one variable whose coefficients are formulas: roots in closed form, and when all lie on the left."""
 
 from __future__ import annotations
 
@@ -7,36 +7,16 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.reduction import LinearEquations, is_second_order
-from eomgen.mechanics.state import Entries
-from eomgen.symbolic.exact import (
-    Expansion,
-    Key,
-    Terms,
-    TooLarge,
-    coefficients,
-    content,
-    cramer,
-    factored,
-    simplest,
-    simplest_sum,
-    square_root,
-    terms_plus,
-    terms_scaled,
-    wave_free,
-    written_shortest,
-)
-from eomgen.symbolic.expression import Node, Number, Owner, Scalar, is_zero, over, sqrt, substituted, symbols_of
+from eomgen.symbolic.exact import cramer
+from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.normal_forms import simplest, simplest_sum, written_shortest
+from eomgen.symbolic.exact.polynomials import factored, square_root
+from eomgen.symbolic.exact.solving import coefficients, wave_free
+from eomgen.symbolic.exact.terms import Key, Terms, TooLarge, content, terms_plus, terms_scaled
+from eomgen.symbolic.expression import Node, Number, Scalar, is_zero, over, sqrt, substituted
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits
 from eomgen.symbolic.print import text_size
 
-# -------- polynomial ------------------------------------------------------------------------------------------
-# LinearEquations, exact -> characteristic polynomial, frequencies in closed form.
-#
-# p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2 M + s C + K)
-
-
-MOST = 6  # rows of a determinant that is written out
 LONG = 24_000  # characters of a polynomial, as it came, that comes to no formula which anybody prints or solves
 
 
@@ -71,63 +51,74 @@ class Polynomial:
         """-p(s), of exact coefficients."""
         return Polynomial(tuple(simplest(-c, Work.ANSWER, positive) for c in self.coefficients))
 
+    @classmethod
+    def of(cls, x: Scalar | None, s: Node, positive: Collection[Node], *, in_full: bool = True) -> Polynomial | None:
+        """A polynomial in s by its coefficients; None where it is too much work."""
+        if x is None:
+            return None
+        expansion = Expansion(s.graph, Work.ANSWER, positive)
+        expansion.of(s)
+        try:
+            parts = coefficients(expansion.of(x), s)
+        except TooLarge:
+            return None
+        terms = [parts.get(n, {}) for n in range(max(parts, default=0) + 1)]
+        if not in_full and _stays_long(expansion, terms):
+            return Polynomial(tuple(map(expansion.atoms.node, terms)))
+        return Polynomial(tuple(simplest_sum(expansion, each) for each in terms))
 
-def graph_of(equations: LinearEquations) -> Owner:
-    return equations.speeds[0].graph
+    def frequencies(self, s: Node, positive: Collection[Node]) -> tuple[Scalar, ...]:
+        """The angular frequencies Im s of roots that have a closed form, each once.
 
+        Of factors c2 s^2 + c1 s + c0:          w = sqrt(4 c0 c2 - c1^2)/(2 |c2|)
+        of factors c4 s^4 + c2 s^2 + c0:        w^2 = (c2 -+ sqrt(c2^2 - 4 c0 c4))/(2 c4)
+        with a root less, q^2 = c0 c4:          w = (sqrt((c2 + 2 q)/c4) -+ sqrt((c2 - 2 q)/c4))/2
+        """
+        found: list[Scalar] = []
+        try:
+            for w in _frequencies(self.at(s), s, positive):
+                w = simplest(w, Work.ANSWER, positive)
+                if w not in found:
+                    found.append(w)
+        except DerivationError:  # too large
+            pass
+        return tuple(found)
 
-def laplace_variable(equations: LinearEquations) -> Node:
-    """A symbol s that neither the entries nor the coordinates have."""
-    entries = [x for A in (equations.M, equations.C, equations.K, equations.B) for row in A for x in row]
-    taken = {x.name for x in (*symbols_of(entries), *equations.all, *equations.inputs)}
-    return graph_of(equations).symbol(next(name for name in ("s", "s_", "s__", "s___") if name not in taken))
+    def conditions(
+        self,
+        s: Node,
+        positive: Collection[Node],
+        trial: Mapping[Node, Any],
+        *,
+        conservative: bool,
+        in_full: bool = True,
+    ) -> Conditions:
+        """Routh-Hurwitz conditions for each factor of p(s), in the shorter form of Lienard and Chipart.
 
+        All coefficients and every other Hurwitz determinant are positive. For an even factor: all s^2 are real and
+        negative.
 
-def characteristic_polynomial(
-    equations: LinearEquations, positive: Collection[Node], *, in_full: bool = True
-) -> Polynomial | None:
-    """p(s), common factors of its coefficients kept; None where it is too much work.
-
-    Args:
-        in_full: whether it is brought into its shortest form however long it is.
-    """
-    s = laplace_variable(equations)
-    return polynomial_in(_determinant(pencil_of(equations, s)), s, positive, in_full=in_full)
-
-
-def pencil_of(e: LinearEquations, s: Node) -> Entries | None:
-    """The matrix whose determinant is p(s); None where it is too large."""
-    n = len(e.speeds)
-    if is_second_order(e):
-        return _of_second_order(e, s) if n <= MOST else None
-    if n + len(e.coordinates) > MOST:
-        return None
-    upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in e.E[i]] for i, row in enumerate(e.F)]
-    return upper + [[*e.K[i], *(s * m + c for m, c in zip(e.M[i], e.C[i], strict=True))] for i in range(n)]
-
-
-def _of_second_order(e: LinearEquations, s: Node) -> Entries:
-    return [[s * s * m + s * c + k for m, c, k in zip(*rows, strict=True)] for rows in zip(e.M, e.C, e.K, strict=True)]
-
-
-def _determinant(matrix: Entries | None) -> Scalar | None:
-    return None if matrix is None else cramer.determinant(matrix)
-
-
-def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node], *, in_full: bool = True) -> Polynomial | None:
-    """A polynomial in s by its coefficients; None where it is too much work."""
-    if x is None:
-        return None
-    expansion = Expansion(s.graph, Work.ANSWER, positive)
-    expansion.of(s)
-    try:
-        parts = coefficients(expansion.of(x), s)
-    except TooLarge:
-        return None
-    terms = [parts.get(n, {}) for n in range(max(parts, default=0) + 1)]
-    if not in_full and _stays_long(expansion, terms):
-        return Polynomial(tuple(map(expansion.atoms.node, terms)))
-    return Polynomial(tuple(simplest_sum(expansion, each) for each in terms))
+        Args:
+            trial: values of the parameters: leading coefficients have the same signs everywhere as there, as det M
+                does.
+            conservative: True if all s^2 are real in any case.
+            in_full: True if the conditions of a long polynomial are brought into their shortest form too.
+        Source: Gantmacher, The Theory of Matrices, vol. 2, chapter 15.
+        """
+        zeros = next(k for k, c in enumerate(self.coefficients) if not is_zero(c))
+        factors, legibly = [], in_full or not self.is_long
+        for factor in _polynomials(Polynomial(self.coefficients[zeros:]), s, positive, legibly):
+            leading = evaluate((factor.coefficients[-1],), trial, fifty_digits())[0]
+            one = factor if leading > 0 else factor.negative(positive)
+            if one not in factors:
+                factors.append(one)
+        found = [_conditions(one, conservative) for one in factors]
+        if any(x is None for x in found):
+            return Conditions()
+        each = (_without_number(x, positive, legibly) for part in found for x in part or ())
+        expressions = dict.fromkeys(x for x in each if type(x) is Node or x <= 0)
+        even = [one.is_even for one in factors]
+        return Conditions(tuple(expressions), not all(even), any(even), zeros)
 
 
 def _stays_long(expansion: Expansion, terms: Iterable[Terms]) -> bool:
@@ -137,24 +128,6 @@ def _stays_long(expansion: Expansion, terms: Iterable[Terms]) -> bool:
 
 
 # -- frequencies ---------------------------------------------------------------------------------------------------
-
-
-def closed_frequencies(polynomial: Polynomial, s: Node, positive: Collection[Node]) -> tuple[Scalar, ...]:
-    """The angular frequencies Im s of roots that have a closed form, each once.
-
-    Of factors c2 s^2 + c1 s + c0:          w = sqrt(4 c0 c2 - c1^2)/(2 |c2|)
-    of factors c4 s^4 + c2 s^2 + c0:        w^2 = (c2 -+ sqrt(c2^2 - 4 c0 c4))/(2 c4)
-    with a root less, q^2 = c0 c4:          w = (sqrt((c2 + 2 q)/c4) -+ sqrt((c2 - 2 q)/c4))/2
-    """
-    found: list[Scalar] = []
-    try:
-        for w in _frequencies(polynomial.at(s), s, positive):
-            w = simplest(w, Work.ANSWER, positive)
-            if w not in found:
-                found.append(w)
-    except DerivationError:  # too large
-        pass
-    return tuple(found)
 
 
 @dataclass(frozen=True)
@@ -251,7 +224,7 @@ def _of_single_roots(
 
 
 # -------- conditions ------------------------------------------------------------------------------------------
-# Characteristic polynomial -> what must be positive for small motions to fade or to oscillate: Routh and Hurwitz.
+# Polynomial -> what must be positive for its roots to lie on the left, or on the imaginary axis: Routh and Hurwitz.
 
 
 MOST_CONDITIONS = 6  # degree of a polynomial whose Hurwitz determinants are written
@@ -279,42 +252,6 @@ class Conditions:
         """Behaviour of all motions under the conditions: "oscillate", "fade" or both."""
         said = [word for word, holds in (("oscillate", self.oscillating), ("fade", self.fading)) if holds]
         return " or ".join(said)
-
-
-def stability_conditions(
-    polynomial: Polynomial,
-    s: Node,
-    positive: Collection[Node],
-    trial: Mapping[Node, Any],
-    *,
-    conservative: bool,
-    in_full: bool = True,
-) -> Conditions:
-    """Routh-Hurwitz conditions for each factor of p(s), in the shorter form of Lienard and Chipart.
-
-    All coefficients and every other Hurwitz determinant are positive. For an even factor: all s^2 are real and
-    negative.
-
-    Args:
-        trial: values of the parameters: leading coefficients have the same signs everywhere as there, as det M does.
-        conservative: True if all s^2 are real in any case.
-        in_full: True if the conditions of a long polynomial are brought into their shortest form too.
-    Source: Gantmacher, The Theory of Matrices, vol. 2, chapter 15.
-    """
-    zeros = next(k for k, c in enumerate(polynomial.coefficients) if not is_zero(c))
-    factors, legibly = [], in_full or not polynomial.is_long
-    for factor in _polynomials(Polynomial(polynomial.coefficients[zeros:]), s, positive, legibly):
-        leading = evaluate((factor.coefficients[-1],), trial, fifty_digits())[0]
-        one = factor if leading > 0 else factor.negative(positive)
-        if one not in factors:
-            factors.append(one)
-    found = [_conditions(one, conservative) for one in factors]
-    if any(x is None for x in found):
-        return Conditions()
-    each = (_without_number(x, positive, legibly) for part in found for x in part or ())
-    expressions = dict.fromkeys(x for x in each if type(x) is Node or x <= 0)
-    even = [one.is_even for one in factors]
-    return Conditions(tuple(expressions), not all(even), any(even), zeros)
 
 
 def _without_number(x: Scalar, positive: Collection[Node], legibly: bool) -> Scalar:
