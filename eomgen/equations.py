@@ -43,7 +43,7 @@ from eomgen.mechanics.dynamics import (
     system_of,
 )
 from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.model import Model, nearest
 from eomgen.proof import Certificate, Printed
 from eomgen.study import Study
@@ -413,7 +413,7 @@ class Equations(Result):
             MissingValues: a start value needs a parameter without a value.
             DerivationError: a constraint that does not close at the start.
         """
-        return np.array(list(start_state(self.system, parameters, start).values()), dtype=float)
+        return np.array(list(Start.of(self.system, parameters, start).values.values()), dtype=float)
 
     def _known_values(self) -> tuple[np.ndarray | None, np.ndarray | None]:
         """(p0, x0) of the model, None where a value is missing, or the constraints do not close at the start."""

@@ -38,8 +38,8 @@ from eomgen.mechanics.free_bodies import SystemFriction, equations_of_motion, va
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.mechanics.start import ExactStart, start_state
-from eomgen.mechanics.statics import contacts_at_start
+from eomgen.mechanics.start import ExactStart, Start
+from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import BALANCE, MASSES, Model
 from eomgen.symbolic.exact import LinearSystem, general_solution, legible, readable_all
 from eomgen.symbolic.expression import (
@@ -229,7 +229,7 @@ class Study:
         Raises:
             MissingValues: a parameter that it needs has no value.
         """
-        return start_state(self.system)
+        return Start.of(self.system).values
 
     @cached_property
     def values_at_start(self) -> dict[str, Scalar | float]:
@@ -509,7 +509,7 @@ def study_of(model: Model) -> Study:
     """The study of a model with its contacts as they are at the start; of one frozen model it is made once."""
 
     def made() -> Study:
-        contacts = contacts_at_start(model)
+        contacts = ContactsAtStart.of(model)
         return Study(system_of(model, contacts.modes), contacts.assumptions)
 
     return recalled(model, study_of, made)

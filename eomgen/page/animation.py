@@ -36,7 +36,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import system_of, with_nodes_balanced
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.statics import modes_at_rest, released_in
+from eomgen.mechanics.statics import ContactsAtStart, released_in
 from eomgen.model import Model, ModelOrPath, Typed, Values, model_at
 from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof import Check, pictures_reported, states_shown
@@ -249,7 +249,7 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
         UsageError: there is no such reaction.
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
-    system = system_of(model, modes_at_rest(model))
+    system = system_of(model, ContactsAtStart.at_rest(model))
     stands = not has_degrees_of_freedom(system)
     structure = Structure.of(with_drives_held(system)[0] if stands else system)
     if stands:

@@ -15,7 +15,7 @@ from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.symbolic.expression import Scalar, State, is_zero
 from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, of_50_digits, switches_of, tolerances
@@ -191,7 +191,7 @@ def _own_state(system: System, rng: Random) -> State | None:
     known = model.exact_parameters()
     drawn = {name: round(rng.uniform(0.7, 1.3), 6) for name in symbols.parameters if name not in known}
     try:
-        values = start_state(system, drawn)
+        values = Start.of(system, drawn).values
     except (DerivationError, ModelError, UsageError):
         return None
     known = {**model.exact_parameters(drawn), **values}

@@ -24,7 +24,7 @@ from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, with_accelerations
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.model import BALANCE, FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
@@ -195,7 +195,7 @@ class _Again:
         system, symbols = equations.system, equations.symbols
         known = system.scope.model.exact_parameters(changed)
         parameters = {node: Fraction(float(known[name])) for name, node in symbols.parameters.items()}
-        begun = start_state(system, changed, {u.name: 0.0 for u in symbols.u} if self.judged.at_rest else {})
+        begun = Start.of(system, changed, {u.name: 0.0 for u in symbols.u} if self.judged.at_rest else {}).values
         moving = (*symbols.q, *symbols.u)
         x0 = np.array([begun[node.name] for node in moving])
         rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")

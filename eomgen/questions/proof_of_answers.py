@@ -23,7 +23,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
 from eomgen.mechanics.linearization import MATRICES
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.model import FUNCTIONS, SMALL_MOTIONS, AtRest, Model, Output, WrittenEquation, names_of
 from eomgen.proof import (
     Certificate,
@@ -111,8 +111,8 @@ class _Proof:
         if not self.requested or own.free is not None or not own.scope.dependent:
             return
         tally = Tally("answers begin where the motion of the model does", "the start over its own speeds")
-        here = start_state(own)
-        for name, x in start_state(system_of(self.solver.model, own.modes)).items():
+        here = Start.of(own).values
+        for name, x in Start.of(system_of(self.solver.model, own.modes)).values.items():
             tally.add(name, partial(differing, here[name], x))
         yield from tally.checks()
 

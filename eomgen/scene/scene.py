@@ -17,7 +17,7 @@ from eomgen.codegen import Program, compiled, program_in_motion, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.model import Form
 from eomgen.scene.symbols import symbols_used
 from eomgen.symbolic.expression import Node, Pose, Scalar, Vector, symbols_of
@@ -260,7 +260,7 @@ def drawn_start(system: System) -> DrawnState:
     known = model.exact_parameters()
     assumed = {name: 1 for name in model.parameters if name not in known}
     try:
-        values = start_state(system, assumed)
+        values = Start.of(system, assumed).values
     except DerivationError:
         q, u = model.start_values(assumed)
         values = {**q, **u}

@@ -22,7 +22,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.mechanics.instant import requests_of
 from eomgen.mechanics.linearization import MATRICES, ParameterSlopes
-from eomgen.mechanics.start import Seeds, start_seeds, start_state
+from eomgen.mechanics.start import Seeds, Start, start_seeds
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import (
     OF_A_RUN,
@@ -422,7 +422,7 @@ class _Asking:
         system, number = self.phase.system, fifty_digits().number
         symbols, p = system.symbols, self.model.numeric_parameters()
         given = {symbols.t: 0.0} | {symbols.parameters[name]: x for name, x in p.items()}
-        state = start_state(system)
+        state = Start.of(system).values
         given |= {x: state[x.name] for x in (*symbols.q, *symbols.u)}
         found = {x: number(Fraction(value)) for x, value in given.items()}
         inputs = _own_inputs(self.phase)

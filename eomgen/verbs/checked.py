@@ -14,7 +14,7 @@ from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.instant import mobility_of
 from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
 from eomgen.mechanics.start import Branches, Start
-from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
+from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Catalog, Model, Table, unbuilt, value_of
 
 
@@ -85,7 +85,7 @@ def checked_model(model: Model) -> Checked:
     Raises:
         ModelError: declared speeds that do not stand for the rates.
     """
-    modes = contacts_at_start(model).modes
+    modes = ContactsAtStart.of(model).modes
     freedom = freedom_of(model, modes)
     still = not model.coordinates and bool(model.constraints or model.trusses)
     start = _start_of_loops(model, modes, freedom)
@@ -94,7 +94,7 @@ def checked_model(model: Model) -> Checked:
         freedom,
         tuple(name for name, mode in modes.items() if not mode.closed),
         mobility=mobility_of(model) if still else None,
-        structure=Structure.of(system_of(model, modes_at_rest(model))) if still else None,
+        structure=Structure.of(system_of(model, ContactsAtStart.at_rest(model))) if still else None,
         start=start,
         cautions=(
             *_open(model, start),

@@ -144,6 +144,6 @@ def _modes(model: Model) -> ContactModes | None:
     """Contact modes at the start; None if the model has no contacts."""
     if not model.contacts:
         return None
-    from eomgen.mechanics.statics import contacts_at_start
+    from eomgen.mechanics.statics import ContactsAtStart
 
-    return contacts_at_start(model).modes
+    return ContactsAtStart.of(model).modes

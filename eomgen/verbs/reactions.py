@@ -37,7 +37,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.dynamics import System, refuse_jump, system_of, with_nodes_balanced
 from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
-from eomgen.mechanics.statics import resting_contacts
+from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import (
     FUNCTIONS,
     AtRest,
@@ -127,7 +127,7 @@ def reactions(
     answered = partial(_answers, _at_rest(model, from_rest), at=at, from_rest=bool(from_rest))
     found: dict[str, Quantity]
     proof: Callable[[Mapping[str, Quantity]], Certificate]
-    if at is None and not from_rest and resting_contacts(model):
+    if at is None and not from_rest and ContactsAtStart.resting(model):
         found, proof = answered({named.name: named.unit for named in requested}, at="t = 0")
     elif equations is not None and at is None and not from_rest:
         found, proof = _formulas(equations, requested), partial(_proof_of_formulas, equations)
@@ -194,7 +194,7 @@ def _without_force(system: System) -> tuple[str, ...]:
 
 def _without_sliding(model: Model) -> tuple[str, ...]:
     """The rough contacts that do not slide at the start, in words."""
-    names = resting_contacts(model)
+    names = ContactsAtStart.resting(model)
     here = f"do not slide at the start: {', '.join(names)}; the reactions are those there"
     return (f"{here}; formulas of sliding: eomgen derive --method kinetostatic",) if names else ()
 

@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.statics.contacts import contacts_at_start
+from eomgen.mechanics.statics.contacts import ContactsAtStart
 from eomgen.model.outputs import ALL, FUNCTIONS
 from eomgen.model.outputs import points as velocity
 from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
@@ -247,7 +247,7 @@ CERTIFIED = {
 @cache
 def system(name: str):
     model = eomgen.loads(MODELS[name])
-    return system_of(model, contacts_at_start(model).modes)
+    return system_of(model, ContactsAtStart.of(model).modes)
 
 
 def scaled(unit: Unit) -> Fraction:

@@ -19,7 +19,7 @@ from eomgen.mechanics.integrals.first_integrals import FirstIntegrals
 from eomgen.mechanics.integrals.laws import position_equations
 from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.start.exact import declared_start
-from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.start.state import Start
 from eomgen.questions.at_instant import StateAtInstant, reached
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
@@ -174,7 +174,7 @@ def requested(text: str, condition: str) -> tuple[Study, StateAtInstant]:
     start = declared_start(each.system, at_rest=False)
     numbers: dict = {}
     if not any(part.value is None for part in each.model.parameters.values()):
-        values = start_state(each.system)
+        values = Start.of(each.system).values
         numbers = {node: values[node.name] for node in (*symbols.q, *symbols.u)}
         start |= exact_places(each, start, numbers)
     scalar = each.of_state(parse(condition, references=True))
@@ -344,7 +344,7 @@ def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     symbols = each.system.symbols
     nodes = (*symbols.q, *symbols.u)
     values = {symbols.parameters[n]: x for n, x in each.model.numeric_parameters().items()}
-    first = start_state(each.system)
+    first = Start.of(each.system).values
     for integral in FirstIntegrals(each.equations).of_energy:
         known = {u: 0 for u in symbols.u if first[u.name] == 0}  # where all hinges are in line, T needs u = 0
         (begin,) = substituted((integral.expression,), known)

@@ -43,7 +43,7 @@ from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import SystemInertia
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest
 from eomgen.proof import Certificate, Stated, mass_checks, other_parameters, tried
 from eomgen.scene import ROLES, LabelForm, Mark, PointForm, Scene, SceneFrame, ordered, scene_of_system
@@ -414,7 +414,7 @@ def _vector(v: Iterable[float]) -> Vector:
 def values_at_start(system: System) -> dict[Node, float]:
     """Parameters, coordinates and time at the start."""
     symbols, numbers = system.scope.symbols, system.scope.model.numeric_parameters()
-    state = start_state(system) if symbols.q else {}
+    state = Start.of(system).values if symbols.q else {}
     moving = {q: state[q.name] for q in symbols.q}
     return {symbols.t: 0.0} | moving | {node: numbers[name] for name, node in symbols.parameters.items()}
 

@@ -10,7 +10,7 @@ from eomgen.mechanics.dynamics import system_of
 from eomgen.mechanics.equilibrium.equations import static_equations
 from eomgen.mechanics.equilibrium.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
-from eomgen.mechanics.statics import contacts_at_start, modes_at_rest
+from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Model, Table
 from eomgen.symbolic.numeric import NoValue
 
@@ -34,8 +34,8 @@ def contacts_at_rest(model: Model) -> tuple[ContactModes, tuple[str, ...]]:
     """
     ending = [contact.name for contact in model.contacts if contact.unilateral]
     if not model.coordinates or not ending or model.rough_contacts:
-        return modes_at_rest(model), ()
-    begun = contacts_at_start(_let_go(model))
+        return ContactsAtStart.at_rest(model), ()
+    begun = ContactsAtStart.of(_let_go(model))
     tried: list[frozenset[str]] = []
     wanted: frozenset[str] | None = frozenset(name for name, mode in begun.modes.items() if not mode.closed)
     while wanted is not None and wanted not in tried and len(tried) < ROUNDS:

@@ -21,7 +21,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
-from eomgen.mechanics.start import start_state, values_where_at_rest
+from eomgen.mechanics.start import Start, values_where_at_rest
 from eomgen.model import Model, WrittenEquation, freed, is_node
 from eomgen.symbolic.exact import LinearSystem, Pivots, collected_in, general_solution, legible, readable_all
 from eomgen.symbolic.expression import (
@@ -307,10 +307,10 @@ def _places(free: System) -> tuple[State, Mapping[str, float]]:
     try:
         found = values_where_at_rest(system)
     except DerivationError:
-        start_state(system)
+        Start.of(system)
     short = {q: found[q] for q in sought if q in found and text_size(found[q]) <= SHORT}
     try:
-        return short, {} if len(short) == len(sought) else start_state(system)
+        return short, {} if len(short) == len(sought) else Start.of(system).values
     except MissingValues:
         return {q: found[q] for q in sought}, {}
 

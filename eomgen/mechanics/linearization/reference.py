@@ -15,7 +15,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, nearest_equilibrium, over_rates, static_equations
 from eomgen.mechanics.integrals import position_equations
 from eomgen.mechanics.kinematics import Located
-from eomgen.mechanics.start import refuse_lost, start_state
+from eomgen.mechanics.start import Start, refuse_lost
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, holds_many_digits, is_zero, substituted
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
@@ -151,7 +151,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     symbols, scope, model = system.symbols, system.scope, system.scope.model
     trial = scope.values_of_parameters(Random(3))
     parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
-    state = start_state(system, parameters, given)
+    state = Start.of(system, parameters, given).values
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
     sought = system.constraints.fixed_by_position
     exact = {symbols.t: 0} | scope.start_values(q for q in symbols.q if q not in sought)

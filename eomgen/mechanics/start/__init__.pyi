@@ -36,6 +36,3 @@ from eomgen.mechanics.start.state import refuse_lost as refuse_lost
 
 # Every speed at the start, as functions of the parameters and of where it starts
 from eomgen.mechanics.start.state import start_speeds as start_speeds
-
-# The values of `Start.of`, with its arguments and errors
-from eomgen.mechanics.start.state import start_state as start_state

@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import SEEDS, hold_identically, is_guess
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
-from eomgen.mechanics.start.state import Start, following_rates, start_speeds, start_state
+from eomgen.mechanics.start.state import Start, following_rates, start_speeds
 from eomgen.mechanics.state import Doubles, Numbers, Split
 from eomgen.symbolic.exact import LinearSystem, general_solution, simplest, unique_solution
 from eomgen.symbolic.expression import (
@@ -425,7 +425,7 @@ def _closed_in(system: System, state: State, sought: list[Node]) -> State:
     numbers: dict[Node, float] = {node: float(x) for node, x in system.scope.values_of_parameters(None).items()}
     numbers |= {
         node: value
-        for node, value in zip((*system.symbols.q, *system.symbols.u), start_state(system).values(), strict=True)
+        for node, value in zip((*system.symbols.q, *system.symbols.u), Start.of(system).values.values(), strict=True)
     }
     located = Located(numbers, system.scope.positive)
     found = located.places(substituted(system.constraints.gaps, state), sought)

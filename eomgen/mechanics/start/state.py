@@ -149,16 +149,9 @@ def refuse_lost(places: Mapping[Node, Any]) -> None:
             raise DerivationError(what, f"coordinates.{node.name}", "start nearer to 0, an angle less whole turns")
 
 
-def start_state(
-    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
-) -> dict[str, float]:
-    """The values of `Start.of`, with its arguments and errors."""
-    return Start.of(system, parameters, start).values
-
-
 def begun_state(system: System) -> State:
     """A value of every symbol that stands in the constraints, at the start, with 50 digits."""
-    return _numbers(system, start_state(system), None)
+    return _numbers(system, Start.of(system).values, None)
 
 
 # -- values at which the constraints hold -------------------------------------------------------------------

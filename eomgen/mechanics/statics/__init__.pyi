@@ -1,19 +1,13 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.statics`."""
 
+# States of the contacts of a model at its start
+from eomgen.mechanics.statics.contacts import ContactsAtStart as ContactsAtStart
+
 # Condition for a contact to be in the assumed state
 from eomgen.mechanics.statics.contacts import RestCondition as RestCondition
 
 # Conditions of the contacts that can end or slide, where their reactions are determinate
 from eomgen.mechanics.statics.contacts import conditions_of as conditions_of
-
-# The contacts that the start values leave open, and those that push against their normals there
-from eomgen.mechanics.statics.contacts import contacts_at_start as contacts_at_start
-
-# Every contact with dry friction sticks
-from eomgen.mechanics.statics.contacts import modes_at_rest as modes_at_rest
-
-# Contacts with dry friction that touch at the start and do not slide there, by name: friction has no sign yet
-from eomgen.mechanics.statics.contacts import resting_contacts as resting_contacts
 from eomgen.mechanics.statics.forces_in_sections import KINDS as KINDS
 
 # Extreme of the bending moment within a piece, where V = 0

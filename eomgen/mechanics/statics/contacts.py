@@ -14,7 +14,7 @@ from eomgen.mechanics.constraints import rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, system_of
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
-from eomgen.mechanics.start import start_state
+from eomgen.mechanics.start import Start
 from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
 from eomgen.model import Contact, Model
 from eomgen.symbolic.expression import Scalar, State, function, sqrt, symbols_of
@@ -53,21 +53,40 @@ class ContactsAtStart:
     modes: ContactModes = field(default_factory=dict)
     assumptions: tuple[str, ...] = ()
 
+    @staticmethod
+    def of(model: Model) -> ContactsAtStart:
+        """The contacts that the start values leave open, and those that push against their normals there.
 
-def contacts_at_start(model: Model) -> ContactsAtStart:
-    """The contacts that the start values leave open, and those that push against their normals there.
+        Without coordinates what is rough sticks. Of one model they are found once.
+        """
+        if not model.contacts:
+            return ContactsAtStart()
+        return recalled(model, ContactsAtStart.of, lambda: _at_start(model))
 
-    Without coordinates what is rough sticks. Of one model they are found once.
-    """
-    if not model.contacts:
-        return ContactsAtStart()
-    return recalled(model, contacts_at_start, lambda: _at_start(model))
+    @staticmethod
+    def at_rest(model: Model) -> ContactModes:
+        """Every contact with dry friction sticks."""
+        return {contact.name: ContactMode(sense=0) for contact in model.rough_contacts}
+
+    @staticmethod
+    def resting(model: Model) -> tuple[str, ...]:
+        """Contacts with dry friction that touch at the start and do not slide there, by name: friction has no sign yet.
+
+        Whether they stick or begin to slide the first phase of the motion decides. () where parameters have no value.
+        """
+        if not model.coordinates or not any(c.mu is not None for c in model.contacts):
+            return ()
+        start = _StartNumbers(model)
+        try:
+            return () if start.missing else tuple(sorted(start.still(ContactsAtStart.of(model).modes)))
+        except (DerivationError, ModelError, UsageError, NoValue):
+            return ()
 
 
 def _at_start(model: Model) -> ContactsAtStart:
     contacts = model.contacts
     if not model.coordinates:
-        return ContactsAtStart(dict(modes_at_rest(model)))
+        return ContactsAtStart(dict(ContactsAtStart.at_rest(model)))
     start = _StartNumbers(model)
     ending = [c for c in contacts if c.unilateral]
     opened = start.open_contacts([c.name for c in ending])
@@ -78,20 +97,6 @@ def _at_start(model: Model) -> ContactsAtStart:
     both_ways = [c for c in contacts if c.friction is not None and not c.unilateral and not c.round]
     pushing = start.pushing(both_ways, opened.modes) if both_ways else ContactsAtStart()
     return ContactsAtStart({**opened.modes, **pushing.modes}, (*opened.assumptions, *pushing.assumptions))
-
-
-def resting_contacts(model: Model) -> tuple[str, ...]:
-    """Contacts with dry friction that touch at the start and do not slide there, by name: friction has no sign yet.
-
-    Whether they stick or begin to slide the first phase of the motion decides. () where parameters have no value.
-    """
-    if not model.coordinates or not any(c.mu is not None for c in model.contacts):
-        return ()
-    start = _StartNumbers(model)
-    try:
-        return () if start.missing else tuple(sorted(start.still(contacts_at_start(model).modes)))
-    except (DerivationError, ModelError, UsageError, NoValue):
-        return ()
 
 
 @dataclass(frozen=True)
@@ -131,7 +136,7 @@ class _StartNumbers:
         if not names:
             return ContactsAtStart()
         try:
-            start_state(system_of(self.model), self.drawn)
+            Start.of(system_of(self.model), self.drawn)
             return ContactsAtStart()
         except DerivationError:  # as a start that leaves a contact open is refused
             return self._by_gaps(names)
@@ -250,7 +255,7 @@ class _Lacking(Exception):
 
 def _state(system: System, drawn: Numbers) -> State:
     """Every symbol of a system at the start but a, multipliers 0."""
-    symbols, values = system.symbols, start_state(system, drawn)
+    symbols, values = system.symbols, Start.of(system, drawn).values
     known = {**system.scope.model.exact_parameters(drawn), **values}
     nodes = {**symbols.parameters, **{x.name: x for x in (*symbols.q, *symbols.u)}}
     state = {node: of_50_digits(float(known[name])) for name, node in nodes.items()}
@@ -325,11 +330,6 @@ class RestCondition:
             "pulls": f"'{self.constraint}' would have to push",
             "sticks": f"contact '{self.constraint}' slides: it would need more friction than mu N",
         }[self.kind]
-
-
-def modes_at_rest(model: Model) -> ContactModes:
-    """Every contact with dry friction sticks."""
-    return {contact.name: ContactMode(sense=0) for contact in model.rough_contacts}
 
 
 def conditions_of(statics: StaticReactions) -> tuple[RestCondition, ...]:
