@@ -14,7 +14,7 @@ from eomgen.frozen import recalled
 from eomgen.mechanics.constraints import limits_passed
 from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, left_tables, model_at, with_inputs
+from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, model_at, with_inputs
 from eomgen.study import Study, study_of, study_of_modes
 from eomgen.symbolic.numeric import doing, growing, tolerances
 
@@ -192,7 +192,7 @@ def simulate(
 def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning to the caller."""
     passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])
-    for problem in (*left_tables(model, float(found.t[-1]) if len(found.t) else 0.0), *passed):
+    for problem in (*model.left_tables(float(found.t[-1]) if len(found.t) else 0.0), *passed):
         warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
     missing = found.known_remark
     if missing and (found.reactions or found.outputs):

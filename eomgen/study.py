@@ -40,7 +40,7 @@ from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import BALANCE, MASSES, Model
+from eomgen.model import Model, OutputSource
 from eomgen.symbolic.exact import LinearSystem, general_solution, legible, readable_all
 from eomgen.symbolic.expression import (
     Call,
@@ -472,15 +472,15 @@ class Study:
         It is the method by which reactions and accelerations are eliminated, or that of the functions of masses.
         """
         unknown = not formula.names.isdisjoint(self.system.symbols.unknowns)
-        if unknown or requests_of(formula, BALANCE):
-            return BALANCE
+        if unknown or requests_of(formula, OutputSource.BALANCE):
+            return OutputSource.BALANCE
         if self.needs_equations(formula):
             return "equations of motion"
-        return MASSES if requests_of(formula, MASSES) else ""
+        return OutputSource.MASSES if requests_of(formula, OutputSource.MASSES) else ""
 
     def needs_equations(self, formula: Expression) -> bool:
         """True if accelerations, multipliers or reactions stand in the formula."""
-        if requests_of(formula, BALANCE):
+        if requests_of(formula, OutputSource.BALANCE):
             return True
         return depends_on(self.raw(formula), (*self.system.symbols.a, *self.system.symbols.lam))
 

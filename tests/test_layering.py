@@ -243,7 +243,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "simulation": 35,
     "documents": 99,
     "proof": 114,
-    "model": 142,
+    "model": 127,
     "mechanics.kinematics": 21,
     "mechanics.constraints": 29,
     "mechanics.dynamics": 27,

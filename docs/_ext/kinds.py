@@ -22,7 +22,7 @@ from reference import REGION, SEAMS, fields_table, gist, prose, safe
 import eomgen
 from eomgen.mechanics.free_bodies.wrenches import Axes, components_of
 from eomgen.model import outputs
-from eomgen.model.outputs.base import BALANCE, MASSES, OF_A_RUN, SMALL_MOTIONS, STATE, OutputFunction
+from eomgen.model.outputs.base import OutputFunction, OutputSource
 from eomgen.page.figure import rest_figure
 from eomgen.questions.of_a_run import is_of_a_run
 
@@ -114,11 +114,11 @@ def page(kind: str, homes: dict[str, str]) -> str:
 
 
 FOUND = {
-    STATE: "the state: places, rates, and accelerations by the equations of motion",
-    BALANCE: "the balance of the bodies, which is solved twice",
-    MASSES: "how mass is spread in the bodies",
-    SMALL_MOTIONS: "the small motions, which `linearize` proves",
-    OF_A_RUN: "a run, whose samples must agree",
+    OutputSource.STATE: "the state: places, rates, and accelerations by the equations of motion",
+    OutputSource.BALANCE: "the balance of the bodies, which is solved twice",
+    OutputSource.MASSES: "how mass is spread in the bodies",
+    OutputSource.SMALL_MOTIONS: "the small motions, which `linearize` proves",
+    OutputSource.OF_A_RUN: "a run, whose samples must agree",
 }
 
 

@@ -18,7 +18,7 @@ from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
 from eomgen.mechanics.free_bodies import FEW, Indeterminate, Inverse, Reactions, by_independent, named_reactions
 from eomgen.mechanics.instant import Quantities, requests_of
-from eomgen.model import OF_A_RUN, SMALL_MOTIONS, Output
+from eomgen.model import Output, OutputSource
 from eomgen.symbolic.exact import cramer, factor_solution
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, ScalarRows, depends_on, is_zero, jacobian, substituted
 
@@ -62,9 +62,9 @@ def _of_an_instant(output: Output) -> str:
     """Why an output is no function of the state, "" where it may be one."""
     if output.at is not None or output.from_ is not None or output.side is not None or output.event is not None:
         return "it is requested at an instant"
-    if requests_of(output.value, SMALL_MOTIONS):
+    if requests_of(output.value, OutputSource.SMALL_MOTIONS):
         return "it is of the linearized system"
-    return "it is of a whole run" if requests_of(output.value, OF_A_RUN) else ""
+    return "it is of a whole run" if requests_of(output.value, OutputSource.OF_A_RUN) else ""
 
 
 # -------- inverse ---------------------------------------------------------------------------------------------

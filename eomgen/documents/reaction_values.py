@@ -40,7 +40,7 @@ from eomgen.mechanics.free_bodies import (
     named_reactions,
     reactions_by_sides,
 )
-from eomgen.model import PointForce, ReactionSymbols, trusses_of
+from eomgen.model import PointForce, ReactionSymbols
 from eomgen.symbolic.exact import book_form, never_vanishes
 from eomgen.symbolic.expression import (
     Node,
@@ -350,7 +350,7 @@ def _owner(balance: Balance, component: Component) -> str:
     """Owner in the name of a reaction; "" for members of the only truss."""
     if component.label != "tension" or not component.side:
         return component.owner
-    return component.owner if len(trusses_of(balance.system.scope.model.constraints)) > 1 else ""
+    return component.owner if len(balance.system.scope.model.trusses_in_parts) > 1 else ""
 
 
 def _more(balance: Balance, component: Component) -> tuple[str, ...]:

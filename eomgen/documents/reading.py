@@ -13,7 +13,6 @@ from typing import TypeGuard
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Side, Statement, Step
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Scope
-from eomgen.model import Catalog, inferred
 from eomgen.symbolic.exact import (
     BRACKETS,
     Rooted,
@@ -415,7 +414,7 @@ def _constants(x: Scalar) -> Iterator[Node]:
 
 def _unit(scope: Scope, x: Node) -> str:
     """Unit of a coefficient, inferred from the units of the model; "" where they do not determine it."""
-    found = inferred(Catalog(scope.model, ())).names
+    found = scope.model.dimensions.names
     text = to_text(x)
     dimension = found.inference.reduced(found.walk().of(parse(text, longest=len(text))))
     return "" if dimension.unknowns else str(dimension)

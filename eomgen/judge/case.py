@@ -20,7 +20,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System
 from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import AtRest, Catalog, Model, Output, Table, WrittenEquation, inferred
+from eomgen.model import AtRest, Model, Output, Table, WrittenEquation
 from eomgen.questions import Answer, MotionFromStart, solve
 from eomgen.simulation import has_phases
 from eomgen.study import Study, study_of
@@ -441,7 +441,7 @@ class Case:
 
     def clash(self, written: HandEquation) -> str:
         """The error in the dimensions, in words; "" where there is none."""
-        names = inferred(Catalog(self.model, ())).names
+        names = self.model.dimensions.names
         left, right = (replace(names.walk(), strict=True) for _ in range(2))
         needed = left.of(written.left)
         right.of(written.right, needed=needed)

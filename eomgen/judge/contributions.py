@@ -19,7 +19,7 @@ from eomgen.mechanics.dynamics import (
     System,
 )
 from eomgen.mechanics.kinematics import Applied, SystemInertia
-from eomgen.model import Catalog, Couple, Dimension, Load, PointForce, UniformField, inferred
+from eomgen.model import Couple, Dimension, Load, PointForce, UniformField
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -150,7 +150,7 @@ class Contributions:
     @cached_property
     def dimensions(self) -> Mapping[str, Dimension]:
         """The dimension of every name, as far as it is known."""
-        return inferred(Catalog(self.system.scope.model, ())).found
+        return self.system.scope.model.dimensions.found
 
     @cached_property
     def edits(self) -> Edits:

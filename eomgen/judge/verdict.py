@@ -16,7 +16,7 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import LONG, short_text
-from eomgen.model import BALANCE, FUNCTIONS, MASSES, SMALL_MOTIONS, Model
+from eomgen.model import FUNCTIONS, Model, OutputSource
 from eomgen.symbolic.exact import legible
 from eomgen.symbolic.expression import (
     Call,
@@ -238,7 +238,7 @@ _OF = {
     **dict.fromkeys(("normal_acceleration", "curvature_radius"), "acceleration"),
     **dict.fromkeys(("epsilon", "epsilon_x", "epsilon_y", "epsilon_z"), "acceleration"),
 }
-_BY_SOURCE = {BALANCE: "reaction", MASSES: "inertia", SMALL_MOTIONS: "frequency"}
+_BY_SOURCE = {OutputSource.BALANCE: "reaction", OutputSource.MASSES: "inertia", OutputSource.SMALL_MOTIONS: "frequency"}
 FUNCTION_KINDS = {
     name: _OF.get(name) or _BY_SOURCE.get(function.source) or "velocity" for name, function in FUNCTIONS.items()
 }

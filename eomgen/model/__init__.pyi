@@ -6,9 +6,6 @@ from eomgen.model.arithmetic import in_order as in_order
 # The value of an expression at these values (`pi` among them); None with other names, or without a value
 from eomgen.model.arithmetic import value_of as value_of
 
-# A model in the making. Parts that could not be read are None; what reading found is in `found`
-from eomgen.model.catalog import Catalog as Catalog
-
 # True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors)
 from eomgen.model.checks.bodies import possible as possible
 
@@ -20,9 +17,6 @@ from eomgen.model.composite import PlacedPiece as PlacedPiece
 
 # Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre
 from eomgen.model.composite import about as about
-
-# The whole body
-from eomgen.model.composite import composite_of as composite_of
 
 # k A
 from eomgen.model.composite import matrix_times as matrix_times
@@ -62,9 +56,6 @@ from eomgen.model.constraints.equation import NodeBalance as NodeBalance
 
 # The two nodes of tension(T, n1-n2) or tension(T, n1, n2); None where it names no two
 from eomgen.model.constraints.link import ends_requested as ends_requested
-
-# The trusses of a model in parts, by name
-from eomgen.model.constraints.link import trusses_of as trusses_of
 from eomgen.model.constraints.row import AXIS_NAMES as AXIS_NAMES
 
 # One scalar row of a constraint
@@ -82,20 +73,11 @@ from eomgen.model.constraints.strand import Strand as Strand
 # A constraint, or the joint of a body on a path
 from eomgen.model.contacts import Contact as Contact
 
-# {speed: the rates that go with it} of those that have a `start`, or share rates with one that has
-from eomgen.model.declared_speeds import begun_speeds as begun_speeds
-
 # "did you mean 'forearm'?", or "" where nothing is near
 from eomgen.model.diagnostics import nearest as nearest
 
 # A part in words: "the joint of body 'hand'", "parameter 'm'"
 from eomgen.model.diagnostics import whereabouts as whereabouts
-
-# The dimensions that follow from every expression of the model, each examined once
-from eomgen.model.dimensions import inferred as inferred
-
-# {name: unit} of what has none in the file, where the expressions say what it must be
-from eomgen.model.dimensions import inferred_units as inferred_units
 
 # A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
 from eomgen.model.driven import law_of as law_of
@@ -209,27 +191,15 @@ from eomgen.model.kinds import ReactionSymbols as ReactionSymbols
 # `friction = mu`: mu |N| against the sliding velocity; `{ viscous = c }`: -c N v
 from eomgen.model.kinds import Resistance as Resistance
 
-# (where, kind) of every joint, constraint, force and table that waits for a later version, in the model's order
-from eomgen.model.likely_mistakes import unbuilt as unbuilt
-
-# (where, kind) of the constraints that wait for a later version: they cannot be counted
-from eomgen.model.likely_mistakes import unbuilt_constraints as unbuilt_constraints
-
-# Warnings: what a user should look at again
-from eomgen.model.likely_mistakes import warnings_of as warnings_of
-
 # A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order
 from eomgen.model.model import Model as Model
 
 # The functions of the motion, by name
 from eomgen.model.outputs import FUNCTIONS as FUNCTIONS
-
-# Sources of output functions: what each needs beside the motion
-from eomgen.model.outputs.base import BALANCE as BALANCE
 from eomgen.model.outputs.base import GROUND as GROUND
-from eomgen.model.outputs.base import MASSES as MASSES
-from eomgen.model.outputs.base import OF_A_RUN as OF_A_RUN
-from eomgen.model.outputs.base import SMALL_MOTIONS as SMALL_MOTIONS
+
+# Source of an output function: what it needs beside the motion
+from eomgen.model.outputs.base import OutputSource as OutputSource
 
 # The argument k of a call, a formula; a lone name or member reads like a reference
 from eomgen.model.outputs.base import formula_at as formula_at
@@ -344,12 +314,6 @@ from eomgen.model.replaced import with_inputs as with_inputs
 # The model with other values of parameters and starts
 from eomgen.model.replaced import with_values as with_values
 
-# The same of what a model gives as a function of time
-from eomgen.model.sampled_laws import given_samples as given_samples
-
-# Warnings of samples that a run from 0 goes beyond: there a cubic goes straight on, which is hardly intended
-from eomgen.model.sampled_laws import left_tables as left_tables
-
 # A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome
 from eomgen.model.sampled_laws import samples as samples
 
@@ -394,9 +358,6 @@ from eomgen.model.trusses import called as called
 
 # The path of its declaration: bodies.bar, trusses.T.nodes.n1
 from eomgen.model.trusses import declared_at as declared_at
-
-# The model with its trusses replaced by bodies and constraints; the model itself where it has none
-from eomgen.model.trusses import in_parts as in_parts
 
 # True if a body of a model in parts is a node of a truss
 from eomgen.model.trusses import is_node as is_node

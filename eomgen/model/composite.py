@@ -60,22 +60,22 @@ class Composite:
     pieces: tuple[PlacedPiece, ...]
     whole: MassProperties
 
+    @staticmethod
+    def of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> Composite:
+        """The whole body.
 
-def composite_of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> Composite:
-    """The whole body.
-
-    Args:
-        pieces: as declared, `Piece`s.
-        mass: the net mass as an expression, or None where every piece has its own.
-    """
-    masses = masses_of(pieces, mass, value)
-    placed = tuple(PlacedPiece(piece, _placed(piece, m, value)) for piece, m in zip(pieces, masses, strict=True))
-    m = value(mass) if mass is not None else sum(part.sign * part.mass.m for part in placed)
-    com = _center(placed, _weights(pieces, masses, value))
-    I: Matrix = (ZERO, ZERO, ZERO)
-    for part in placed:
-        I = added(I, matrix_times(part.sign, about(part.mass, com)))
-    return Composite(placed, MassProperties(m, com, I))
+        Args:
+            pieces: as declared, `Piece`s.
+            mass: the net mass as an expression, or None where every piece has its own.
+        """
+        masses = masses_of(pieces, mass, value)
+        placed = tuple(PlacedPiece(piece, _placed(piece, m, value)) for piece, m in zip(pieces, masses, strict=True))
+        m = value(mass) if mass is not None else sum(part.sign * part.mass.m for part in placed)
+        com = _center(placed, _weights(pieces, masses, value))
+        I: Matrix = (ZERO, ZERO, ZERO)
+        for part in placed:
+            I = added(I, matrix_times(part.sign, about(part.mass, com)))
+        return Composite(placed, MassProperties(m, com, I))
 
 
 def about(mass: MassProperties, point: Vector) -> Matrix:

@@ -15,7 +15,6 @@ from eomgen.model.checks.bodies import possible
 from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.dimensions import inferred
 from eomgen.model.fields import Leaf, NameRule, WrittenEquation
-from eomgen.model.model import Model
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
 from eomgen.symbolic.expression import Expression, Fraction
@@ -23,13 +22,13 @@ from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Symbol, symbol_of
 
 
-def unbuilt(model: Model) -> tuple[tuple[str, str], ...]:
+def unbuilt(model: Any) -> tuple[tuple[str, str], ...]:
     """(where, kind) of every joint, constraint, force and table that waits for a later version, in the model's
     order."""
     return (*unbuilt_bodies(model), *unbuilt_constraints(model), *_unbuilt_forces(model))
 
 
-def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
+def unbuilt_bodies(model: Any) -> tuple[tuple[str, str], ...]:
     """(where, kind) of the joints that wait for a later version."""
     waiting = []
     for name, body in model.bodies.items():
@@ -38,7 +37,7 @@ def unbuilt_bodies(model: Model) -> tuple[tuple[str, str], ...]:
     return tuple(waiting)
 
 
-def unbuilt_constraints(model: Model) -> tuple[tuple[str, str], ...]:
+def unbuilt_constraints(model: Any) -> tuple[tuple[str, str], ...]:
     """(where, kind) of the constraints that wait for a later version: they cannot be counted."""
     constraints = model.constraints.items()
     return tuple(
@@ -48,7 +47,7 @@ def unbuilt_constraints(model: Model) -> tuple[tuple[str, str], ...]:
     )
 
 
-def _unbuilt_forces(model: Model) -> tuple[tuple[str, str], ...]:
+def _unbuilt_forces(model: Any) -> tuple[tuple[str, str], ...]:
     return tuple((f"forces.{name}", force.kind) for name, force in model.forces.items() if not force.works)
 
 

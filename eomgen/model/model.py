@@ -1,14 +1,21 @@
-"""Text or Python -> Model: the whole that a user declares, and what follows from its declarations alone."""
+"""Text or Python -> "Model": the whole that a user declares, and what follows from its declarations alone."""
 
+from collections.abc import Iterator
 from importlib import import_module
 from typing import Annotated, Any, ClassVar
 
-from eomgen.errors import EomgenError
+from eomgen.errors import DerivationError, EomgenError, Problem
 from eomgen.frozen import RECALLED, dataclass
 from eomgen.model import constraints, forces
+from eomgen.model.catalog import Catalog
 from eomgen.model.constraints import Constraint
+from eomgen.model.constraints.link import Members, trusses_of
 from eomgen.model.contacts import Connections
+from eomgen.model.declared_speeds import begun_speeds
+from eomgen.model.diagnostics import Diagnostic
+from eomgen.model.dimensions import Inferred, inferred, inferred_units
 from eomgen.model.fields import (
+    Leaf,
     Table,
     TableRule,
     TextRule,
@@ -17,6 +24,7 @@ from eomgen.model.forces import Force
 from eomgen.model.kinds import (
     Text,
 )
+from eomgen.model.likely_mistakes import unbuilt, unbuilt_constraints, warnings_of
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule, part_schema
 from eomgen.model.parts import (
@@ -32,11 +40,17 @@ from eomgen.model.parts import (
     Truss,
     Unknown,
 )
+from eomgen.model.positions import DocumentPath
+from eomgen.model.sampled_laws import given_samples, left_tables
+from eomgen.model.trusses import in_parts
 from eomgen.model.units import UnitsOfNames
-from eomgen.model.unknowns import Unknowns
 from eomgen.model.values import Numbers
-from eomgen.symbolic.expression import Expression
+from eomgen.symbolic.expression import DeclaredSamples, Expression, Sampled
 
+REQUESTED = ("given", "outputs", "unknowns")
+"""Tables in which an unknown is no load: its declaration, requested results, the kinematics of an instant."""
+EFFORTS = ("torque", "force")
+"""Loads at a joint."""
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 """of the JSON Schema of a model file"""
 
@@ -50,7 +64,7 @@ Forces = Annotated[Table[Force], TableRule(SeamRule("force", forces.ALL), "force
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Model(Numbers, Connections, Unknowns, UnitsOfNames, Part):
+class Model(Numbers, Connections, UnitsOfNames, Part):
     """A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order.
 
     Args:
@@ -130,6 +144,99 @@ class Model(Numbers, Connections, Unknowns, UnitsOfNames, Part):
             "$defs": definitions,
         }
 
+    @property
+    def warnings(self) -> tuple[Diagnostic, ...]:
+        """Warnings: what a user should look at again."""
+        return warnings_of(self)
+
+    @property
+    def unbuilt(self) -> tuple[tuple[str, str], ...]:
+        """(where, kind) of every joint, constraint, force and table that waits for a later version, in order."""
+        return unbuilt(self)
+
+    @property
+    def unbuilt_constraints(self) -> tuple[tuple[str, str], ...]:
+        """(where, kind) of the constraints that wait for a later version: they cannot be counted."""
+        return unbuilt_constraints(self)
+
+    @property
+    def expressions(self) -> tuple[tuple[Leaf, Expression], ...]:
+        """Every expression of the model, with the value in which it stands."""
+        return Catalog(self, ()).expressions
+
+    @property
+    def dimensions(self) -> Inferred:
+        """The dimensions that follow from every expression of the model."""
+        return inferred(Catalog(self, ()))
+
+    @property
+    def inferred_units(self) -> dict[str, str]:
+        """{name: unit} of what has none in the file, where the expressions say what it must be."""
+        return inferred_units(self)
+
+    @property
+    def given_samples(self) -> Iterator[tuple[DocumentPath, Sampled, DeclaredSamples]]:
+        """(path, function of time, samples as declared) of all that the model gives through samples."""
+        return given_samples(self)
+
+    def left_tables(self, end: float) -> tuple[Problem, ...]:
+        """Warnings of samples that a run from 0 goes beyond."""
+        return left_tables(self, end)
+
+    @property
+    def begun_speeds(self) -> dict[str, frozenset[str]]:
+        """{speed: the rates that go with it} of those that have a `start`, or share rates with one that has."""
+        return begun_speeds(self.speeds)
+
+    @property
+    def trusses_in_parts(self) -> dict[str, Members]:
+        """The trusses of a model in parts, by name."""
+        return trusses_of(self.constraints)
+
+    @property
+    def in_parts(self) -> "Model":
+        """The model with its trusses replaced by bodies and constraints; itself where it has none."""
+        found: Model = in_parts(self)
+        return found
+
+    def _uses(self) -> Iterator[tuple[DocumentPath, str]]:
+        """(path, unknown) of every place in which an unknown stands, except in the tables REQUESTED."""
+        if not self.unknowns:
+            return
+        for leaf in self.leaves(()):
+            if leaf.path[0] not in REQUESTED and isinstance(leaf.value, Expression):
+                yield from ((leaf.path, name) for name in sorted(leaf.value.names & self.unknowns.keys()))
+
+    def unknowns_in_loads(self) -> tuple[str, ...]:
+        """The unknowns that stand in loads, in the model's order.
+
+        Raises:
+            DerivationError: one stands elsewhere, where no balance can be solved for it.
+        """
+        found = set()
+        for path, name in self._uses():
+            if not _is_load(path):
+                where = ".".join(map(str, path))
+                what = f"the unknown '{name}' stands where no balance gives it ({where})"
+                fix = "an unknown may stand in forces, couples and drives, and in [given]"
+                raise DerivationError(what, f"unknowns.{name}", fix)
+            found.add(name)
+        return tuple(name for name in self.unknowns if name in found)
+
+    def refuse_motion(self) -> None:
+        """Refuse equations of motion in which a force is unknown.
+
+        Raises:
+            DerivationError: it is named.
+        """
+        for path, name in self._uses():
+            where = ".".join(map(str, path))
+            raise DerivationError(
+                f"the unknown '{name}' stands in {where}: a motion does not follow from it",
+                where,
+                "make it a parameter or an input; at rest `eomgen solve` and `eomgen statics` find it",
+            )
+
     def __getstate__(self) -> dict[str, Any]:
         """The declared model; what was derived from it (`frozen.recalled`) is derived anew where it is needed."""
         return {name: value for name, value in self.__dict__.items() if name != RECALLED}
@@ -190,3 +297,7 @@ class Model(Numbers, Connections, Unknowns, UnitsOfNames, Part):
     def place(self, at: tuple[Expression, ...] | str) -> tuple[Expression, ...]:
         """Coordinates of a place on the ground that may be given by a point's name [m]."""
         return self.points[at] if isinstance(at, str) else at
+
+
+def _is_load(path: DocumentPath) -> bool:
+    return path[0] == "forces" or (path[0] == "bodies" and "joint" in path and path[-1] in EFFORTS)

@@ -12,7 +12,6 @@ from typing import Any
 from eomgen.errors import ModelError, Problem, UsageError
 from eomgen.files import read, read_stdin
 from eomgen.model.diagnostics import TABLES, Decimal, Diagnostic, shown
-from eomgen.model.likely_mistakes import warnings_of
 from eomgen.model.making import MOST_DIAGNOSTICS, diagnostics_of, draft_of, resolved
 from eomgen.model.model import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
@@ -113,7 +112,7 @@ def _named(what: str, index: Index) -> tuple[str, ...]:
 def warned(model: Model, data: bytes, name: str) -> tuple[Problem, ...]:
     """The warnings of a model, each at its place in the text that the model was read from."""
     index = index_of(_text(data, name))
-    return _problems(list(warnings_of(model)), index, name)
+    return _problems(list(model.warnings), index, name)
 
 
 def _loads(data: bytes, name: str, title: str) -> Model:

@@ -5,16 +5,17 @@ A node "T.n1" is a body of that name: a particle without mass, placed where the 
 the rows of one constraint T.
 """
 
+from typing import Any
+
 from eomgen.model.constraints.link import Members
 from eomgen.model.fields import Table
 from eomgen.model.joints.placed import Placed
-from eomgen.model.model import Model
 from eomgen.model.parts import Body, Truss
 from eomgen.model.shapes.lines import Particle
 from eomgen.symbolic.expression import Expression
 
 
-def in_parts(model: Model) -> Model:
+def in_parts(model: Any) -> Any:
     """The model with its trusses replaced by bodies and constraints; the model itself where it has none."""
     if not model.trusses:
         return model

@@ -19,7 +19,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerations, with_accelerations
 from eomgen.mechanics.free_bodies import Balance, Indeterminate, Reactions
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import BALANCE, FUNCTIONS
+from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.check import differing
 from eomgen.proof.in_numbers import pushes_of, with_inputs
 from eomgen.proof.printed import least_multipliers
@@ -87,7 +87,7 @@ class NumericState:
         quantities = Quantities(self.equations.system)
 
         def value(call: Call) -> Scalar:
-            found = self.reactions.get(str(call)) if FUNCTIONS[call.name].source == BALANCE else None
+            found = self.reactions.get(str(call)) if FUNCTIONS[call.name].source == OutputSource.BALANCE else None
             return quantities.value(call) if found is None else Fraction(found)
 
         try:
@@ -150,7 +150,7 @@ class NumericState:
 
     def rounding(self, formula: Expression) -> float:
         """Rounding error of reactions in doubles, by the size of the forces [N, N m]; 0 without reactions."""
-        if not any(FUNCTIONS[call.name].source == BALANCE for call in formula.calls):
+        if not any(FUNCTIONS[call.name].source == OutputSource.BALANCE for call in formula.calls):
             return 0.0
         forces = evaluate(tuple(self.equations.forcing), self.values, fifty_digits()) or self._applied
         return tolerances.ROUNDING * max((abs(float(x)) for x in forces), default=0.0)

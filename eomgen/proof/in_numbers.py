@@ -12,7 +12,7 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
-from eomgen.model import Couple, PointForce, given_samples
+from eomgen.model import Couple, PointForce
 from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
@@ -198,7 +198,7 @@ def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) 
 def _times_of_samples(system: System) -> set[tuple[Any, ...]]:
     """Times of the samples of each function that is given by samples."""
     if SAMPLES not in system.found:
-        system.found[SAMPLES] = {given.times for _, _, given in given_samples(system.scope.model)}
+        system.found[SAMPLES] = {given.times for _, _, given in system.scope.model.given_samples}
     found: set[tuple[Any, ...]] = system.found[SAMPLES]
     return found
 

@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, exact_accelerations
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import BALANCE, FUNCTIONS
+from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
@@ -154,7 +154,7 @@ class ReadBack:
             return known[of]
         if call.name in SPINS:
             return self._spin(of)[SPINS.index(call.name)]
-        if call.name in FUNCTIONS and FUNCTIONS[call.name].source == BALANCE:
+        if call.name in FUNCTIONS and FUNCTIONS[call.name].source == OutputSource.BALANCE:
             raise DerivationError(f"'{call}' is a reaction, and proven as such")
         return Quantities(self.equations.system).value(call)
 

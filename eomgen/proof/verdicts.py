@@ -25,7 +25,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, with_accelerations
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import Start
-from eomgen.model import BALANCE, FUNCTIONS
+from eomgen.model import FUNCTIONS, OutputSource
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
@@ -404,7 +404,7 @@ class Sides:
         if call.name not in FUNCTIONS:
             raise NoValue(f"'{call.name}' is no function of the outputs")
         function = FUNCTIONS[call.name]
-        if function.source == BALANCE:
+        if function.source == OutputSource.BALANCE:
             forces = [abs(x) for x in self.state.reactions.values()]
             value = self.state.reactions.get(str(call))
             if value is None:

@@ -20,11 +20,10 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
 from eomgen.model import (
     EVERY,
-    OF_A_RUN,
-    SMALL_MOTIONS,
     AtRest,
     Model,
     Output,
+    OutputSource,
     Table,
     Taken,
     WrittenEquation,
@@ -84,7 +83,7 @@ class WholeRun:
         try:
             if output.at is not None:
                 return self._at_events(output)
-            if requests_of(output.value, OF_A_RUN):
+            if requests_of(output.value, OutputSource.OF_A_RUN):
                 return self._of_whole(output.value)
             start = float(self.runs[0].here.t)
             return _valued(self._number(output.value, self.runs[0], start), (start,))
@@ -117,7 +116,7 @@ class WholeRun:
         Args:
             reported: the value in SI; None: no value is reported.
         """
-        if output.event == EVERY or output.from_ is not None or requests_of(output.value, SMALL_MOTIONS):
+        if output.event == EVERY or output.from_ is not None or requests_of(output.value, OutputSource.SMALL_MOTIONS):
             return ""
         if not isinstance(output.at, WrittenEquation):
             return self._by_samples(output, reported) if output.at is None else ""
@@ -138,7 +137,7 @@ class WholeRun:
 
     def _by_samples(self, output: Output, reported: float | None) -> str:
         """Difference from the samples, of each function of the run, or of a formula at the start; ""."""
-        if requests_of(output.value, OF_A_RUN):
+        if requests_of(output.value, OutputSource.OF_A_RUN):
             calls = [call for call in output.value.calls if call.name in _FUNCTIONS]
             wrong = (self._against_samples(call) for call in calls)
             return next(filter(None, wrong), "") or self._otherwise_reported(output, calls, reported)
@@ -272,11 +271,11 @@ class WholeRun:
 
     def _called(self, call: Call) -> tuple[float, tuple[float, ...]]:
         """Value of a function of the run, and the instant of this value."""
-        if not requests_of(Expression(str(call), (("call", call),), (0,)), OF_A_RUN):
+        if not requests_of(Expression(str(call), (("call", call),), (0,)), OutputSource.OF_A_RUN):
             what = f"'{call}' is a function of a state, next to functions of a whole run"
             raise DerivationError(what, fix=f"last({call})")
         formula = formula_at(call, 0)
-        if requests_of(formula, OF_A_RUN):
+        if requests_of(formula, OutputSource.OF_A_RUN):
             raise DerivationError(
                 f"'{call}': a function of a whole run has no value along it", fix="request one after the other"
             )
@@ -333,7 +332,7 @@ class WholeRun:
         """The value at the n-th event, or at every one."""
         if not isinstance(output.at, WrittenEquation) or output.from_ is not None:
             raise DerivationError("it is no value of a run from the start", fix="`eomgen solve` answers it")
-        if requests_of(output.value, OF_A_RUN) or requests_of(output.value, SMALL_MOTIONS):
+        if requests_of(output.value, OutputSource.OF_A_RUN) or requests_of(output.value, OutputSource.SMALL_MOTIONS):
             raise DerivationError(f"'{output.value.text}' belongs to no instant", fix="leave out `at`")
         events = self.events(output.at)
         if output.event == EVERY:
@@ -471,7 +470,7 @@ def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) ->
 
 def is_of_a_run(output: Output) -> bool:
     """True if an output is a function of a whole run: extremes, means, or values at the n-th event."""
-    return output.event is not None or requests_of(output.value, OF_A_RUN)
+    return output.event is not None or requests_of(output.value, OutputSource.OF_A_RUN)
 
 
 def _valued(value: float, t: tuple[float, ...]) -> RunValue:

@@ -40,11 +40,11 @@ from eomgen.mechanics.instant import InstantKinematics, requests_motion, request
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
     FUNCTIONS,
-    SMALL_MOTIONS,
     AtRest,
     Model,
     ModelOrPath,
     Output,
+    OutputSource,
     Unit,
     Values,
     model_at,
@@ -190,7 +190,7 @@ class _Solver:
     def _answer(self, output: Output) -> Answer:
         if is_of_a_run(output):
             raise DerivationError("it is a function of a whole run", fix="`eomgen simulate` gives it")
-        if requests_of(output.value, SMALL_MOTIONS):
+        if requests_of(output.value, OutputSource.SMALL_MOTIONS):
             return self._of_small_motions(output)
         if output.at is not None:
             return self._at(output)
@@ -240,7 +240,7 @@ class _Solver:
 
         def value(call: Call) -> Scalar:
             nonlocal exact
-            if FUNCTIONS[call.name].source != SMALL_MOTIONS:
+            if FUNCTIONS[call.name].source != OutputSource.SMALL_MOTIONS:
                 raise DerivationError(
                     f"'{call}' is a function of the state, next to functions of the linearized system",
                     fix="request it in an output of its own",
@@ -250,7 +250,7 @@ class _Solver:
             return transplanted((found,), scope.graph, dict(scope.symbols.parameters))[0]
 
         scalar = output.value.evaluate(scope.names, value)
-        found = self._started(self.phase.simple(scalar), SMALL_MOTIONS, output)
+        found = self._started(self.phase.simple(scalar), OutputSource.SMALL_MOTIONS, output)
         return found if exact else replace(found, exact=None)
 
     # -- functions of the state, and of the configuration ---------------------------------------

@@ -24,7 +24,7 @@ from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
 from eomgen.mechanics.linearization import MATRICES
 from eomgen.mechanics.start import Start
-from eomgen.model import FUNCTIONS, SMALL_MOTIONS, AtRest, Model, Output, WrittenEquation, names_of
+from eomgen.model import FUNCTIONS, AtRest, Model, Output, OutputSource, WrittenEquation, names_of
 from eomgen.proof import (
     Certificate,
     Check,
@@ -270,7 +270,11 @@ class _Proof:
     @cached_property
     def _apart(self) -> tuple[dict[str, Requested], dict[str, Requested]]:
         """Answers by matrices and frequencies of small motions; answers at one instant to which no motion leads."""
-        linear = {name: pair for name, pair in self.requested.items() if requests_of(pair[0].value, SMALL_MOTIONS)}
+        linear = {
+            name: pair
+            for name, pair in self.requested.items()
+            if requests_of(pair[0].value, OutputSource.SMALL_MOTIONS)
+        }
         left = {name: pair for name, pair in self.requested.items() if name not in linear and pair[0].at is None}
         return linear, {name: pair for name, pair in left.items() if self.solver.is_of_the_instant(pair[0])}
 

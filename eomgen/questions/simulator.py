@@ -20,9 +20,9 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, NotYet, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.model import (
-    BALANCE,
     FUNCTIONS,
     Model,
+    OutputSource,
     Parameter,
     Table,
     Typed,
@@ -265,7 +265,7 @@ def _is_reaction(text: str) -> bool:
         call = parse(text, references=True).call
     except ExpressionError:
         return False
-    return call is not None and call.name in FUNCTIONS and FUNCTIONS[call.name].source == BALANCE
+    return call is not None and call.name in FUNCTIONS and FUNCTIONS[call.name].source == OutputSource.BALANCE
 
 
 def _with_columns(found: Trajectory, requested: tuple[str, ...], formulas: Mapping[str, Expression]) -> Trajectory:

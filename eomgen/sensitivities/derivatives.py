@@ -25,12 +25,11 @@ from eomgen.mechanics.linearization import MATRICES, ParameterSlopes
 from eomgen.mechanics.start import Seeds, Start, start_seeds
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import (
-    OF_A_RUN,
-    SMALL_MOTIONS,
     AtRest,
     Model,
     ModelOrPath,
     Output,
+    OutputSource,
     Table,
     Typed,
     Unit,
@@ -378,7 +377,7 @@ class _Asking:
         Raises:
             DerivationError: it is of a whole run, or of an instant.
         """
-        if requests_of(output.value, OF_A_RUN) or output.from_ is not None or output.event is not None:
+        if requests_of(output.value, OutputSource.OF_A_RUN) or output.from_ is not None or output.event is not None:
             raise DerivationError(
                 "it is of a whole run, or of one instant of it: no derivative is sought of that",
                 fix="request last(...), or sweep over the parameter",
@@ -386,7 +385,7 @@ class _Asking:
         rest = isinstance(output.at, AtRest)
         if output.at is not None and not rest:
             raise DerivationError("it is requested at an instant", fix="give `time`: derivatives along the run")
-        if requests_of(output.value, SMALL_MOTIONS):
+        if requests_of(output.value, OutputSource.SMALL_MOTIONS):
             return self._of_small_motions(output.value, name)
         return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
 

@@ -20,7 +20,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
 from eomgen.mechanics.instant import Quantities, requests_of
-from eomgen.model import BALANCE, FUNCTIONS, OF_A_RUN, SMALL_MOTIONS, Model
+from eomgen.model import FUNCTIONS, Model, OutputSource
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
@@ -177,7 +177,7 @@ class _Columns:
         Raises:
             DerivationError: it has no meaning, or no single value at any state.
         """
-        if FUNCTIONS[call.name].source != BALANCE:
+        if FUNCTIONS[call.name].source != OutputSource.BALANCE:
             return self._quantities.value(call)
         components = self._balance.by_components[1]
         scalar = self._over_components.value(call)
@@ -232,5 +232,5 @@ class _Columns:
 def formulas_of(model: Model) -> dict[str, Expression]:
     """The outputs that are functions of the state: at no given instant, and of no linearized system."""
     requested = ((name, part) for name, part in model.outputs.items() if part.at is None and part.from_ is None)
-    others = (SMALL_MOTIONS, OF_A_RUN)
+    others = (OutputSource.SMALL_MOTIONS, OutputSource.OF_A_RUN)
     return {name: part.value for name, part in requested if not any(requests_of(part.value, other) for other in others)}

@@ -29,7 +29,7 @@ from typing import Any
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
-from eomgen.model import SMALL_MOTIONS, AtRest, Model, Output, Table, with_values
+from eomgen.model import AtRest, Model, Output, OutputSource, Table, with_values
 from eomgen.pipeline import simulator
 from eomgen.questions import Simulator, requested_of, solve
 from eomgen.sensitivities import slope_in_si
@@ -348,7 +348,11 @@ class SweepKernel:
 
 def is_without_motion(output: Output) -> bool:
     """True if `solve` answers it: at rest, from another start, of the linearized system."""
-    return isinstance(output.at, AtRest) or output.from_ is not None or requests_of(output.value, SMALL_MOTIONS)
+    return (
+        isinstance(output.at, AtRest)
+        or output.from_ is not None
+        or requests_of(output.value, OutputSource.SMALL_MOTIONS)
+    )
 
 
 def _sentence(error: Exception) -> str:

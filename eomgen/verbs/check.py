@@ -10,7 +10,7 @@ from eomgen.errors import Problem
 from eomgen.mechanics.constraints import Freedom
 from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.free_bodies import Structure
-from eomgen.model import Model, Truss, inferred_units, warnings_of
+from eomgen.model import Model, Truss
 from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
@@ -41,14 +41,14 @@ def _closed_otherwise(found: Checked) -> str:
 def _declared_lines(found: Checked) -> list[str]:
     model, missing = found.model, found.missing
     remark = dict.fromkeys(found.driven, " (driven)") | dict.fromkeys(found.dependent, " (dependent)")
-    count = len(warnings_of(model)) + len(found.cautions)
+    count = len(model.warnings) + len(found.cautions)
     reported = "no problems found" if not count else f"{count} warning{'s' if count > 1 else ''}"
     lines = [f"{model.name}: {reported}", f"space: {model.space}", f"bodies: {listed(model.bodies)}"]
     lines += [f"trusses: {listed(_truss(*each) for each in model.trusses.items())}"] if model.trusses else []
     lines.append(f"coordinates: {listed(q + remark.get(q, '') for q in model.coordinates)}")
     lines += [f"unknowns: {listed(model.unknowns)}"] if model.unknowns else []
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
-    units = inferred_units(model)
+    units = model.inferred_units
     lines += [f"node: {words}" for words in reported_of_nodes(model)]
     return [*lines, f"units inferred: {listed(f'{name} [{unit}]' for name, unit in units.items())}"] if units else lines
 
@@ -96,7 +96,7 @@ def _declared(found: Checked) -> dict[str, Any]:
         "driven": found.driven,
         "dependent": found.dependent,
         "missing_values": found.missing,
-        "inferred_units": inferred_units(model),
+        "inferred_units": model.inferred_units,
         "unknowns": list(model.unknowns),
         "mobility": found.mobility,
         "indeterminacy": None if structure is None else structure.indeterminacy,

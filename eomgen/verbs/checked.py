@@ -15,7 +15,7 @@ from eomgen.mechanics.instant import mobility_of
 from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
 from eomgen.mechanics.start import Branches, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import Catalog, Model, Table, unbuilt, value_of
+from eomgen.model import Model, Table, value_of
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class Checked:
     @cached_property
     def unbuilt(self) -> tuple[tuple[str, str], ...]:
         """(place of its declaration, kind) of each part that is not derived yet."""
-        return unbuilt(self.model)
+        return self.model.unbuilt
 
     @property
     def positions(self) -> int | None:
@@ -121,7 +121,7 @@ def _open(model: Model, start: LoopStart) -> tuple[Problem, ...]:
 def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
     """Coordinates that are to move, and constraints that let nothing move."""
     free = [name for name, q in model.coordinates.items() if not (q.driven or q.dependent)]
-    given = any(leaf.path[0] == "constraints" and "t" in x.names for leaf, x in Catalog(model, ()).expressions)
+    given = any(leaf.path[0] == "constraints" and "t" in x.names for leaf, x in model.expressions)
     if freedom.by_rank != 0 or not free or given:
         return ()
     what = f"nothing can move: the constraints leave '{free[0]}' no freedom"

@@ -18,7 +18,7 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
 from eomgen.mechanics.constraints import limits_passed
-from eomgen.model import Model, Unit, WrittenEquation, left_tables
+from eomgen.model import Model, Unit, WrittenEquation
 from eomgen.proof import ReportedRun, run_reported
 from eomgen.questions import run as simulated
 from eomgen.simulation import Accuracy, Stepping, Trajectory
@@ -74,7 +74,7 @@ def simulate_document(
         failed="" if run.ok else run.message,
         notes=notes,
     )
-    left = left_tables(model, float(run.t[-1]) if len(run.t) else 0.0)
+    left = model.left_tables(float(run.t[-1]) if len(run.t) else 0.0)
     passed = limits_passed(model, run.t, run.x[:, : len(run.coordinates)])
     document = replace(document, cautions=(*document.cautions, *left, *passed))
     if cut:

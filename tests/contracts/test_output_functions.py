@@ -21,7 +21,7 @@ from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.statics.contacts import ContactsAtStart
 from eomgen.model.outputs import ALL, FUNCTIONS
 from eomgen.model.outputs import points as velocity
-from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
+from eomgen.model.outputs.base import OutputSource
 from eomgen.model.quantities import Unit
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.instant import second_definition
@@ -300,7 +300,11 @@ def test_the_reference_has_its_row(function):
 @each("function", ALL)
 def test_what_has_no_second_definition_is_proven_otherwise(function):
     """By a check of the certificate; by the balance of the bodies, solved twice; by `linearize`; by a run's samples."""
-    otherwise = CERTIFIED.keys() >= {*function.names} or function.source in (BALANCE, SMALL_MOTIONS, OF_A_RUN)
+    otherwise = CERTIFIED.keys() >= {*function.names} or function.source in (
+        OutputSource.BALANCE,
+        OutputSource.SMALL_MOTIONS,
+        OutputSource.OF_A_RUN,
+    )
     assert otherwise or function.second is not None
 
 

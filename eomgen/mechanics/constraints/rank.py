@@ -23,7 +23,7 @@ from eomgen.mechanics.kinematics import (
     primitive,
 )
 from eomgen.mechanics.state import Numbers
-from eomgen.model import ModelOrPath, Values, model_at, unbuilt_constraints
+from eomgen.model import ModelOrPath, Values, model_at
 from eomgen.symbolic.exact import LinearSystem, Pivots, general_solution, simplest
 from eomgen.symbolic.expression import (
     Node,
@@ -132,7 +132,7 @@ def freedom_of(
         DerivationError: a constraint that cannot hold; a dependent coordinate that no constraint determines.
     """
     model = model_at(model, parameters, start)
-    waiting = dict.fromkeys(kind for _, kind in unbuilt_constraints(model))
+    waiting = dict.fromkeys(kind for _, kind in model.unbuilt_constraints)
     if waiting:
         return Freedom(not_counted=", ".join(waiting))
     try:

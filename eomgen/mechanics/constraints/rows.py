@@ -21,7 +21,7 @@ from eomgen.mechanics.kinematics import (
     Scope,
     SystemScene,
 )
-from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push, unbuilt_constraints
+from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
 from eomgen.symbolic.expression import (
     Fraction,
@@ -184,7 +184,7 @@ class Constraints:
         Raises:
             NotYet: a kind whose rows this version does not build.
         """
-        for where, what in unbuilt_constraints(motion.scope.model):
+        for where, what in motion.scope.model.unbuilt_constraints:
             raise NotYet(
                 f"the rows of '{what}' are not built yet",
                 where,

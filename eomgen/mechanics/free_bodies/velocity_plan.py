@@ -13,7 +13,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
 from eomgen.mechanics.kinematics import VelocityField
-from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node, trusses_of
+from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.symbolic.exact import Legibly, readable_all
 from eomgen.symbolic.expression import (
     ZERO,
@@ -323,7 +323,7 @@ def numeral(number: int) -> str:
 
 def members_of(system: System) -> list[Member]:
     """(truss, member, its two nodes) of every truss."""
-    trusses = trusses_of(system.scope.model.constraints)
+    trusses = system.scope.model.trusses_in_parts
     return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
 
 

@@ -18,9 +18,7 @@ from eomgen.model import (
     MassProperties,
     Model,
     PlacedPiece,
-    composite_of,
     in_order,
-    in_parts,
     no_orientation,
     spin_of_quaternion,
 )
@@ -357,7 +355,7 @@ class Scope:
         Raises:
             DerivationError: a given acceleration whose integral has no closed form.
         """
-        model = in_parts(model)
+        model = model.in_parts
         zero = parameters_of_zero(model)
         graph = Graph()
         t = graph.symbol("t")
@@ -565,7 +563,7 @@ def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) ->
 
 def _put_together(scope: Scope, body: str) -> Composite:
     part = scope.model.bodies[body]
-    composite = composite_of(part.parts or (), part.mass, scope.value)
+    composite = Composite.of(part.parts or (), part.mass, scope.value)
     everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
     flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, scope.positive)
     whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))

@@ -28,7 +28,6 @@ from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model import (
     Model,
     PointForce,
-    begun_speeds,
 )
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, minus, substituted, symbols_of
 from eomgen.symbolic.numeric import (
@@ -285,7 +284,7 @@ def start_speeds(system: System) -> dict[Node, Scalar]:
 
     Where no declared speed of the same rates has a start, they are what the start speeds of the coordinates make them.
     """
-    scope, begun = system.scope, begun_speeds(system.scope.model.speeds)
+    scope, begun = system.scope, system.scope.model.begun_speeds
     model = scope.model
     found: dict[Node, Scalar] = {}
     rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
@@ -341,7 +340,7 @@ def _by_coordinates(
 ) -> dict[str, float]:
     """The declared speeds by the start speeds of the coordinates, where none of the same rates has a start."""
     model, symbols = system.scope.model, system.symbols
-    begun = begun_speeds(model.speeds)
+    begun = model.begun_speeds
     silent = [u for u in symbols.u if u.name in model.speeds and u.name not in begun]
     formulas = start_speeds(system) if silent else {}
     requested = tuple(formulas[u] for u in silent)

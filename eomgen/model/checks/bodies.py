@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import Catalog
-from eomgen.model.composite import Composite, about, composite_of, sources
+from eomgen.model.composite import Composite, about, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.positions import DocumentPath
@@ -201,7 +201,7 @@ def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNum
         if cut and sum(measures) <= tolerances.SOLVED * max(map(abs, measures)):
             yield Diagnostic(path, f"the holes of body '{name}' are as large as its parts, or larger", key=True)
             return
-        composite = composite_of(body.parts, body.mass, value)
+        composite = Composite.of(body.parts, body.mass, value)
     except (ExpressionError, ZeroDivisionError):
         return
     yield from _masses(path, name, body, composite)

@@ -6,6 +6,7 @@ A function has names, arguments, a unit, its value, and a second way to it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from enum import StrEnum
 from typing import Any, Protocol
 
 from eomgen.errors import DerivationError
@@ -185,11 +186,16 @@ class Trial(Protocol):
 AXES = {"x": 0, "y": 1, "z": 2}
 SIDES = ("before", "after")
 
-STATE = ""
-BALANCE = "balance of the bodies"
-MASSES = "distribution of mass"
-SMALL_MOTIONS = "small motions"
-OF_A_RUN = "a run"
+
+class OutputSource(StrEnum):
+    """Source of an output function: what it needs beside the motion."""
+
+    STATE = ""
+    BALANCE = "balance of the bodies"
+    MASSES = "distribution of mass"
+    SMALL_MOTIONS = "small motions"
+    OF_A_RUN = "a run"
+
 
 ValueOf = Callable[[OutputContext, Call], AnyScalar]
 SecondOf = Callable[[Trial, Call], Any]
@@ -214,7 +220,7 @@ class OutputFunction:
         value: in q, u, a, lam, t and the parameters.
         second: its value in numbers, by a way that shares only poses and masses with `value`; None: there is none here,
             and `source` says what proves it.
-        source: the data that it is found from: STATE, BALANCE, MASSES, SMALL_MOTIONS or OF_A_RUN.
+        source: the data that it is found from.
         moves: True if velocities or accelerations stand in it.
         shown: its arguments as docs/reference/outputs.md writes them, where the kinds do not say it.
         diagnostics: what else is wrong with a call of it.
@@ -230,7 +236,7 @@ class OutputFunction:
     gives: str
     value: ValueOf
     second: SecondOf | None = None
-    source: str = STATE
+    source: OutputSource = OutputSource.STATE
     moves: bool = False
     shown: str = ""
     diagnostics: Callable[[Catalog, Leaf, Call], Iterator[Diagnostic]] = _none

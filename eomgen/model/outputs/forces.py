@@ -9,10 +9,10 @@ from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.fields import Leaf
 from eomgen.model.outputs.base import (
     AXES,
-    BALANCE,
     SIDES,
     OutputContext,
     OutputFunction,
+    OutputSource,
     ValueOf,
     along,
     component,
@@ -73,7 +73,7 @@ REACTION_FORCE = OutputFunction(
     unit="N",
     gives="[reaction](reactions.md) of a constraint, or of a joint, in ground axes or those of the second body",
     value=_force,
-    source=BALANCE,
+    source=OutputSource.BALANCE,
 )
 REACTION_COUPLE = OutputFunction(
     names=along("reaction_couple_*"),
@@ -83,7 +83,7 @@ REACTION_COUPLE = OutputFunction(
     unit="N*m",
     gives="its couple, about the point of the joint or constraint",
     value=_couple,
-    source=BALANCE,
+    source=OutputSource.BALANCE,
 )
 ONE_REACTION_COUPLE = OutputFunction(
     names=("reaction_couple",),
@@ -93,7 +93,7 @@ ONE_REACTION_COUPLE = OutputFunction(
     unit="N*m",
     gives="the same in the plane; in space of a gear, along the axle of its first body",
     value=_one_couple,
-    source=BALANCE,
+    source=OutputSource.BALANCE,
 )
 CONTACT_REACTION = OutputFunction(
     names=("reaction_n", "reaction_t", "reaction_s"),
@@ -103,7 +103,7 @@ CONTACT_REACTION = OutputFunction(
     unit="N",
     gives="normal force and friction of a contact, a guide, a path; `reaction_s` across `reaction_t` on a surface",
     value=_contact,
-    source=BALANCE,
+    source=OutputSource.BALANCE,
 )
 
 
@@ -120,7 +120,7 @@ MULTIPLIER = OutputFunction(
     gives="of a constraint of one row",
     value=lambda scene, call: scene.multiplier(name_at(call, 0)),
     second=lambda trial, call: trial.held(name_at(call, 0)),
-    source=BALANCE,
+    source=OutputSource.BALANCE,
 )
 DRIVE = OutputFunction(
     names=("drive",),
@@ -131,7 +131,7 @@ DRIVE = OutputFunction(
     gives="force or couple that moves a driven coordinate as given",
     value=lambda scene, call: scene.drive(name_at(call, 0)),
     second=lambda trial, call: trial.demanded(name_at(call, 0)),
-    source=BALANCE,
+    source=OutputSource.BALANCE,
 )
 PULL = OutputFunction(
     names=("pull",),
@@ -204,7 +204,7 @@ TENSION = OutputFunction(
     gives="of a link; of a strand of a string, from 1 (default); of a member of a [truss](statics.md#trusses), by "
     "its two nodes",
     value=_tension,
-    source=BALANCE,
+    source=OutputSource.BALANCE,
     diagnostics=_diagnostics,
 )
 
@@ -237,7 +237,7 @@ def _of(name: str, unit: str, gives: str, value: ValueOf) -> OutputFunction:
         unit=unit,
         gives=gives,
         value=value,
-        source=BALANCE,
+        source=OutputSource.BALANCE,
     )
 
 

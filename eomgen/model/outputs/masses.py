@@ -8,9 +8,9 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import (
     AXES,
-    MASSES,
     OutputContext,
     OutputFunction,
+    OutputSource,
     SecondOf,
     Trial,
     ValueOf,
@@ -94,7 +94,7 @@ MASS_OF = OutputFunction(
     unit="kg",
     gives="of a body, or of one of its parts (of a hole: what it takes away)",
     value=_mass,
-    source=MASSES,
+    source=OutputSource.MASSES,
 )
 
 
@@ -224,7 +224,7 @@ def _moment(name: str, kinds: tuple[str, ...], gives: str, value: ValueOf, secon
         gives=gives,
         value=value,
         second=second,
-        source=MASSES,
+        source=OutputSource.MASSES,
     )
 
 
@@ -292,6 +292,6 @@ ANGULAR_MOMENTUM = OutputFunction(
     gives="sum of r x m v and I w about the point, ground axes, of the velocities against the ground",
     value=_momentum,
     second=_sum,
-    source=MASSES,
+    source=OutputSource.MASSES,
     moves=True,
 )

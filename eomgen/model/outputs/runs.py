@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from eomgen.errors import DerivationError
-from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, OutputContext, OutputFunction
+from eomgen.model.outputs.base import OutputContext, OutputFunction, OutputSource
 from eomgen.symbolic.expression import AnyScalar, Call
 
 # -------- of a run --------------------------------------------------------------------------------------------
@@ -25,7 +25,7 @@ def _of(names: tuple[str, ...], gives: str, unit: str = "1", like: int | None = 
         like=like,
         gives=gives,
         value=_of_no_state,
-        source=OF_A_RUN,
+        source=OutputSource.OF_A_RUN,
     )
 
 
@@ -55,7 +55,7 @@ def _entry(name: str, unit: str, letter: str) -> OutputFunction:
         per=(0, 1),
         gives=f"entry of {letter} of the [small motions](small_motions.md)",
         value=_of_linearization,
-        source=SMALL_MOTIONS,
+        source=OutputSource.SMALL_MOTIONS,
     )
 
 
@@ -67,5 +67,5 @@ FREQUENCY = OutputFunction(
     unit="rad/s",
     gives="the k-th frequency Im λ of the [small motions](small_motions.md), ascending",
     value=_of_linearization,
-    source=SMALL_MOTIONS,
+    source=OutputSource.SMALL_MOTIONS,
 )
