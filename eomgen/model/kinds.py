@@ -28,7 +28,7 @@ from eomgen.model.fields import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import TimeLawRule
-from eomgen.symbolic.expression import SMOOTH, Expression
+from eomgen.symbolic.expression import Expression, Sampled
 from eomgen.symbolic.print import LONGEST, Symbol, parse_symbol
 
 ValueOf = Callable[[Expression], Any]
@@ -71,9 +71,9 @@ RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
 VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
 Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"), also_in="m")]
 TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]
-MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=SMOOTH)]
-MotionOfCoordinate = Annotated[Expression, TimeLawRule(None, "", TIME, same_as="coordinate", ways=SMOOTH)]
-RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=(*SMOOTH, "linear"))]
+MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=Sampled.SMOOTH)]
+MotionOfCoordinate = Annotated[Expression, TimeLawRule(None, "", TIME, same_as="coordinate", ways=Sampled.SMOOTH)]
+RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=(*Sampled.SMOOTH, "linear"))]
 
 Place = Annotated[VectorFormula, VectorRule(FormulaRule("m"))]
 MovingPlace = Annotated[VectorFormula, VectorRule(FormulaRule("m", "", CONFIGURATION))]

@@ -9,9 +9,6 @@ from eomgen.model.diagnostics import Diagnostic, shown, unknown_keys
 from eomgen.model.fields import FormulaRule, Leaf, TextRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression import (
-    ENDS,
-    SMOOTH,
-    WAYS,
     DeclaredSamples,
     Expression,
     Fraction,
@@ -34,7 +31,7 @@ class TimeLawRule(FormulaRule):
         ways: how the function may go between samples: what is differentiated twice must be smooth.
     """
 
-    ways: tuple[str, ...] = WAYS
+    ways: tuple[str, ...] = Sampled.WAYS
 
     def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> Any:
         if isinstance(raw, Mapping) and "samples" in raw:
@@ -44,7 +41,7 @@ class TimeLawRule(FormulaRule):
     def _sampled(self, raw: Mapping[str, Any], path: DocumentPath, found: list[Diagnostic]) -> Expression | None:
         unknown_keys(raw, KEYS, path, found, "samples")
         way = TextRule(self.ways).read(raw.get("between", "cubic"), (*path, "between"), found)
-        ends = TextRule(ENDS).read(raw.get("ends", ENDS[0]), (*path, "ends"), found)
+        ends = TextRule(Sampled.ENDS).read(raw.get("ends", Sampled.ENDS[0]), (*path, "ends"), found)
         if way in self.ways and way != "cubic" and "ends" in raw:
             found.append(Diagnostic((*path, "ends"), f"'ends' is for 'cubic', not for {way}", "leave it out"))
         pairs = _pairs(raw["samples"], (*path, "samples"), found)
@@ -65,13 +62,15 @@ class TimeLawRule(FormulaRule):
             "properties": {
                 "samples": {"type": "array", "items": pair, "minItems": 2, "maxItems": MOST},
                 "between": {"enum": list(self.ways)},
-                "ends": {"enum": list(ENDS)},
+                "ends": {"enum": list(Sampled.ENDS)},
             },
         }
         return {"anyOf": [FormulaRule.schema(self, definitions), samples]}
 
 
-def samples(times: Iterable[Any], values: Iterable[Any], between: str = "cubic", ends: str = ENDS[0]) -> Expression:
+def samples(
+    times: Iterable[Any], values: Iterable[Any], between: str = "cubic", ends: str = Sampled.ENDS[0]
+) -> Expression:
     """A function of time through samples, for `motion`, `rate`, `acceleration` or an input; arrays are welcome.
 
     Raises:
@@ -106,7 +105,7 @@ def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
     found = []
     for path, _, given in given_samples(model):
         first, last = float(given.times[0]), float(given.times[-1])
-        if given.way in SMOOTH and not given.ends_given and (first > 0 or last < end):
+        if given.way in Sampled.SMOOTH and not given.ends_given and (first > 0 or last < end):
             what = f"samples from {first:g} to {last:g} s in a run from 0 to {end:g} s: beyond them it goes on straight"
             found.append(Problem(".".join(map(str, path)), what, fix="give samples for all of it, or say its `ends`"))
     return tuple(found)
@@ -119,7 +118,7 @@ def leaves_of_table(model: Any, table: str) -> Iterator[Leaf]:
 
 
 def _given_ends(ends: str) -> dict[str, str]:
-    return {} if ends == ENDS[0] else {"ends": ends}
+    return {} if ends == Sampled.ENDS[0] else {"ends": ends}
 
 
 def _plain(value: Any) -> Any:

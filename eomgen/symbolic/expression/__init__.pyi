@@ -171,11 +171,6 @@ from eomgen.symbolic.expression.spatial import transposed as transposed
 
 # The vector with these three components
 from eomgen.symbolic.expression.spatial import vector_of as vector_of
-from eomgen.symbolic.expression.splines import ENDS as ENDS
-
-# f is differentiated twice; of pchip f'' jumps at samples
-from eomgen.symbolic.expression.splines import SMOOTH as SMOOTH
-from eomgen.symbolic.expression.splines import WAYS as WAYS
 
 # Samples as they were given, and the way between them: what proofs look at
 from eomgen.symbolic.expression.splines import DeclaredSamples as DeclaredSamples

@@ -23,9 +23,6 @@ from typing import Any
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 
-WAYS = ("cubic", "linear", "steps", "pchip")
-SMOOTH = ("cubic", "pchip")  # f is differentiated twice; of pchip f'' jumps at samples
-ENDS = ("not-a-knot", "natural", "rest")
 LONGEST = 1000  # bits of a denominator
 SplineRow = tuple[Fraction, ...]
 
@@ -143,6 +140,15 @@ class Sampled:
     pi_power: int = 0
     declared: DeclaredSamples | None = field(default=None, compare=False, repr=False)
 
+    WAYS = ("cubic", "linear", "steps", "pchip")
+    """between samples"""
+
+    SMOOTH = ("cubic", "pchip")
+    """of which f is differentiated twice; of pchip f'' jumps at samples"""
+
+    ENDS = ("not-a-knot", "natural", "rest")
+    """of a cubic, the usual one first"""
+
     def derivative(self) -> Sampled:
         return Sampled(f"{self.name}'", self.spline.derivative(), self.pi_power)
 
@@ -193,7 +199,9 @@ def sampled_of(number: Any) -> Sampled:
     return _BY_NUMBER[int(number)]
 
 
-def spline_of(times: Sequence[Fraction], values: Sequence[Fraction], way: str = "cubic", ends: str = ENDS[0]) -> Spline:
+def spline_of(
+    times: Sequence[Fraction], values: Sequence[Fraction], way: str = "cubic", ends: str = "not-a-knot"
+) -> Spline:
     """The function through samples: "cubic" (f'' continuous), "pchip" (cubics, monotone between samples), "linear", or
     "steps" (each value until the next).
 
