@@ -107,8 +107,8 @@ def test_a_table_that_was_changed_by_hand_is_found():
 def test_every_key_of_a_table_is_explained(cls):
     """By the docstring of the class that reads it, and by its rule."""
     known = reference.meanings(cls)
-    assert not [slot.key for slot in reference.slots_of(cls) if not known.get(slot.name)]
-    assert all(reference.value_of(slot.rule) for slot in reference.slots_of(cls))
+    assert not [slot.key for slot in cls.slots() if not known.get(slot.name)]
+    assert all(reference.value_of(slot.rule) for slot in cls.slots())
 
 
 def test_the_reference_lists_every_model_of_the_folder():

@@ -73,13 +73,13 @@ def test_a_wrong_shape_is_seen_by_every_verb(run: str, monkeypatch: pytest.Monke
 def test_parts_that_do_not_add_up_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """m r_C = sum m_k r_k, I = sum (I_k + m_k d_k^2)"""
     assert eomgen.inertia(eomgen.load(PLATE)).certify()
-    right = composition.composite_of
+    right = composition._put_together
 
     def planted(*given: Any) -> Any:
         made = right(*given)
         return replace(made, whole=replace(made.whole, com=(made.whole.com[0] * 2, *made.whole.com[1:])))
 
-    monkeypatch.setattr(composition, "composite_of", planted)
+    monkeypatch.setattr(composition, "_put_together", planted)
     assert "the parts of every body add up" in wrong_checks(PLATE)
 
 
