@@ -79,6 +79,7 @@ Placed = tuple[str | None, tuple[Scalar, ...], Numbers]
 """(body, a place of it as a function of the coordinates, the force there in ground axes)"""
 HALF = Fraction(1, 2)
 SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
+STRUNG = "strings and links touch their guides, keep their length and pull along it"
 
 
 def acting_otherwise(system: System, state: State) -> str:

@@ -77,8 +77,6 @@ def _unnamed(constraints: Constraints, found: Freedom) -> str:
 
     The count takes off every component that is held: what it lacks of the degrees of freedom by rank is held twice.
     Nothing is compared where a constraint acts on no body.
-
-    The count takes off every component that is held: what it lacks of the degrees of freedom by rank is held twice.
     """
     if found.by_rank is None or found.by_formula is None or not all(row.wrenches for row in constraints.rows):
         return ""

@@ -42,7 +42,7 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.declared_loads import acting_otherwise, strung_otherwise, threads_of
+from eomgen.proof.declared_loads import STRUNG, acting_otherwise, strung_otherwise, threads_of
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.posed_model import apart, meetings_of
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
@@ -78,8 +78,7 @@ def structure_checks(
         name = "contacts lie on both surfaces, and push by 1 N for each unit of their force"
         yield attempted(name, "50 digits", lambda: apart(system, proof.state))
     if threads_of(system):
-        name = "strings and links touch their guides, keep their length and pull along it"
-        yield attempted(name, "50 digits", lambda: strung_otherwise(system, proof.state))
+        yield attempted(STRUNG, "50 digits", lambda: strung_otherwise(system, proof.state))
     if found.sums and not found.structure.unknowns:
         name = "stated sums have one value, whatever the self-stress"
         yield checked(name, first_wrong(map(proof.wrong_sum, found.sums)), IN_NUMBERS)

@@ -20,6 +20,7 @@ from eomgen.mechanics.kinematics import ContactMode, spin_between
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.declared_loads import (
+    STRUNG,
     acting_otherwise,
     elements_of,
     strung_otherwise,
@@ -360,8 +361,7 @@ class Trials:
     def threads(self) -> Iterable[Check]:
         """Check that strings and links run and pull as they are declared; none without them."""
         if threads_of(self.equations.system):
-            name = "strings and links touch their guides, keep their length and pull along it"
-            yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
+            yield self._at_states(STRUNG, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
 
     def kept_constraints(self) -> Iterable[Check]:
         """Check that constraints which keep a start value are satisfied at the start; none without such constraints."""
