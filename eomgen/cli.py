@@ -20,17 +20,23 @@ from eomgen.cli_common import (
     write_result,
 )
 from eomgen.cli_options import (
+    AT,
     CERTIFY,
+    DURATION,
     FOLLOW,
     FORMAT,
+    FROM_REST,
     JSON,
     MODEL,
     OF_PLOT,
     OUTPUT,
+    OVER,
+    UNITS,
+    VIEW,
+    WRITTEN,
     form_requested,
     refuse_idle,
     refuse_other_endings,
-    time_typed,
     with_form,
     with_picture,
     with_values,
@@ -79,7 +85,7 @@ def examples_command(wants_json: bool, output: str | None) -> int:
 @main.command("import")
 @click.argument("file", type=click.Path(exists=True, dir_okay=False))
 @JSON
-@click.option("-o", "--output", type=click.Path(dir_okay=False), help="The model file, .toml.  [default: stdout]")
+@WRITTEN(help="The model file, .toml.  [default: stdout]")
 @click.option("--floating", is_flag=True, help="Of a URDF file: a free base.  [default: fixed to the ground]")
 @click.option(
     "--model", "model", metavar="NAME", help="The model of an SDF file with several.  [default: the first that moves]"
@@ -103,7 +109,7 @@ def import_command(file: str, wants_json: bool, output: str | None, floating: bo
 @main.command("export")
 @MODEL
 @JSON
-@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The robot's file, .urdf.")
+@WRITTEN(required=True, help="The robot's file, .urdf.")
 @with_values
 def export_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
     """Write a model as URDF, for what URDF can say.
@@ -155,7 +161,7 @@ def check_command(
     show_default=True,
     help="By energies, by projection, or body by body with every reaction.",
 )
-@click.option("--units", is_flag=True, help="The unit of every name, equation, reaction and output too.")
+@UNITS(help="The unit of every name, equation, reaction and output too.")
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @click.option("--diff", metavar="OTHER", type=click.Path(exists=True, dir_okay=False), help="What differs from OTHER.")
 @click.option(
@@ -221,20 +227,14 @@ def solve_command(**options: Any) -> int:
 
 @main.command("reactions")
 @with_picture
-@click.option(
-    "--at", metavar="EQUATION", help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".'
-)
-@click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
+@AT(help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".')
+@FROM_REST(metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
-@click.option(
-    "--view",
+@VIEW(
     type=click.Choice(["polar", "resultants"]),
     help="What --plot draws: the force of each hinge by size and direction, or sizes over time.  [default: what fits]",
 )
-@click.option(
-    "--time",
-    type=time_typed,
-    metavar="TIME",
+@DURATION(
     help="How much of the motion --plot draws.  [default: one turn of a drive]",
 )
 def reactions_command(**options: Any) -> int:
@@ -269,7 +269,7 @@ def statics_command(**options: Any) -> int:
 
 @main.command("kinematics")
 @with_picture
-@click.option("--at", metavar="EQUATION", help='The instant: the first after the start at which "theta=pi/2" holds.')
+@AT(help='The instant: the first after the start at which "theta=pi/2" holds.')
 @click.option("--given", multiple=True, metavar="EQUATION", help='A velocity that is known: "omega(crank) = 2".')
 @click.option(
     "--relative",
@@ -314,14 +314,13 @@ def inertia_command(**options: Any) -> int:
     "it.  [default: see [linearize]]",
 )
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
-@click.option(
-    "--view",
+@VIEW(
     type=click.Choice(["modes", "bode", "locus"]),
     default="modes",
     show_default=True,
     help="What --plot draws: the modes, Bode's diagrams, or the roots over a parameter.",
 )
-@click.option("--over", metavar="RANGE", help='Of --view locus: "k=100:1000:50", "log:k=1:100:50".')
+@OVER(help='Of --view locus: "k=100:1000:50", "log:k=1:100:50".')
 def linearize_command(view: str, over: str | None, **options: Any) -> int:
     """Give small motions about rest or a steady motion.
 
@@ -358,12 +357,10 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     type=click.Path(exists=True, allow_dash=True),
     help="Equations in a file, one a line; all files of a folder.",
 )
-@click.option("--at", metavar="EQUATION", help='The instant at which they hold: "theta=pi/2"; or "equilibrium".')
-@click.option(
-    "--from-rest",
+@AT(help='The instant at which they hold: "theta=pi/2"; or "equilibrium".')
+@FROM_REST(
     is_flag=False,
     flag_value=REST,
-    multiple=True,
     metavar="[NAME=VALUE]",
     help="The motion starts there, all speeds 0; without a value where the file says.",
 )

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import click
 from click.core import ParameterSource
+
+from eomgen.symbolic.numeric import tolerances
 
 OTHERS = (".html", ".htm", ".pdf", ".docx", ".doc", ".odt", ".png", ".svg", ".csv", ".npz", ".xlsx", ".ipynb", ".toml")
 """endings of files of other kinds: no text goes under their name, whatever --format says"""
@@ -106,7 +109,8 @@ def refuse_idle(**heeded: tuple[bool, str]) -> None:
 
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
-OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
+WRITTEN = partial(click.option, "-o", "--output", type=click.Path(dir_okay=False))  # its help says what is written
+OUTPUT = WRITTEN(help="Write the result into a file.")
 FORMAT = click.option(
     "--format",
     "format_",
@@ -115,15 +119,27 @@ FORMAT = click.option(
 )
 PLOT = click.option("--plot", type=click.Path(dir_okay=False), callback=picture, help="Draw it as .png, .svg or .pdf.")
 CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
-TIME = click.option(
-    "--time", type=time_typed, default=10.0, metavar="TIME", show_default=True, help='How long: 5 is in s, or "500 ms".'
+DURATION = partial(click.option, "--time", type=time_typed, metavar="TIME")
+TIME = DURATION(default=10.0, show_default=True, help='How long: 5 is in s, or "500 ms".')
+PAGE_TIME = DURATION(
+    help='How long: 5 is in s, or "500 ms".  [default: 10 s, less where it stops or takes too many steps]'
 )
-PAGE_TIME = click.option(
-    "--time",
-    type=time_typed,
-    metavar="TIME",
-    help='How long: 5 is in s, or "500 ms".  [default: 10 s, less where it stops or takes too many steps]',
+AT = partial(click.option, "--at", metavar="EQUATION")
+FROM_REST = partial(click.option, "--from-rest", multiple=True)
+VIEW = partial(click.option, "--view")
+UNITS = partial(click.option, "--units", is_flag=True)
+OVER = partial(click.option, "--over", metavar="RANGE")
+SAMPLES = partial(click.option, "--samples", type=click.IntRange(min=2))
+BAUMGARTE = partial(click.option, "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA")
+RTOL = click.option(
+    "--rtol", type=float, default=tolerances.RUN, show_default=True, help="Relative tolerance of a run."
 )
+ATOL = click.option(
+    "--atol", type=float, default=tolerances.RUN, show_default=True, help="Absolute tolerance of a run."
+)
+SPEED = click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
+TRAIL = partial(click.option, "--trail", metavar="POINT")
+FORCES = partial(click.option, "--forces", is_flag=True)
 FOLLOW = click.option(
     "--follow",
     multiple=True,

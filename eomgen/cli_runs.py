@@ -16,17 +16,28 @@ from eomgen.cli_common import (
     write_requested,
 )
 from eomgen.cli_options import (
+    ATOL,
+    BAUMGARTE,
     CERTIFY,
     FOLLOW,
+    FORCES,
     FORMAT,
     JSON,
     MODEL,
     OF_PLOT,
     OF_TABLE,
     OUTPUT,
+    OVER,
     PAGE_TIME,
     PLOT,
+    RTOL,
+    SAMPLES,
+    SPEED,
     TIME,
+    TRAIL,
+    UNITS,
+    VIEW,
+    WRITTEN,
     folder,
     form_requested,
     refuse_beside,
@@ -36,7 +47,6 @@ from eomgen.cli_options import (
     with_values,
     words,
 )
-from eomgen.symbolic.numeric import tolerances
 
 VERB = partial(click.command, cls=Verb)
 
@@ -45,12 +55,12 @@ VERB = partial(click.command, cls=Verb)
 @MODEL
 @JSON
 @FORMAT
-@click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the trajectory as .csv or .npz.")
+@WRITTEN(help="Write the trajectory as .csv or .npz.")
 @PLOT
 @TIME
 @with_values
-@click.option("--rtol", type=float, default=tolerances.RUN, show_default=True, help="Relative tolerance of the run.")
-@click.option("--atol", type=float, default=tolerances.RUN, show_default=True, help="Absolute tolerance of the run.")
+@RTOL
+@ATOL
 @click.option(
     "--method",
     default="auto",
@@ -73,23 +83,18 @@ VERB = partial(click.command, cls=Verb)
     metavar="STEPS",
     help="Project every so many steps.  [default: where a constraint error exceeds atol/10]",
 )
-@click.option(
-    "--baumgarte",
-    nargs=2,
-    type=float,
-    metavar="ALPHA BETA",
+@BAUMGARTE(
     help="Rates of Baumgarte's stabilization [1/s].  [default: 10 10]",
 )
 @FOLLOW
-@click.option(
-    "--view",
+@VIEW(
     type=click.Choice(["time", "outputs", "phase", "resultants", "polar"]),
     default="time",
     show_default=True,
     help="What --plot draws: all over time, outputs, rates over coordinates, sizes of forces, forces of hinges.",
 )
-@click.option("--units", is_flag=True, help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
-@click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
+@UNITS(help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
+@SAMPLES(help="How many instants are given.  [default: 1001]")
 @click.option(
     "--target", metavar="NAME", help="Language that evaluates the equations, of codegen --list.  [default: the fastest]"
 )
@@ -137,7 +142,7 @@ def simulate_command(
 @click.argument("where", metavar="MODEL", type=click.Path(exists=True, allow_dash=True))
 @JSON
 @click.option("-o", "--output", metavar="DIR", type=click.Path(), help="The folder of the sweep; of --replay a .csv.")
-@click.option("--over", multiple=True, metavar="RANGE", help='"k=100:1000:10" (both ends, how many), "log:k=1:9:5".')
+@OVER(multiple=True, help='"k=100:1000:10" (both ends, how many), "log:k=1:9:5".')
 @click.option("--random", multiple=True, metavar="LAW", help='"phi=normal(0, 0.1)", uniform, loguniform, lognormal.')
 @click.option("--runs", type=click.IntRange(min=1), metavar="N", help="How many are drawn.  [default: 1]")
 @click.option(
@@ -158,20 +163,18 @@ def simulate_command(
 )
 @click.option("--critical", default="", metavar="EXPR", help="Find where it changes sign along the first range.")
 @TIME
-@click.option("--rtol", type=float, default=tolerances.RUN, show_default=True, help="Relative tolerance of a run.")
-@click.option("--atol", type=float, default=tolerances.RUN, show_default=True, help="Absolute tolerance of a run.")
+@RTOL
+@ATOL
 @click.option(
     "--method", default="DOP853", show_default=True, metavar="NAME", help="Integration method, as of simulate."
 )
 @click.option("--workers", type=click.IntRange(min=1), default=1, show_default=True, help="Processes here.")
 @with_values
 @click.option("--replay", type=click.IntRange(min=0), metavar="RUN", help="Repeat this run of the sweep in DIR.")
-@click.option("--samples", type=click.IntRange(min=2), help="Number of instants of --replay.  [default: 1001]")
+@SAMPLES(help="Number of instants of --replay.  [default: 1001]")
 @PLOT
-@click.option(
-    "--view", type=click.Choice(["lines", "heat", "scatter"]), help="What --plot draws.  [default: what fits]"
-)
-@click.option("--units", is_flag=True, help='In table.csv "k [N/m]", as the file declares it, for names and SI.')
+@VIEW(type=click.Choice(["lines", "heat", "scatter"]), help="What --plot draws.  [default: what fits]")
+@UNITS(help='In table.csv "k [N/m]", as the file declares it, for names and SI.')
 @CERTIFY
 def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool, **options: Any) -> int:
     """Make many runs over parameters, resumably.
@@ -234,15 +237,13 @@ def identify_command(**options: Any) -> int:
 @MODEL
 @JSON
 @FORMAT
-@click.option(
-    "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, .html, or a strip .png."
-)
+@WRITTEN(required=True, help="Write .gif, .mp4, .html, or a strip .png.")
 @PAGE_TIME
 @with_values
 @click.option("--fps", type=float, default=25.0, show_default=True, help="Frames a second.")
-@click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
-@click.option("--trail", multiple=True, metavar="POINT", help="A point that leaves a trail: arm2.end.")
-@click.option("--forces", is_flag=True, help="Show forces and reactions as arrows.")
+@SPEED
+@TRAIL(multiple=True, help="A point that leaves a trail: arm2.end.")
+@FORCES(help="Show forces and reactions as arrows.")
 @click.option("--modes", type=click.IntRange(min=1), metavar="N", help="Show the N slowest small motions instead.")
 @click.option("--virtual", metavar="REACTION", help="Show the virtual displacement that gives it: reaction_y(A).")
 @click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Number of frames of a strip.")
@@ -289,11 +290,7 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
     help="Single precision; the tolerances of its tests are measured.",
 )
 @CERTIFY
-@click.option(
-    "--baumgarte",
-    nargs=2,
-    type=float,
-    metavar="ALPHA BETA",
+@BAUMGARTE(
     help="Baumgarte's stabilization of the constraints, with these rates [1/s].",
 )
 def codegen_command(
@@ -350,7 +347,7 @@ def codegen_command(
 @VERB("play")
 @MODEL
 @JSON
-@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The page: a file .html.")
+@WRITTEN(required=True, help="The page: a file .html.")
 @PAGE_TIME
 @with_values
 @click.option(
@@ -360,9 +357,9 @@ def codegen_command(
     metavar="NAME=FROM:TO",
     help='What gets a slider: "m=0.1:5", or a name alone.  [default: everything]',
 )
-@click.option("--trail", default="", metavar="POINT", help="A point that leaves a trail from the start.")
-@click.option("--forces", is_flag=True, help="Show arrows of forces from the start.")
-@click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
+@TRAIL(default="", help="A point that leaves a trail from the start.")
+@FORCES(help="Show arrows of forces from the start.")
+@SPEED
 @CERTIFY
 def play_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
     """Write an interactive page of a model.
@@ -381,11 +378,8 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
 @VERB("report")
 @MODEL
 @JSON
-@click.option(
-    "-o",
-    "--output",
+@WRITTEN(
     required=True,
-    type=click.Path(dir_okay=False),
     help="The file: .html, .pdf, .tex, .md or .ipynb.",
 )
 @PAGE_TIME

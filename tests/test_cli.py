@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tomllib
+from collections import Counter
 from importlib import metadata
 from pathlib import Path
 
@@ -107,6 +109,25 @@ def test_help_answers_at_once():
         assert result.returncode == 0
     assert min(spent) < 0.8
     assert [line.split()[0] for line in result.stdout.splitlines()[-len(VERBS) :]] == VERBS
+
+
+DECLARED_TWICE = {  # one word for two things, each of its verb
+    "--about": "a point of inertia; the place of small motions",
+    "--method": "of deriving, of integrating; of a sweep with another default",
+    "--target": "the language that runs; the languages that are written",
+    "--output": "a file; the folder of a sweep; the folder of code",
+    "--model": "of several in an SDF file",
+}
+
+
+def test_an_option_of_several_verbs_is_declared_once():
+    """Its spelling, type and unit stand in one declaration; what it means for a verb is said there."""
+    modules = sorted(Path(eomgen.__file__).parent.glob("cli*.py"))
+    texts = " ".join(path.read_text(encoding="utf-8") for path in modules)
+    declared = Counter(re.findall(r'click\.option,?\(?\s*(?:"-\w",\s*)?"(--[\w-]+)"', texts))
+    options = {max(each.opts, key=len) for verb in main.commands.values() for each in verb.params}
+    assert {name for name in options if name.startswith("--")} - {"--patience"} <= declared.keys()
+    assert {name for name, k in declared.items() if k > 1} <= DECLARED_TWICE.keys()
 
 
 def test_the_list_of_verbs_says_each_in_a_line_of_eighty_columns():
