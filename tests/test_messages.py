@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 from each import each
 from newcomer import CRANE
+from source_trees import modules_of, nodes_of
 
 import eomgen
 from eomgen.cli import main
@@ -160,10 +161,10 @@ INSIDE = ("symbolic", "proof", "judge")  # what is refused there comes out of so
 def test_every_refusal_that_is_written_says_what_to_do():
     """Third argument or `fix=`; an error made of problems carries theirs."""
     silent = []
-    for path in sorted(Path(eomgen.__file__).parent.rglob("*.py")):
+    for path in modules_of(Path(eomgen.__file__).parent):
         if path.relative_to(Path(eomgen.__file__).parent).parts[0] in INSIDE:
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes_of(path):
             if not (isinstance(node, ast.Raise) and isinstance(call := node.exc, ast.Call)):
                 continue
             if not (isinstance(call.func, ast.Name) and call.func.id in REFUSALS):

@@ -5,8 +5,9 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
-from functools import cache
 from pathlib import Path
+
+from source_trees import modules_of, nodes_of
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = ROOT / "eomgen"
@@ -41,14 +42,9 @@ SENTENCES = {  # in messages and on pages
 FROZEN = re.compile(r"lam\(tie, row\)|`[^`\n]*`")  # spellings that stay, and code
 
 
-@cache
-def trees() -> dict[Path, ast.Module]:
-    return {path: ast.parse(path.read_text("utf-8")) for path in sorted(PACKAGE.rglob("*.py"))}
-
-
-def named(tree: ast.Module) -> Iterator[tuple[int, str]]:
+def named(path: Path) -> Iterator[tuple[int, str]]:
     """Public names of a module: its classes, functions, methods, fields and arguments."""
-    for node in ast.walk(tree):
+    for node in nodes_of(path):
         if isinstance(node, (ast.FunctionDef, ast.ClassDef)) and not node.name.startswith("_"):
             yield node.lineno, node.name
             if isinstance(node, ast.FunctionDef):
@@ -65,8 +61,8 @@ def test_public_names_are_the_fields_words():
     """tie -> constraint, mend -> fix, told -> reported ...; the old piece stands in no public name."""
     assert not [
         f"{path.relative_to(ROOT)}:{line}: {name}: say {NAMES[piece]}"
-        for path, tree in trees().items()
-        for line, name in named(tree)
+        for path in modules_of(PACKAGE)
+        for line, name in named(path)
         for piece in pieces(name)
         if piece in NAMES
     ]
@@ -75,8 +71,8 @@ def test_public_names_are_the_fields_words():
 def test_messages_and_docstrings_are_in_the_fields_words():
     """Every text of the package that is a sentence."""
     found = []
-    for path, tree in trees().items():
-        for node in ast.walk(tree):
+    for path in modules_of(PACKAGE):
+        for node in nodes_of(path):
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value.strip():
                 text = FROZEN.sub("", node.value)
                 found += [
@@ -109,8 +105,8 @@ def test_a_docstring_begins_with_a_noun_or_a_verb():
     kinds = (ast.FunctionDef, ast.ClassDef, ast.Module)
     found = [
         f"{path.relative_to(ROOT)}:{getattr(node, 'lineno', 1)}: {said.splitlines()[0]}"
-        for path, tree in trees().items()
-        for node in ast.walk(tree)
+        for path in modules_of(PACKAGE)
+        for node in nodes_of(path)
         if isinstance(node, kinds) and (said := ast.get_docstring(node)) and said.split()[0].strip("`(),.:;") in OPENERS
     ]
     assert not found
