@@ -9,13 +9,11 @@ import pytest
 import eomgen
 from eomgen import documents
 from eomgen.documents import rendering
+from eomgen.documents.at_instant.plots import centrode_panel
+from eomgen.documents.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.documents.document import Document
-from eomgen.documents.kinematics.plots import centrode_panel
-from eomgen.documents.kinematics.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
-from eomgen.questions.at_instant import parameters_of
-from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.study import Study
+from eomgen.study import MotionFromStart, Study
 from eomgen.symbolic.exact.normal_forms import equal
 from eomgen.symbolic.expression.text import parse
 
@@ -148,7 +146,7 @@ def test_a_centrode_is_drawn_where_the_centre_runs():
     system = motion.phase.system
     (found,) = all_centrodes(Kinds(system, motion.start))
     panel = Figure().subplots()
-    centrode_panel(panel, system, found, {**parameters_of(motion.phase), **motion.numbers})
+    centrode_panel(panel, system, found, {**motion.phase.numeric_parameters, **motion.numbers})
     fixed, moving, now = (line.get_xydata() for line in panel.get_lines())
     assert abs((fixed**2).sum(axis=1) ** 0.5 - 2).max() < 1e-9
     assert abs(((moving - now / 2) ** 2).sum(axis=1) ** 0.5 - 1).max() < 1e-9

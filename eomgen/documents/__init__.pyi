@@ -1,6 +1,11 @@
 """Door of the room: what other rooms may import from `eomgen.documents`."""
 
 # The parameters without a value
+# Velocities, accelerations and centres of rotation at one instant
+from eomgen.documents.at_instant.result import Kinematics as Kinematics
+
+# Velocities, accelerations, centres of rotation and kinds of motion at one instant
+from eomgen.documents.at_instant.result import kinematics as kinematics
 from eomgen.documents.at_rest.pictures import missing_values as missing_values
 
 # A structure at rest: every reaction by virtual work and by equilibrium
@@ -77,9 +82,6 @@ from eomgen.documents.json_form import equations_payload as equations_payload
 
 # Texts of the equations of motion in the payload, the reactions left out
 from eomgen.documents.json_form import payload_texts as payload_texts
-
-# Velocities, accelerations and centres of rotation at one instant
-from eomgen.documents.kinematics.result import Kinematics as Kinematics
 from eomgen.documents.latex import PREAMBLE as PREAMBLE
 from eomgen.documents.latex import Group as Group
 

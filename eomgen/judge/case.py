@@ -21,9 +21,9 @@ from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import AtRest, Model, Output, Table, WrittenEquation
-from eomgen.questions import Answer, MotionFromStart, solve
+from eomgen.questions import Answer, solve
 from eomgen.simulation import has_phases
-from eomgen.study import Study, study_of
+from eomgen.study import MotionFromStart, Study, study_of
 from eomgen.symbolic.expression import (
     SLOPE,
     Call,

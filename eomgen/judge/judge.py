@@ -63,7 +63,7 @@ from eomgen.judge.verdict import (
     kind_of_equation,
 )
 from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import AtRest, ModelOrPath, equation_typed, model_at
+from eomgen.model import AtRest, ModelOrPath, equation_in, model_at
 from eomgen.proof import JudgedEquation
 from eomgen.simulation import paths_of
 from eomgen.symbolic.expression import (
@@ -454,7 +454,7 @@ def _instant(case: Case, at: Any) -> Instant:
     if str(at).strip() == AtRest.text:
         return AtRest()
     try:
-        return equation_typed(case.model, str(at))[0]
+        return equation_in(case.model, str(at))
     except ExpressionError as error:
         raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
 

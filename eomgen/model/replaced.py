@@ -183,6 +183,15 @@ def equation_typed(model: Model, text: str, *, declared: bool = False) -> tuple[
     return equation, tuple(taken_of(model, each) for each in settled)
 
 
+def equation_in(model: Model, text: WrittenEquation | str) -> WrittenEquation:
+    """The equation of a text that a person typed, in SI; one that is written already stays as it is.
+
+    Raises:
+        ExpressionError: it is none, or a unit does not fit.
+    """
+    return text if isinstance(text, WrittenEquation) else equation_typed(model, text)[0]
+
+
 def _refuse_given(model: Model, name: str, option: str) -> None:
     """Refuses a start of what is none, or of what the model drives.
 

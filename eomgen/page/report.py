@@ -20,6 +20,7 @@ from eomgen.documents import (
     document_of,
     drawing_at_rest,
     inertia,
+    kinematics,
     linearize,
     nearest_name,
     plain_document,
@@ -48,7 +49,7 @@ from eomgen.page.player import (
 )
 from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
-from eomgen.questions import PAGE_TIME, kinematics, run_of_a_page, solve
+from eomgen.questions import PAGE_TIME, run_of_a_page, solve
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.numeric import doing

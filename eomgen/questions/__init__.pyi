@@ -3,9 +3,6 @@
 # The runs, each as `simulator(time, parameters, start)` gives it
 from eomgen.questions.batch_of_runs import many_runs as many_runs
 
-# The motion of a model from its start
-from eomgen.questions.motion_from_start import MotionFromStart as MotionFromStart
-
 # Output requested by a text
 from eomgen.questions.of_a_run import requested_of as requested_of
 
@@ -58,6 +55,3 @@ from eomgen.questions.single_run import run as run
 
 # Motion that a page shows, and why it is shorter than PAGE_TIME
 from eomgen.questions.single_run import run_of_a_page as run_of_a_page
-
-# Velocities, accelerations, centres of rotation and kinds of motion at one instant
-from eomgen.questions.velocities import kinematics as kinematics

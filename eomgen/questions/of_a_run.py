@@ -27,6 +27,7 @@ from eomgen.model import (
     Table,
     Taken,
     WrittenEquation,
+    equation_in,
     equation_typed,
     formula_at,
     parse_typed_equation,
@@ -527,7 +528,7 @@ def requested_of(model: Model, text: str) -> Output:
     try:
         output = Output(value=parse(_in_full(model, formula.strip()), references=True))
         if at:
-            when: Any = AtRest() if condition.strip() == AtRest.text else equation_typed(model, condition.strip())[0]
+            when: Any = AtRest() if condition.strip() == AtRest.text else equation_in(model, condition.strip())
             output = replace(output, at=when)
         if comma:
             output = replace(output, event=EVERY if event.strip() == EVERY else int(event))

@@ -50,11 +50,9 @@ from eomgen.model import (
     model_at,
 )
 from eomgen.proof import Certificate
-from eomgen.questions.at_instant import StateAtInstant, resting
-from eomgen.questions.motion_from_start import MotionFromStart, leaves_at
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
-from eomgen.study import Study, exact_numbers, study_at_rest
+from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Call, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import (
@@ -354,7 +352,7 @@ class _Solver:
                 f"{what}, and without values of all parameters it is not known whether the motion stays there",
                 fix="give the parameters values",
             )
-        left = leaves_at(motion, held)
+        left = motion.leaves_at(held)
         if left is not None:
             raise DerivationError(
                 f"{what}, and the motion leaves that at t = {left:.4g} s", fix="request it at an instant: `at`"
@@ -459,7 +457,7 @@ class _Solver:
     @cached_property
     def at_rest(self) -> StateAtInstant:
         """Equilibrium, or the start held by the unknowns of the loads."""
-        return resting(study_at_rest(self.model))
+        return StateAtInstant.resting(study_at_rest(self.model))
 
     def _number_at(self, moment: StateAtInstant, output: Output) -> float:
         """The value in floating point.

@@ -43,11 +43,9 @@ from eomgen.proof import (
     small_motion_checks,
     values_of,
 )
-from eomgen.questions.at_instant import StateAtInstant
-from eomgen.questions.motion_from_start import MotionFromStart, parameters_in_numbers, run_from_start, wrong_way
-from eomgen.questions.velocities import state_of
-from eomgen.simulation import Trajectory
-from eomgen.study import Study
+from eomgen.questions.single_run import RunProof
+from eomgen.simulation import PhaseRun, Trajectory, joined
+from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state
 from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
 from eomgen.symbolic.numeric import PIECEWISE, NoValue, evaluate, fifty_digits, number_of, numbers_of, tolerances
 
@@ -321,7 +319,7 @@ class _Proof:
             return ""
         if wrong := _by_coincidence(moment, output.at):
             return wrong
-        run = run_from_start(motion, t)
+        run = motion.run(t)
         symbols = motion.phase.system.symbols
         there = np.array([moment.numbers[node] for node in (*symbols.q, *symbols.u)])
         apart = np.abs(run.x[-1] - there) / (1 + np.max(np.abs(run.x), axis=0, initial=0.0))
@@ -335,11 +333,10 @@ class _Proof:
         """Message if the difference of the sides of the condition changes its sign before the instant; ""."""
         phase, condition = motion.phase, output.at
         assert condition is not None and not isinstance(condition, AtRest)
-        left, right = phase.of_state(condition.left), phase.of_state(condition.right)
-        system = phase.system
-        function = compiled(program_of((left - right,), system.symbols, inputs=system.inputs), "numpy")
+        difference, system = phase.difference(condition), phase.system
+        function = compiled(program_of((difference,), system.symbols, inputs=system.inputs), "numpy")
         with np.errstate(all="ignore"):
-            values = function.many(run.t, run.x, parameters_in_numbers(motion))[:, 0]
+            values = function.many(run.t, run.x, motion.p)[:, 0]
         size = float(np.max(np.abs(values), initial=0.0))
         before = [float(v) for v, when in zip(values, run.t, strict=True) if when < t * (1 - tolerances.SAME_PLACE)]
         signs = {v > 0 for v in before if abs(v) > tolerances.CARRIED * size}
@@ -370,8 +367,8 @@ class _Proof:
         """Run of the motion, longer where its equations consist of several pieces."""
         with suppress(RunFailed):
             if any(holds_op(x, *PIECEWISE) for x in (*motion.phase.equations.forcing, motion.phase.equations.V)):
-                return run_from_start(motion, LONG_WAY)  # at its own steps: a stiff floor is touched for milliseconds
-        return run_from_start(motion, WAY, ROWS)
+                return motion.run(LONG_WAY)  # at its own steps: a stiff floor is touched for milliseconds
+        return motion.run(WAY, ROWS)
 
     def _along(self, output: Output, found: Quantity) -> str:
         motion = self.solver.motions[output.from_ == "rest"]
@@ -455,6 +452,68 @@ def _before_a_turn(run: Trajectory, coordinates: int) -> int:
     return int(np.argmax(turned)) + 1 if turned.any() else len(run.t)
 
 
+# -------- proof of phases -------------------------------------------------------------------------------------
+# An instant after several phases -> what contradicts it: the proof of the run that was followed up to it.
+#
+# In each phase steps are taken again by another method, energy, constraints and contacts must be those of the phase,
+# and between phases only impulses that push change the momentum. The state must be that at the end, and the condition
+# must not hold before.
+
+
+def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -> str:
+    """Contradiction to an instant of a motion with phases, in words; "" without one.
+
+    Raises:
+        DerivationError: nothing of the motion can be checked.
+    """
+    assert output.at is not None and not isinstance(output.at, AtRest) and motion.models is not None
+    t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
+    if t == 0:
+        return ""
+    runs = motion.runs_to(output.at)
+    found = RunProof(None, motion.models.p, motion.stepping, motion.models)(joined(motion.models, runs))
+    if found.ok is None:
+        raise DerivationError(
+            "the motion has phases of which nothing could be checked",
+            fix="give every parameter a value in [parameters]",
+        )
+    failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]
+    return next(iter(failing), "") or _elsewhere(runs, output, moment) or _met_before(runs, output)
+
+
+def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant) -> str:
+    """Message if the state is not that at the end of the runs, or, with side "after", that after its event; ""."""
+    last = runs[-1]
+    end = last.after.values if output.side == "after" and last.after is not None else last.end
+    symbols, numbers = moment.phase.system.symbols, moment.numbers
+    wrong = [node for node in (*symbols.q, *symbols.u) if _apart(numbers[node], end.get(node.name, 0.0))]
+    wrong += [symbols.t] if _apart(numbers[symbols.t], last.run.end) else []
+    return "".join(f"{node.name} is {numbers[node]:.10g} there" for node in wrong[:1])
+
+
+def _apart(x: float, y: float) -> bool:
+    return not abs(x - y) <= tolerances.RUNS_AGREE * (1 + abs(y))
+
+
+def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
+    """Message if left - right changes its sign within a phase, at the integrator's steps; ""."""
+    condition = output.at
+    assert condition is not None and not isinstance(condition, AtRest)
+    for run in runs:
+        phase = run.phase
+        scalar = Study(phase.system).difference(condition)
+        if type(scalar) is not Node:
+            continue
+        track = run.run.tracks[0] if run.run.tracks else None
+        t, x = (run.run.t, run.run.x) if track is None else track.all
+        with np.errstate(all="ignore"):
+            values = phase.functions.function((scalar,)).many(t, phase.functions.inner(x), phase.p)[:, 0]
+        sure = values[np.abs(values) > tolerances.CARRIED * np.max(np.abs(values), initial=0.0)]
+        if np.any(sure > 0) and np.any(sure < 0):
+            return f"'{condition.text}' holds before t = {run.run.end:.10g} s"
+    return ""
+
+
 # -------- proof apart -----------------------------------------------------------------------------------------
 # Answers that belong to no state of a motion -> checks: of small motions, and of one instant to which no motion leads.
 #
@@ -519,7 +578,7 @@ def _rates(found: Linearization) -> list[float]:
 
 def of_one_instant(model: Model, requested: Mapping[str, Requested]) -> Iterator[Check]:
     """Checks of the state, as `kinematics` proves it, and of the answers at it: numbers, and texts read back."""
-    state = state_of(model)
+    state = kinematic_state(model)
     yield from instant_checks(state)
     tally = Tally("answers of the instant are those of its proven state", "50 digits")
     for name, (output, answer) in requested.items():

@@ -21,7 +21,7 @@ from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageErr
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import Quantities
-from eomgen.model import Model, Output, Table, WrittenEquation, equation_typed
+from eomgen.model import Model, Output, Table, WrittenEquation, equation_in
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.contacts import EventFunction, changed
 from eomgen.simulation.integration import drift_of
@@ -46,7 +46,7 @@ def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
     """
     text = until.text if isinstance(until, WrittenEquation) else until
     try:
-        equation = until if isinstance(until, WrittenEquation) else equation_typed(model, until)[0]
+        equation = equation_in(model, until)
         dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
     except ExpressionError as error:
         raise UsageError(f"until '{text}': {error.what}", fix=error.fix or 'write "theta = pi/2"') from error

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.documents import Kinematics, nearest_name
+from eomgen.documents import Kinematics, kinematics, nearest_name
 from eomgen.errors import ModelError, UsageError
 from eomgen.model import Model, WrittenEquation
-from eomgen.questions import kinematics as found_in
 
 
 def kinematics_requested(
@@ -28,7 +27,7 @@ def kinematics_requested(
     """
     pairs = tuple(_pair(model, text) for text in relative)
     try:
-        return found_in(model, at, given=given, relative=pairs)
+        return kinematics(model, at, given=given, relative=pairs)
     except ModelError as error:
         if not given:
             raise

@@ -47,7 +47,7 @@ from eomgen.model import (
     Table,
     Values,
     WrittenEquation,
-    equation_typed,
+    equation_in,
     model_at,
     with_values,
 )
@@ -292,7 +292,7 @@ def _instant(model: Model, at: WrittenEquation | AtRest | str) -> WrittenEquatio
     if at.strip() == AtRest.text:
         return AtRest()
     try:
-        return equation_typed(model, at)[0]
+        return equation_in(model, at)
     except ExpressionError as error:
         raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
 

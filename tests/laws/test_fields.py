@@ -23,8 +23,7 @@ from eomgen.mechanics.kinematics.motion import (
 )
 from eomgen.model.outputs.points import curvature_radius
 from eomgen.questions import outputs_answered as answers
-from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.study import Study, study_of
+from eomgen.study import MotionFromStart, Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus

@@ -20,10 +20,10 @@ from eomgen.mechanics.integrals.laws import position_equations
 from eomgen.mechanics.kinematics.places import Located
 from eomgen.mechanics.start.exact import declared_start
 from eomgen.mechanics.start.state import Start
-from eomgen.questions.at_instant import StateAtInstant, reached
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
-from eomgen.study import Study, study_of
+from eomgen.study import StateAtInstant, Study, study_of
+from eomgen.study.instants import reached
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.text import parse

@@ -18,7 +18,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import Mechanism
-from eomgen.questions.velocities import state_of
+from eomgen.study import kinematic_state
 
 pytestmark = pytest.mark.slow
 
@@ -41,7 +41,7 @@ def message(text: str, name: str = "w") -> str:
 
 
 def mechanism_in(text: str) -> tuple[KinematicState, Mechanism]:
-    state = state_of(eomgen.loads(text))
+    state = kinematic_state(eomgen.loads(text))
     assert state.mechanism is not None and state.mechanism.moved
     return state, state.mechanism
 

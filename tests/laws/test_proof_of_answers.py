@@ -15,8 +15,8 @@ import eomgen
 from eomgen.cli import main
 from eomgen.model.forces import weights as distributed
 from eomgen.questions import outputs_answered as answers
-from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.proof_of_answers import _by_coincidence
+from eomgen.study import StateAtInstant
 
 pytestmark = pytest.mark.slow
 
@@ -122,14 +122,14 @@ def test_an_instant_that_is_not_the_first_is_seen(monkeypatch):
 
 def test_a_place_that_is_no_rest_is_seen(monkeypatch):
     """phi = 0.01 in place of 0."""
-    resting = answers.resting
+    resting = StateAtInstant.resting
 
     def aside(study):
         found = resting(study)
         (phi,) = found.phase.system.symbols.q
         return StateAtInstant(found.phase, found.exact, {**found.numbers, phi: 0.01}, found.method)
 
-    monkeypatch.setattr(answers, "resting", aside)
+    monkeypatch.setattr(StateAtInstant, "resting", aside)
     assert REST in failing(solved(PENDULUM))
 
 

@@ -14,7 +14,7 @@ from eomgen.documents.proven_documents import shown
 from eomgen.mechanics.instant import kinematic_state as relative_motion
 from eomgen.mechanics.instant import mechanism
 from eomgen.mechanics.kinematics.motion import Motion, VelocityField
-from eomgen.questions import velocities
+from eomgen.study import kinematics as velocities
 from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_requested as verb
 

@@ -1,4 +1,4 @@
-"""Model -> Kinematics: places, velocities and accelerations at one instant, however the model gives them.
+"""Model -> KinematicState: places, velocities and accelerations at one instant, however the model gives them.
 
 A model with [given], or of bodies and constraints alone, has one configuration; its velocities follow from constraints
 and given equations. A model with coordinates is taken at its start, or where a condition is first met.
@@ -6,44 +6,39 @@ and given equations. A model with coordinates is taken at its start, or where a 
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 
-from eomgen.documents import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints import Rank, refuse_undetermined
-from eomgen.mechanics.instant import InstantKinematics, Kinds, KinematicState
+from eomgen.mechanics.instant import InstantKinematics, KinematicState
 from eomgen.mechanics.start import refuse_lost
-from eomgen.model import (
-    Given,
-    Model,
-    ModelOrPath,
-    Values,
-    WrittenEquation,
-    equation_typed,
-    model_at,
-)
-from eomgen.questions.at_instant import StateAtInstant, parameters_of
-from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.study import Study, exact_numbers
+from eomgen.model import Given, Model, WrittenEquation, equation_in
+from eomgen.study.motion import MotionFromStart
+from eomgen.study.study import Study, exact_numbers
 from eomgen.symbolic.expression import Expression, Fraction, Node, State, depends_on, is_zero, substituted
-from eomgen.symbolic.numeric import doing
 from eomgen.symbolic.print import text_size
 
 LONG = 600  # characters of a state, and of accelerations, from which numbers stand in their place
 
 
-def state_of(model: Model, at: WrittenEquation | None = None) -> KinematicState:
+def kinematic_state(
+    model: Model, at: WrittenEquation | str | None = None, given: Sequence[WrittenEquation | str] = ()
+) -> KinematicState:
     """The motion of a model at an instant.
 
     Args:
         at: the condition that is first met then; None: the start.
+        given: velocities in addition to those of the model: "omega(crank) = 2".
     Raises:
+        ExpressionError: a text is no equation.
+        ModelError: an equation contains unknown names.
         UsageError: an instant of a model that has no motion in time.
         DerivationError: nothing can move; more than one rate is missing; given velocities contradict one another.
     """
+    model = _with_given(model, tuple(equation_in(model, text) for text in given))
+    at = None if at is None else equation_in(model, at)
     if model.given is None and (model.coordinates or at is not None):
         return _on_the_way(model, at)
     if at is not None:
@@ -52,6 +47,14 @@ def state_of(model: Model, at: WrittenEquation | None = None) -> KinematicState:
             fix="leave --at out, or move the model by coordinates",
         )
     return _of_instant_kinematics(model)
+
+
+def _with_given(model: Model, equations: tuple[WrittenEquation, ...]) -> Model:
+    """Model with these given velocities added, checked as a whole."""
+    if not equations:
+        return model
+    own = model.given or Given.of_values({})
+    return replace(model, given=own.altered(velocity=(*(own.velocity or ()), *equations)))
 
 
 # -- one configuration, given velocities -------------------------------------------------------------
@@ -115,7 +118,8 @@ def _rests(state: KinematicState) -> bool:
 
 
 def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
-    moment = _moment(MotionFromStart(model, at_rest=False), at)
+    motion = MotionFromStart(model, at_rest=False)
+    moment = motion.at_start if at is None else motion.until(at)
     when = "at the start" if at is None else f"when {at.text}"
     phase, exact, numbers = moment.phase, moment.exact, moment.numbers
     symbols = phase.system.symbols
@@ -151,13 +155,6 @@ def _sees_time(phase: Study) -> bool:
     return any(depends_on(x, (t,)) for link in links for x in (*link.pose.p, *link.twist.w, *link.twist.v, *link.s))
 
 
-def _moment(motion: MotionFromStart, at: WrittenEquation | None) -> StateAtInstant:
-    """The start, or where the condition is met."""
-    if at is not None:
-        return motion.until(at)
-    return StateAtInstant(motion.phase, motion.start, motion.numbers, "at the start")
-
-
 def _with_accelerations(phase: Study, moving: State, numbers: Mapping[Node, float]) -> tuple[State, bool]:
     """State with the accelerations of the equations of motion, {} without them; True if they are numbers.
 
@@ -171,7 +168,7 @@ def _with_accelerations(phase: Study, moving: State, numbers: Mapping[Node, floa
         if not numbers or sum(map(text_size, raw)) <= LONG:
             state = phase.complete(moving)
             return (state if all(a in state for a in symbols.a) else {}), False
-        values = {**parameters_of(phase), **numbers}
+        values = {**phase.numeric_parameters, **numbers}
         found = phase.numbers([Expression(a.name, (("name", a.name),), (-1,)) for a in symbols.a], values)
     except (ModelError, DerivationError):  # no motion goes on from there, or no numbers are known
         return {}, False
@@ -179,48 +176,3 @@ def _with_accelerations(phase: Study, moving: State, numbers: Mapping[Node, floa
         return {}, False
     inputs = phase.complete(moving, Expression.number(0))
     return {**inputs, **dict(zip(symbols.a, map(Fraction, found), strict=True))}, True
-
-
-# -- as a user requests it ------------------------------------------------------------------------------
-
-
-@doing("the velocities")
-def kinematics(
-    model: ModelOrPath,
-    at: WrittenEquation | str | None = None,
-    *,
-    given: Sequence[WrittenEquation | str] = (),
-    relative: Sequence[tuple[str, str]] = (),
-    parameters: Values | None = None,
-    start: Values | None = None,
-) -> Kinematics:
-    """Velocities, accelerations, centres of rotation and kinds of motion at one instant.
-
-    Args:
-        at: the instant: an equation that is first met then; None: the start, or the one configuration.
-        given: velocities in addition to those of the model: "omega(crank) = 2".
-        relative: (point, body) pairs: the motion of the point relative to the body.
-        parameters, start: values that replace the model's, each as `model_at` takes it.
-    Raises:
-        ExpressionError: a text is no equation.
-        ModelError: an equation contains unknown names.
-        DerivationError: nothing can move; too few or too many velocities are given.
-    """
-    model = model_at(model, parameters, start)
-    equations = tuple(_equation(model, text) for text in given)
-    state = state_of(_with_given(model, equations), None if at is None else _equation(model, at))
-    moves = model.given is None and not equations and bool(model.coordinates)
-    kinds = Kinds(state.system, {} if state.symbol is not None else state.moving) if moves else None
-    return Kinematics(state, kinds, tuple(relative))
-
-
-def _equation(model: Model, text: WrittenEquation | str) -> WrittenEquation:
-    return text if isinstance(text, WrittenEquation) else equation_typed(model, text)[0]
-
-
-def _with_given(model: Model, equations: Sequence[WrittenEquation]) -> Model:
-    """Model with these given velocities added, checked as a whole."""
-    if not equations:
-        return model
-    own = model.given or Given.of_values({})
-    return dataclasses.replace(model, given=own.altered(velocity=(*(own.velocity or ()), *equations)))

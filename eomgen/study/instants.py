@@ -12,7 +12,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.integrals import ClosedInstant
 from eomgen.mechanics.kinematics import Located
 from eomgen.simulation import FirstTime
-from eomgen.study import Study
+from eomgen.study.study import Study
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on, substituted
 from eomgen.symbolic.numeric import FLOAT, evaluate, transplanted
 
@@ -32,6 +32,29 @@ class StateAtInstant:
     exact: Mapping[Node, Scalar]
     numbers: Mapping[Node, float]
     method: str
+
+    @classmethod
+    def resting(cls, study: Study) -> StateAtInstant:
+        """Equilibrium that is nearest to the start; with unknowns in the loads, the start itself.
+
+        Args:
+            study: of the contacts as they are at rest.
+        Raises:
+            DerivationError: there is no equilibrium, or a contact would have to pull there.
+        """
+        from eomgen.mechanics.equilibrium import standing_system
+
+        if study.statics.loaded:
+            return _held(study.system)
+        place = study.equilibria.nearest()
+        system = standing_system(place.statics.system)
+        place.refuse_contradicted()
+        held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
+        exact = {**place.exact, **_still(system)}
+        numbers = (
+            {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}
+        )
+        return StateAtInstant(Study(system), exact, numbers, f"balance of all forces at rest{held}")
 
 
 def carried(moment: StateAtInstant, phase: Study) -> dict[Node, Scalar]:
@@ -70,30 +93,9 @@ def placed(phase: Study, known: Mapping[Node, Scalar], numbers: Mapping[Node, fl
     gaps = [row.gap for row in system.constraints.rows if row.gap is not None and not row.identical]
     if not unknown or not gaps or not numbers or len(gaps) < len(unknown) == len(system.symbols.q):
         return dict(known)  # nothing to begin with
-    located = Located({**parameters_of(phase), **numbers}, phase.system.scope.positive)
+    located = Located({**phase.numeric_parameters, **numbers}, phase.system.scope.positive)
     equations = [x for x in substituted(tuple(gaps), known) if depends_on(x, unknown)]
     return {**known, **located.places(equations, unknown)}
-
-
-def resting(study: Study) -> StateAtInstant:
-    """Equilibrium that is nearest to the start; with unknowns in the loads, the start itself.
-
-    Args:
-        study: of the contacts as they are at rest.
-    Raises:
-        DerivationError: there is no equilibrium, or a contact would have to pull there.
-    """
-    from eomgen.mechanics.equilibrium import standing_system
-
-    if study.statics.loaded:
-        return _held(study.system)
-    place = study.equilibria.nearest()
-    system = standing_system(place.statics.system)
-    place.refuse_contradicted()
-    held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
-    exact = {**place.exact, **_still(system)}
-    numbers = {**place.numbers, **dict.fromkeys((system.symbols.t, *system.symbols.u), 0.0)} if place.numbers else {}
-    return StateAtInstant(Study(system), exact, numbers, f"balance of all forces at rest{held}")
 
 
 def _held(system: System) -> StateAtInstant:
@@ -107,12 +109,6 @@ def _held(system: System) -> StateAtInstant:
 
 def _still(system: System) -> dict[Node, Scalar]:
     return {system.symbols.t: 0, **dict.fromkeys(system.symbols.u, 0)}
-
-
-def parameters_of(phase: Study) -> dict[Node, float]:
-    """The values of the parameters."""
-    values = phase.model.numeric_parameters()
-    return {phase.system.symbols.parameters[name]: float(x) for name, x in values.items()}
 
 
 # -------- first instant ---------------------------------------------------------------------------------------

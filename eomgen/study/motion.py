@@ -21,20 +21,18 @@ from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import Extent, system_of
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import AtRest, Model, Output, WrittenEquation
-from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
-from eomgen.questions.single_run import RunProof
+from eomgen.model import Model, WrittenEquation
 from eomgen.simulation import (
     AUTO,
     PhaseRun,
     Trajectory,
     has_phases,
     integrate,
-    joined,
     nearness_of,
     projection_of,
 )
-from eomgen.study import Study, study_at_rest, study_of
+from eomgen.study.instants import StateAtInstant, carried, closed_form, placed, reached
+from eomgen.study.study import Study, study_at_rest, study_of
 from eomgen.symbolic.expression import Node, Scalar, depends_on, substituted
 from eomgen.symbolic.numeric import FLOAT, evaluate, number_of, tolerances
 
@@ -44,6 +42,10 @@ if TYPE_CHECKING:
 
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
 MOST_STEPS = 4000
+STEPS = 2000  # of a run in time that one instant is compared with
+WATCHED, INSTANTS = 100.0, 8001  # s of a motion, and instants of it, at which it is checked that it stays in its piece
+WATCHED_BRIEFLY = 10.0  # s, where 100 s take too many steps
+WATCHED_STEPS = 20_000
 
 
 @dataclass(frozen=True)
@@ -118,6 +120,11 @@ class MotionFromStart:
         """t, q and u at the start as scalars of the parameters; {} where one has no closed form there."""
         return dict(self.begun.exact) if self.begun.is_exact else {}
 
+    @property
+    def at_start(self) -> StateAtInstant:
+        """The start as an instant."""
+        return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
+
     # -- on the way ------------------------------------------------------------------------------
 
     def until(self, condition: WrittenEquation, side: str | None = None) -> StateAtInstant:
@@ -146,10 +153,17 @@ class MotionFromStart:
 
     def _until(self, condition: WrittenEquation, side: str | None) -> StateAtInstant:
         if self._is_start(condition):
-            return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
+            return self.at_start
         if not self.goes_through_phases:
             return self._within(self.phase, condition, self.start, self.numbers)
         return self._through(self.runs_to(condition), condition, side)
+
+    @property
+    def stepping(self) -> Stepping:
+        """Fine tolerances: instants of the motion are then sought in closed form."""
+        from eomgen.simulation import Stepping
+
+        return Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, MOST_STEPS)
 
     @cached_property
     def goes_through_phases(self) -> bool:
@@ -163,7 +177,7 @@ class MotionFromStart:
             RunFailed: the condition contains nothing that moves.
         """
         symbols = self.phase.system.symbols
-        scalar = difference_of(self.phase, condition)
+        scalar = self.phase.difference(condition)
         if depends_on(scalar, (*symbols.q, *symbols.u)):
             return False
         if not depends_on(scalar, (symbols.t, *symbols.inputs.values())):
@@ -181,9 +195,7 @@ class MotionFromStart:
         numbers: Mapping[Node, float],
     ) -> StateAtInstant:
         """State at the first time in one phase at which the condition holds."""
-        from eomgen.questions.at_instant import reached
-
-        moment = reached(phase, difference_of(phase, condition), start, numbers)
+        moment = reached(phase, phase.difference(condition), start, numbers)
         moment = replace(moment, exact=placed(phase, moment.exact, moment.numbers))
         if self.models is not None:
             self._refuse_ended(moment)
@@ -211,7 +223,7 @@ class MotionFromStart:
         Raises:
             RunFailed: a contact has ended; the error names it.
         """
-        values = {**parameters_of(moment.phase), **moment.numbers}
+        values = {**moment.phase.numeric_parameters, **moment.numbers}
         for bound in self._numeric_first.bounds:
             if bound.value is None or bound.kind not in ("ends", "turns", "closes"):
                 continue
@@ -246,10 +258,10 @@ class MotionFromStart:
         assert self.models is not None
 
         def until(phase: PhaseModel) -> Scalar:
-            return difference_of(Study(phase.system), condition)
+            return Study(phase.system).difference(condition)
 
         for horizon in HORIZONS:
-            runs = list(Plan(horizon, fine_stepping(), None, until).through(self.models, self._first))
+            runs = list(Plan(horizon, self.stepping, None, until).through(self.models, self._first))
             if runs[-1].is_met:
                 return runs
             if runs[-1].run.status != "finished":
@@ -267,7 +279,7 @@ class MotionFromStart:
         for k, run in enumerate(runs):
             phase = Study(run.phase.system)
             exact = {} if k and _jumps(runs[k - 1].end, run.here.values) else carried(moment, phase)
-            ended_by = difference_of(phase, condition) if run.bound is None else run.bound.value
+            ended_by = phase.difference(condition) if run.bound is None else run.bound.value
             moment = _end_of(phase, run, ended_by, exact)
         after = runs[-1].after
         if side != "after" or after is None:
@@ -277,12 +289,64 @@ class MotionFromStart:
         exact = {} if _jumps(runs[-1].end, after.values) else carried(moment, phase)
         return StateAtInstant(phase, exact, _numbers(phase, after.t, after.values), moment.method)
 
+    # -- in one phase ----------------------------------------------------------------------------
 
-def fine_stepping() -> Stepping:
-    """Fine tolerances for a motion whose instants are then sought in closed form."""
-    from eomgen.simulation import Stepping
+    def run(self, time: float, samples: int | None = None, steps: int = STEPS) -> Trajectory:
+        """The motion from the start, in one phase, by emitted code.
 
-    return Stepping(AUTO, tolerances.FINE_RUN, tolerances.FINE_RUN, MOST_STEPS)
+        Raises:
+            RunFailed: the run ends before that time.
+        """
+        phase, p = self.phase, self.p
+        system, symbols = phase.system, phase.system.symbols
+        x0 = np.array([self.numbers[node] for node in (*symbols.q, *symbols.u)])
+        run = integrate(
+            compiled(right_hand_side(phase.explicit_while_sliding), "numpy"),
+            time=time,
+            x0=x0,
+            p=p,
+            method=AUTO,
+            rtol=tolerances.FINE_RUN,
+            atol=tolerances.FINE_RUN,
+            samples=samples,
+            projection=projection_of(system, p, "numpy"),
+            nearness=nearness_of(phase.equations, p, system),
+            most_steps=steps,
+        )
+        if not run.ok:
+            raise RunFailed(f"the run does not get there: {run.message}", fix="choose an earlier instant")
+        return run
+
+    @property
+    def p(self) -> np.ndarray:
+        """Parameters of the phase; nan for those without a value."""
+        known = self.phase.parameters
+        symbols = self.phase.system.symbols
+        return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
+
+    def leaves_at(self, held: Extent) -> float | None:
+        """Time at which the motion first leaves the pieces of an extent [s]; None: not within the time followed.
+
+        Raises:
+            RunFailed: the motion cannot be followed.
+        """
+        try:
+            run = self.run(WATCHED, INSTANTS, WATCHED_STEPS)
+        except RunFailed:
+            run = self.run(WATCHED_BRIEFLY, INSTANTS, WATCHED_STEPS)
+        system = self.phase.system
+        function = compiled(program_of(held.limits, system.symbols, inputs=system.inputs), "numpy")
+        with np.errstate(all="ignore"):
+            over = function.many(run.t, run.x, self.p)
+        worst = np.max(over, axis=1)
+        out = worst > tolerances.COMPUTED * (1 + np.max(np.abs(over), initial=0.0))
+        if not out.any():
+            return None
+        k = max(int(np.argmax(out)), 1)
+        share = (
+            -worst[k - 1] / (worst[k] - worst[k - 1]) if worst[k - 1] < 0 else 0.0
+        )  # of the way between two instants
+        return float(run.t[k - 1] + share * (run.t[k] - run.t[k - 1]))
 
 
 def _end_of(phase: Study, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]) -> StateAtInstant:
@@ -295,13 +359,11 @@ def _end_of(phase: Study, run: PhaseRun, ended_by: Scalar | None, start: Mapping
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
     if not start or ended_by is None:
         return by_time
-    from eomgen.questions.at_instant import closed_form
-
     try:
         exact, way = closed_form(phase, phase.eliminated(ended_by), start, numbers)
     except (RunFailed, DerivationError):
         return by_time
-    located = Located({**parameters_of(phase), **numbers}, phase.system.scope.positive)
+    located = Located({**phase.numeric_parameters, **numbers}, phase.system.scope.positive)
     exact = {node: x for node, x in exact.items() if located.agrees(x, node)}
     return replace(by_time, exact=placed(phase, exact, numbers), method=way or by_time.method)
 
@@ -324,137 +386,3 @@ def _is_moved_by_time(first: PhaseModel, phase: Study) -> bool:
     moving = (symbols.t, *symbols.inputs.values(), *(q for q in symbols.q if coordinates[q.name].driven))
     bounds = (phase.eliminated(bound.value) for bound in first.bounds if bound.value is not None)
     return any(depends_on(scalar, moving) for scalar in (*phase.accelerations, *bounds))
-
-
-def difference_of(phase: Study, condition: WrittenEquation) -> Scalar:
-    """Left side minus right side as a function of q, u and t."""
-    return phase.of_state(condition.left) - phase.of_state(condition.right)
-
-
-# -------- one phase run ---------------------------------------------------------------------------------------
-# Motion from the start -> a run of it in one phase; when it leaves the pieces in which its integrals hold.
-
-
-STEPS = 2000  # of a run in time that one instant is compared with
-WATCHED, INSTANTS = 100.0, 8001  # s of a motion, and instants of it, at which it is checked that it stays in its piece
-WATCHED_BRIEFLY = 10.0  # s, where 100 s take too many steps
-WATCHED_STEPS = 20_000
-
-
-def run_from_start(motion: MotionFromStart, time: float, samples: int | None = None, steps: int = STEPS) -> Trajectory:
-    """The motion from the start, in one phase, by emitted code.
-
-    Raises:
-        RunFailed: the run ends before that time.
-    """
-    phase, p = motion.phase, parameters_in_numbers(motion)
-    system, symbols = phase.system, phase.system.symbols
-    x0 = np.array([motion.numbers[node] for node in (*symbols.q, *symbols.u)])
-    run = integrate(
-        compiled(right_hand_side(phase.explicit_while_sliding), "numpy"),
-        time=time,
-        x0=x0,
-        p=p,
-        method=AUTO,
-        rtol=tolerances.FINE_RUN,
-        atol=tolerances.FINE_RUN,
-        samples=samples,
-        projection=projection_of(system, p, "numpy"),
-        nearness=nearness_of(phase.equations, p, system),
-        most_steps=steps,
-    )
-    if not run.ok:
-        raise RunFailed(f"the run does not get there: {run.message}", fix="choose an earlier instant")
-    return run
-
-
-def parameters_in_numbers(motion: MotionFromStart) -> np.ndarray:
-    """Parameters of the phase; nan for those without a value."""
-    known = motion.phase.parameters
-    symbols = motion.phase.system.symbols
-    return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
-
-
-def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
-    """Time at which the motion first leaves the pieces of an extent [s]; None: not within the time followed.
-
-    Raises:
-        RunFailed: the motion cannot be followed.
-    """
-    try:
-        run = run_from_start(motion, WATCHED, INSTANTS, WATCHED_STEPS)
-    except RunFailed:
-        run = run_from_start(motion, WATCHED_BRIEFLY, INSTANTS, WATCHED_STEPS)
-    system = motion.phase.system
-    function = compiled(program_of(held.limits, system.symbols, inputs=system.inputs), "numpy")
-    with np.errstate(all="ignore"):
-        over = function.many(run.t, run.x, parameters_in_numbers(motion))
-    worst = np.max(over, axis=1)
-    out = worst > tolerances.COMPUTED * (1 + np.max(np.abs(over), initial=0.0))
-    if not out.any():
-        return None
-    k = max(int(np.argmax(out)), 1)
-    share = -worst[k - 1] / (worst[k] - worst[k - 1]) if worst[k - 1] < 0 else 0.0  # of the way between two instants
-    return float(run.t[k - 1] + share * (run.t[k] - run.t[k - 1]))
-
-
-# -------- proof of phases -------------------------------------------------------------------------------------
-# An instant after several phases -> what contradicts it: the proof of the run that was followed up to it.
-#
-# In each phase steps are taken again by another method, energy, constraints and contacts must be those of the phase,
-# and between phases only impulses that push change the momentum. The state must be that at the end, and the condition
-# must not hold before.
-
-
-def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -> str:
-    """Contradiction to an instant of a motion with phases, in words; "" without one.
-
-    Raises:
-        DerivationError: nothing of the motion can be checked.
-    """
-    assert output.at is not None and not isinstance(output.at, AtRest) and motion.models is not None
-    t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
-    if t == 0:
-        return ""
-    runs = motion.runs_to(output.at)
-    found = RunProof(None, motion.models.p, fine_stepping(), motion.models)(joined(motion.models, runs))
-    if found.ok is None:
-        raise DerivationError(
-            "the motion has phases of which nothing could be checked",
-            fix="give every parameter a value in [parameters]",
-        )
-    failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]
-    return next(iter(failing), "") or _elsewhere(runs, output, moment) or _met_before(runs, output)
-
-
-def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant) -> str:
-    """Message if the state is not that at the end of the runs, or, with side "after", that after its event; ""."""
-    last = runs[-1]
-    end = last.after.values if output.side == "after" and last.after is not None else last.end
-    symbols, numbers = moment.phase.system.symbols, moment.numbers
-    wrong = [node for node in (*symbols.q, *symbols.u) if _apart(numbers[node], end.get(node.name, 0.0))]
-    wrong += [symbols.t] if _apart(numbers[symbols.t], last.run.end) else []
-    return "".join(f"{node.name} is {numbers[node]:.10g} there" for node in wrong[:1])
-
-
-def _apart(x: float, y: float) -> bool:
-    return not abs(x - y) <= tolerances.RUNS_AGREE * (1 + abs(y))
-
-
-def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
-    """Message if left - right changes its sign within a phase, at the integrator's steps; ""."""
-    condition = output.at
-    assert condition is not None and not isinstance(condition, AtRest)
-    for run in runs:
-        phase = run.phase
-        scalar = difference_of(Study(phase.system), condition)
-        if type(scalar) is not Node:
-            continue
-        track = run.run.tracks[0] if run.run.tracks else None
-        t, x = (run.run.t, run.run.x) if track is None else track.all
-        with np.errstate(all="ignore"):
-            values = phase.functions.function((scalar,)).many(t, phase.functions.inner(x), phase.p)[:, 0]
-        sure = values[np.abs(values) > tolerances.CARRIED * np.max(np.abs(values), initial=0.0)]
-        if np.any(sure > 0) and np.any(sure < 0):
-            return f"'{condition.text}' holds before t = {run.run.end:.10g} s"
-    return ""

@@ -1,16 +1,14 @@
-"""KinematicState -> Kinematics: the motion at one instant: step by step, as JSON entries, drawn."""
+"""Model -> Kinematics: the motion at one instant: step by step, as JSON entries, drawn."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 from eomgen.certificate import certify
-from eomgen.documents.document import Document, document_of
-from eomgen.documents.figures import Picture
-from eomgen.documents.kinematics.steps import (
+from eomgen.documents.at_instant.steps import (
     cell,
     field_payload,
     field_steps,
@@ -22,13 +20,18 @@ from eomgen.documents.kinematics.steps import (
     relative_payload,
     relative_steps,
 )
+from eomgen.documents.document import Document, document_of
+from eomgen.documents.figures import Picture
 from eomgen.documents.motion_steps import data_step
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, all_centrodes, body_motions
+from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, instant_checks
+from eomgen.study import kinematic_state
 from eomgen.symbolic.expression import Node, Scalar, Vector
+from eomgen.symbolic.numeric import doing
 from eomgen.symbolic.print import readable_text, text_size
 
 LINE = 80  # characters of a formula among the fields
@@ -118,7 +121,7 @@ class Kinematics(Result):
             RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
-        from eomgen.documents.kinematics.plots import mechanism_picture
+        from eomgen.documents.at_instant.plots import mechanism_picture
 
         return mechanism_picture(self.state, () if self.kinds is None else all_centrodes(self.kinds))
 
@@ -185,3 +188,32 @@ class Kinematics(Result):
         shown = self.state.put((x, 0, 0))[0]
         written = readable_text(shown) if exact and self.state.exact else None
         return Quantity(written, self.state.number(shown), unit=None)
+
+
+@doing("the velocities")
+def kinematics(
+    model: ModelOrPath,
+    at: WrittenEquation | str | None = None,
+    *,
+    given: Sequence[WrittenEquation | str] = (),
+    relative: Sequence[tuple[str, str]] = (),
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Kinematics:
+    """Velocities, accelerations, centres of rotation and kinds of motion at one instant.
+
+    Args:
+        at: the instant: an equation that is first met then; None: the start, or the one configuration.
+        given: velocities in addition to those of the model: "omega(crank) = 2".
+        relative: (point, body) pairs: the motion of the point relative to the body.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        ExpressionError: a text is no equation.
+        ModelError: an equation contains unknown names.
+        DerivationError: nothing can move; too few or too many velocities are given.
+    """
+    model = model_at(model, parameters, start)
+    state = kinematic_state(model, at, given)
+    moves = model.given is None and not given and bool(model.coordinates)
+    kinds = Kinds(state.system, {} if state.symbol is not None else state.moving) if moves else None
+    return Kinematics(state, kinds, tuple(relative))

@@ -40,7 +40,7 @@ from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import Model, OutputSource
+from eomgen.model import Model, OutputSource, WrittenEquation
 from eomgen.symbolic.exact import LinearSystem, general_solution, legible, readable_all
 from eomgen.symbolic.expression import (
     Call,
@@ -208,6 +208,12 @@ class Study:
         """The parameters that have a value, exactly."""
         return self.system.scope.known_exactly
 
+    @property
+    def numeric_parameters(self) -> dict[Node, float]:
+        """The same as doubles."""
+        values = self.model.numeric_parameters()
+        return {self.system.symbols.parameters[name]: float(x) for name, x in values.items()}
+
     @cached_property
     def start(self) -> ExactStart:
         """The start at which the constraints hold: exact where it has a closed form, in numbers else."""
@@ -334,6 +340,10 @@ class Study:
             return self.simple(self.eliminated(self.quantities.value(call)))
 
         return self.eliminated(self.quantities.of(formula, value))
+
+    def difference(self, equation: WrittenEquation) -> Scalar:
+        """Left side minus right side of an equation as a function of q, u and t."""
+        return self.of_state(equation.left) - self.of_state(equation.right)
 
     def eliminated(self, scalar: Scalar) -> Scalar:
         """Scalar with accelerations and multipliers replaced by the equations of motion, unknown loads by statics."""

@@ -1,0 +1,25 @@
+"""Door of the room: what other rooms may import from `eomgen.study`."""
+
+# State of a motion at one instant, exact and in numbers
+from eomgen.study.instants import StateAtInstant as StateAtInstant
+
+# The motion of a model at an instant, however the model gives it
+from eomgen.study.kinematics import kinematic_state as kinematic_state
+
+# The motion of a model from its start
+from eomgen.study.motion import MotionFromStart as MotionFromStart
+
+# Lazy value of a model in one configuration of its contacts
+from eomgen.study.study import Study as Study
+
+# Exact rational values of doubles; nan is left out
+from eomgen.study.study import exact_numbers as exact_numbers
+
+# The study of a model with its contacts as they are where it rests
+from eomgen.study.study import study_at_rest as study_at_rest
+
+# The study of a model with its contacts as they are at the start
+from eomgen.study.study import study_of as study_of
+
+# The study of a model with its contacts as they are named, what is not named closed
+from eomgen.study.study import study_of_modes as study_of_modes
