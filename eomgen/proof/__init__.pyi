@@ -41,15 +41,6 @@ from eomgen.proof.check import first_wrong as first_wrong
 # A check for which there is no state, no value or no time
 from eomgen.proof.check import unchecked as unchecked
 
-# Check that bodies stand in every phase where the whole model has them, and where their joints say
-from eomgen.proof.contact_phases import bodies_stand_as_reported as bodies_stand_as_reported
-
-# Check that only constraints, and contacts that touch, change the momentum between phases; none with one phase
-from eomgen.proof.contact_phases import changes_follow_impulses as changes_follow_impulses
-
-# Check that each contact presses, grips, slides or is open as its phase assumes; none without contacts
-from eomgen.proof.contact_phases import contacts_do_as_assumed as contacts_do_as_assumed
-
 # Message that names a number which differs between the file and the model; "" where all agree
 from eomgen.proof.declared_numbers import numbers_otherwise as numbers_otherwise
 
@@ -122,17 +113,8 @@ from eomgen.proof.masses import mass_checks as mass_checks
 # Values of parameters without one, and of coordinates: mass properties hold at any orientation
 from eomgen.proof.masses import tried as tried
 
-# One phase of a run
-from eomgen.proof.motion import Leg as Leg
-
 # Accuracy that a run promises: an error of at most 10 (rtol size + atol) for each step
 from eomgen.proof.motion import Promise as Promise
-
-# Checks that the code that ran is that of the equations, and that its steps are repeated by another method
-from eomgen.proof.motion import run_checks as run_checks
-
-# Checks that every run makes: energy against power, constraints, and norms of quaternions
-from eomgen.proof.motion import watched_checks as watched_checks
 from eomgen.proof.pages_read import GREEK_LETTERS as GREEK_LETTERS
 from eomgen.proof.pages_read import PAGES as PAGES
 
@@ -203,15 +185,6 @@ from eomgen.proof.reported_pictures import states_shown as states_shown
 
 # Reported texts of a run
 from eomgen.proof.reported_run import ReportedRun as ReportedRun
-
-# Compiled programs over all rows, against the formulas with 50 digits and the second definitions at single rows
-from eomgen.proof.reported_run import output_columns_hold as output_columns_hold
-
-# A(q) rho = b solved by rank in doubles, against its solution in symbols with 50 digits; () where none reacts
-from eomgen.proof.reported_run import reaction_columns_hold as reaction_columns_hold
-
-# A failing check where a requested instant, which the run passed, has no row, or rows do not ascend; else none
-from eomgen.proof.reported_run import rows_left_out as rows_left_out
 
 # Checks of all reported texts of a run against its states
 from eomgen.proof.reported_run import run_reported as run_reported
@@ -295,6 +268,12 @@ from eomgen.proof.resting import pushes_check as pushes_check
 
 # Checks of the equilibria of a system by its equations of motion
 from eomgen.proof.resting import resting_checks as resting_checks
+
+# Checks of a run; an unmade one where a Python function sets an input
+from eomgen.proof.run import run_checks as run_checks
+
+# Checks of energy against power, of constraints and of norms, which a run makes in any case
+from eomgen.proof.run import watched_checks as watched_checks
 
 # Checks of the reference state, the matrices, and the modes
 from eomgen.proof.small_motions import small_motion_checks as small_motion_checks

@@ -103,13 +103,13 @@ class Promise:
         return PER_STEP * (self.atol + tolerances.SUMMED * size) if self.projected else self.limit(size)
 
 
-def run_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
+def code_and_steps(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
     """Checks that the code that ran is that of the equations, and that its steps are repeated by another method."""
     moving = _moving(legs)
     return (_code(moving), _steps(moving, promise)) if moving else ()
 
 
-def watched_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
+def energy_and_constraints(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
     """Checks that every run makes: energy against power, constraints, and norms of quaternions."""
     moving = _moving(legs)
     if not moving:

@@ -105,7 +105,7 @@ class WholeRun:
             for call in output.value.calls if is_of_a_run(output) else ():
                 if call.name in _FUNCTIONS:
                     tally.add(str(call), partial(self._against_samples, call))
-        return tally.checks()
+        yield from tally.checks()
 
     def answered_otherwise(self, output: Output, reported: float | None) -> str:
         """Difference in words between a reported value of an output and the samples of the run; "" without one.

@@ -20,26 +20,11 @@ from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
 from eomgen.mechanics.free_bodies import with_friction
 from eomgen.model import Output, Typed, WrittenEquation
-from eomgen.proof import (
-    Certificate,
-    Check,
-    Leg,
-    Promise,
-    bodies_stand_as_reported,
-    changes_follow_impulses,
-    contacts_do_as_assumed,
-    output_columns_hold,
-    reaction_columns_hold,
-    rows_left_out,
-    run_checks,
-    unchecked,
-    watched_checks,
-)
+from eomgen.proof import Certificate, Check, run_checks, watched_checks
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.simulation import (
     SAMPLES,
     Accuracy,
-    Phase,
     PhaseModels,
     PhaseRun,
     PhaseStart,
@@ -71,7 +56,6 @@ class RunProof:
     """
 
     equations: Equations | None
-    p: np.ndarray
     how: Stepping
     models: PhaseModels
     whole: WholeRun | None = None
@@ -79,52 +63,15 @@ class RunProof:
     @doing("the proof of the run")
     def __call__(self, found: Trajectory) -> Certificate:
         """The proof of the equations, then that of the run."""
-        certificate = Certificate(()) if self.equations is None else certify(self.equations.graph)
-        if any(phase.model.fed is not None for phase in found.phases):
-            what = "a Python function sets an input: its values between the states are not known"
-            unseen = unchecked("the run follows its equations", what, "the run's right-hand side")
-            return Certificate((*certificate.checks, unseen))
-        legs, promise = self._moving(found)
-        certificate += run_checks(legs, promise)
-        certificate += self.watch(found) if found.watch is None else found.watched
-        columns = (
-            *reaction_columns_hold(found),
-            *output_columns_hold(found, formulas_of(self.models.model)),
-        )
-        if self.whole is not None:
-            certificate += (*self.whole.checks(), *rows_left_out(found, self.whole.plan.instants))
-        return certificate + columns + self._contacts(found)
+        proven = Certificate(()) if self.equations is None else certify(self.equations.graph)
+        if self.whole is None:
+            return proven + run_checks(found, self.models, self.how)
+        answers, instants = self.whole.checks(), self.whole.plan.instants
+        return proven + run_checks(found, self.models, self.how, instants=instants, answers=answers)
 
     def watch(self, found: Trajectory) -> tuple[Check, ...]:
         """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
-        if any(phase.model.fed is not None for phase in found.phases):
-            return ()
-        return watched_checks(*self._moving(found))
-
-    def _moving(self, found: Trajectory) -> tuple[list[Leg], Promise]:
-        """Legs of a run, and the accuracy that its tolerances promise."""
-        legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
-        projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
-        levelled = projected and self.how.stabilization == "energy"
-        return legs, Promise(self.how.rtol, self.how.atol, found.steps, projected, levelled)
-
-    def _contacts(self, found: Trajectory) -> Iterator[Check]:
-        """Checks of contacts in the phases of a run, and between them."""
-        seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
-        yield from contacts_do_as_assumed(seen)
-        if len(seen) > 1:
-            yield from bodies_stand_as_reported(seen, self.models.without_contacts.system)
-            yield from changes_follow_impulses(seen, self.models.without_contacts.system, self.models.ends)
-
-    def _legs(self, phase: Phase, found: Trajectory) -> Iterator[Leg]:
-        """Leg of the states of a phase, without those after the instant at which the run was cut."""
-        track, phased = _until(phase, found.t).track, phase.model
-        if track is None or phased.fed is not None:
-            return
-        t, x = track
-        pulled = self.how.stabilization == "baumgarte"
-        rhs, inner = phased.functions.rhs, phased.functions.inner(x)
-        yield Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
+        return watched_checks(found, self.how)
 
 
 def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:
@@ -138,15 +85,6 @@ def answered_otherwise(found: Trajectory, output: Output, reported: float | None
     if not isinstance(found.proof, RunProof) or found.proof.whole is None:
         raise NoValue("the states of the run are not known")
     return found.proof.whole.answered_otherwise(output, reported)
-
-
-def _until(phase: Phase, t: np.ndarray) -> Phase:
-    """A phase without the states after the run was cut."""
-    if phase.track is None or not len(t):
-        return replace(phase, tracked=None)
-    times, states = phase.track
-    here = times <= max(t[-1], phase.start)
-    return replace(phase, tracked=lambda: (times[here], states[here]))
 
 
 @doing("the motion in time")
@@ -295,7 +233,7 @@ def finished_run(
     columns = formulas_of(model) if outputs is None else outputs
     found = joined(models, runs, until=until, reactions=reactions, outputs=columns)
     begun = runs[0].here.begun
-    proof = RunProof(equations, models.p, how, models, whole)
+    proof = RunProof(equations, how, models, whole)
     more = {
         "assembled": "" if begun is None else begun.words,
         "whole": whole.value,
