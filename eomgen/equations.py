@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.certificate import certify
 from eomgen.codegen import (
     InverseDynamics,
     Matrices,
@@ -45,7 +44,7 @@ from eomgen.mechanics.dynamics import (
 from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
 from eomgen.mechanics.start import Start
 from eomgen.model import Model, nearest
-from eomgen.proof import Certificate, Printed
+from eomgen.proof import Certificate, Printed, certify
 from eomgen.study import Study
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (

@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from eomgen import files, pipeline
-from eomgen.certificate import certify
 from eomgen.codegen import Emitted, Emitter, Files, Matrices, RightHandSide, Role, TestVector, Written, targets_named
 from eomgen.documents import Document, Lines, lines_document, plain_document, proven, with_constraints_closed
 from eomgen.equations import Equations
@@ -26,6 +25,7 @@ from eomgen.proof import (
     Judged,
     PhaseMotion,
     TriedState,
+    certify,
     checked,
     consistent_states,
     fmu_reported,

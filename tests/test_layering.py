@@ -29,7 +29,6 @@ CHAIN = (
     ("simulation",),
     ("study",),
     ("proof",),
-    ("certificate",),
     ("scene",),
     ("documents",),
     ("equations",),
@@ -179,7 +178,7 @@ def test_every_module_stands_in_a_room(imports):
 
 
 def test_a_module_imports_only_from_rooms_to_its_left(imports):
-    """errors < symbolic < model < mechanics < codegen < simulation < report < certificate, answers < pipeline < cli."""
+    """errors < symbolic < model < mechanics < codegen < simulation < proof < documents, questions < pipeline < cli."""
     assert wrong_ways(imports) == []
 
 
@@ -453,7 +452,7 @@ OF_THEIR_OWN = {  # what rooms above `study` derive themselves, and why
     ("verbs.checked", "system_of"): "each error by itself",
     ("verbs.reactions", "system_of"): "names of reactions, of models that have no equations",
 }
-BELOW = ("symbolic", "model", "robots", "mechanics", "codegen", "simulation", "study", "proof", "certificate")
+BELOW = ("symbolic", "model", "robots", "mechanics", "codegen", "simulation", "study", "proof")
 
 
 def test_what_a_study_derives_is_asked_of_it(house):

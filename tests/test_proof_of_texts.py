@@ -14,7 +14,6 @@ from click.testing import CliRunner
 from slow_run import usual
 
 import eomgen
-from eomgen.certificate import certify
 from eomgen.cli import main
 from eomgen.documents import proven_documents as proof_of_texts
 from eomgen.documents import rendered
@@ -22,7 +21,8 @@ from eomgen.documents.derivation import printed_formulas
 from eomgen.documents.document import Document
 from eomgen.documents.text import cases_text
 from eomgen.equations import Equations
-from eomgen.proof import parameters
+from eomgen.proof import masses
+from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, checked
 from eomgen.proof.printed import Printed
 from eomgen.symbolic.print import text
@@ -158,15 +158,14 @@ def test_an_energy_with_a_constant_part_is_a_contradiction(letter: str):
 @pytest.mark.parametrize(("verb", "name"), VERBS[:5])
 def test_numbers_of_other_parameters_are_a_contradiction(verb: str, name: str, monkeypatch: pytest.MonkeyPatch):
     """What is proven at values that are not the file's is proven of another system."""
-    own = parameters.other_parameters
+    own = masses._other_parameters
 
     def others(scope):
         found = {x: 2 * y + 1 for x, y in scope.model.exact_parameters().items()}
         model = SimpleNamespace(exact_parameters=lambda: found)
         return own(SimpleNamespace(model=model, values_of_parameters=scope.values_of_parameters))
 
-    for place in ("proof.parameters", "documents.mass_properties.result"):
-        monkeypatch.setattr(f"eomgen.{place}.other_parameters", others)
+    monkeypatch.setattr(masses, "_other_parameters", others)
     monkeypatch.setenv("EOMGEN_FRESH", "1")
     found = CliRunner().invoke(main, [verb, str(MODELS / f"{name}.toml")])
     assert found.exit_code == 3 and "FAIL parameters have the values of the file" in found.stdout

@@ -14,6 +14,12 @@ from eomgen.proof.at_a_state import place_of as place_of
 
 # A printed formula as a scalar of the system
 from eomgen.proof.at_a_state import read_back as read_back
+
+# Check the equations of a system
+from eomgen.proof.certificate import certify as certify
+
+# Check what no coordinate moves: where it stands, what is applied to it, the balance of every body
+from eomgen.proof.certificate import certify_standing as certify_standing
 from eomgen.proof.check import SIGNS as SIGNS
 
 # The proof that comes with a result
@@ -77,9 +83,6 @@ from eomgen.proof.emitted_code import start_state_tried as start_state_tried
 # A failing check where a number of the test vectors is missing in the self-test of a language; else none
 from eomgen.proof.emitted_code import unwritten as unwritten
 
-# Checks of all identities of equations of motion
-from eomgen.proof.identities import identity_checks as identity_checks
-
 # Message that names a body which differs from the file; "" where all that have the same name in both agree
 from eomgen.proof.imported import imported_otherwise as imported_otherwise
 
@@ -110,8 +113,8 @@ from eomgen.proof.masses import Stated as Stated
 # Checks of every shape, of the parts of bodies, and of all stated mass properties
 from eomgen.proof.masses import mass_checks as mass_checks
 
-# Values of parameters without one, and of coordinates: mass properties hold at any orientation
-from eomgen.proof.masses import tried as tried
+# A failing check of parameters or masses that are not those of the file; the check of sampled functions
+from eomgen.proof.masses import other_data as other_data
 
 # Accuracy that a run promises: an error of at most 10 (rtol size + atol) for each step
 from eomgen.proof.motion import Promise as Promise
@@ -156,12 +159,6 @@ from eomgen.proof.pages_read import typeset as typeset
 # Number of parts that say these words; None where they say others
 from eomgen.proof.pages_read import unlike_words as unlike_words
 
-# A failing check of parameters or masses that are not those of the file; the check of sampled functions
-from eomgen.proof.parameters import other_data as other_data
-
-# A failing check where the numbers used by all other checks are not those of the file; else none
-from eomgen.proof.parameters import other_parameters as other_parameters
-
 # Message that names a pin which is on the other side of its links' hinges than reported; ""
 from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
 
@@ -186,8 +183,14 @@ from eomgen.proof.reported_pictures import states_shown as states_shown
 # Reported texts of a run
 from eomgen.proof.reported_run import ReportedRun as ReportedRun
 
+# Checks of a run; an unmade one where a Python function sets an input
+from eomgen.proof.reported_run import run_checks as run_checks
+
 # Checks of all reported texts of a run against its states
 from eomgen.proof.reported_run import run_reported as run_reported
+
+# Checks of energy against power, of constraints and of norms, which a run makes in any case
+from eomgen.proof.reported_run import watched_checks as watched_checks
 
 # A block that moves
 from eomgen.proof.reported_sections import ReportedBlock as ReportedBlock
@@ -201,29 +204,11 @@ from eomgen.proof.reported_sections import ReportedSections as ReportedSections
 # Reported derivation of one reaction by virtual work
 from eomgen.proof.reported_sections import ReportedWork as ReportedWork
 
-# Checks of the reported section forces of each body, of every report of it
-from eomgen.proof.reported_sections import sections_reported as sections_reported
-
-# Checks of reported reactions by virtual work, of structures in the plane
-from eomgen.proof.reported_sections import works_reported as works_reported
-
 # Printed texts of small motions
 from eomgen.proof.reported_small_motions import PrintedModes as PrintedModes
 
-# None where the parameters have no values
-from eomgen.proof.reported_small_motions import linear_entries as linear_entries
-
-# Check of the headings above each mode, and of the bars of those that are not animated
-from eomgen.proof.reported_small_motions import modes_drawn as modes_drawn
-
-# Bode's diagrams: |W| and the phase of W at every frequency that is drawn
-from eomgen.proof.reported_small_motions import responses_drawn as responses_drawn
-
-# Check of the roots over a parameter: each is drawn at the value of its colour, and there are no others
-from eomgen.proof.reported_small_motions import roots_drawn as roots_drawn
-
-# Whatever has numbers
-from eomgen.proof.reported_small_motions import small_motions_reported as small_motions_reported
+# Check of a picture of small motions
+from eomgen.proof.reported_small_motions import small_motions_drawn as small_motions_drawn
 
 # Content of one panel of a diagram
 from eomgen.proof.reports_read import DrawnPanel as DrawnPanel
@@ -257,23 +242,12 @@ from eomgen.proof.reports_read import panels_of as panels_of
 
 # Bytes that a page carries packed: gzip, then base64
 from eomgen.proof.reports_read import unpacked as unpacked
-from eomgen.proof.resting import BY_MOTION as BY_MOTION
-from eomgen.proof.resting import NOTHING_ACCELERATED as NOTHING_ACCELERATED
 
-# Check that Q + J^T lam = 0 and phi = 0 hold at each equilibrium
-from eomgen.proof.resting import balance_check as balance_check
+# Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there
+from eomgen.proof.resting import certify_equilibria as certify_equilibria
 
-# Check that the free bodies are in equilibrium: weights, loads and constraint forces add up to nothing
-from eomgen.proof.resting import pushes_check as pushes_check
-
-# Checks of the equilibria of a system by its equations of motion
-from eomgen.proof.resting import resting_checks as resting_checks
-
-# Checks of a run; an unmade one where a Python function sets an input
-from eomgen.proof.run import run_checks as run_checks
-
-# Checks of energy against power, of constraints and of norms, which a run makes in any case
-from eomgen.proof.run import watched_checks as watched_checks
+# Check the equations of motion, the small motions against differences of these, and what is reported of them
+from eomgen.proof.small_motions import certify_small_motions as certify_small_motions
 
 # Checks of the reference state, the matrices, and the modes
 from eomgen.proof.small_motions import small_motion_checks as small_motion_checks
@@ -281,23 +255,17 @@ from eomgen.proof.small_motions import small_motion_checks as small_motion_check
 # States in motion at which every constraint holds, positions and speeds, by where dependent coordinates are free
 from eomgen.proof.states import consistent_states as consistent_states
 
+# Check the two ways, every body's balance, section forces from the other end, influence lines by loads
+from eomgen.proof.structure import certify_structure as certify_structure
+
 # Check of every panel titled N, V or M of a body, or influence line
 from eomgen.proof.structure import diagrams_drawn as diagrams_drawn
-
-# Every symbol with 50 digits; parameters without a value are random, unknown loads have their solution
-from eomgen.proof.structure import state_of as state_of
-
-# Checks of every reaction, of the section forces by body, and of an influence line
-from eomgen.proof.structure import structure_checks as structure_checks
 
 # Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved
 from eomgen.proof.texts_of_reactions import reaction_numbers as reaction_numbers
 
 # Check of each text at the start, in pieces and at random, by the bodies' equations solved there in doubles
 from eomgen.proof.texts_of_reactions import reaction_texts as reaction_texts
-
-# The equations of a system, to be tried at states
-from eomgen.proof.trials import Trials as Trials
 
 # An equation with its verdict
 from eomgen.proof.verdicts import JudgedEquation as JudgedEquation

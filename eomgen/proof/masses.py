@@ -23,6 +23,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion, Scope
 from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
+from eomgen.proof.declared_numbers import other_functions
 from eomgen.symbolic.expression import Expression, Node, Pose, Scalar, Vector
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, of_50_digits, tolerances
 
@@ -55,13 +56,13 @@ class Stated:
     axis: tuple[Vector, Vector] | None = None
 
 
-def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node, float]) -> Iterator[Check]:
-    """Checks of every shape, of the parts of bodies, and of all stated mass properties.
+def mass_checks(motion: Motion, stated: Sequence[Stated], start: Mapping[Node, float]) -> Iterator[Check]:
+    """Checks of every shape, of the parts of bodies, of all stated mass properties, and of the parameters.
 
     Args:
-        numbers: of all symbols that stand in it.
+        start: numbers of all symbols that stand in it; {} where the start is not known.
     """
-    proof = _Proof(motion, numbers)
+    proof = _Proof(motion, start or _tried(motion.scope))
     bodies = tuple(dict.fromkeys(body for each in stated for body in each.bodies))
     yield from proof.shapes(bodies)
     composite = [body for body in bodies if motion.scope.model.bodies[body].parts is not None]
@@ -78,11 +79,31 @@ def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node,
     if principal and found.ok is not None:
         name = "principal axes are right-handed and make the tensor diagonal"
         yield checked(name, first_wrong(map(proof.wrong_axes, principal)), "floating point")
+    yield from _other_parameters(motion.scope)
 
 
-def other_masses(motion: Motion) -> Iterator[Check]:
+def other_data(motion: Motion) -> Iterator[Check]:
+    """A failing check of parameters or masses that are not those of the file; the check of sampled functions."""
+    yield from _other_parameters(motion.scope)
+    yield from _other_masses(motion)
+    yield from other_functions(motion.scope.model)
+
+
+def _other_parameters(scope: Scope) -> Iterator[Check]:
+    """A failing check where the numbers used by all other checks are not those of the file; else none."""
+    known, found = scope.model.exact_parameters(), scope.values_of_parameters(None)
+    there = {x.name: float(value) for x, value in found.items()}
+    pairs = [(name, there.get(name, math.nan), float(right)) for name, right in known.items()]
+    wrong = [
+        f"'{name}': {x:.10g} for {y:.10g}" for name, x, y in pairs if not abs(x - y) <= tolerances.COMPUTED * abs(y)
+    ]
+    if wrong:
+        yield checked("parameters have the values of the file", "; ".join(wrong[:3]), "floating point")
+
+
+def _other_masses(motion: Motion) -> Iterator[Check]:
     """A contradiction where bodies have not the masses of the points that they fill, each kind tried once."""
-    proof, bodies = _Proof(motion, tried(motion.scope)), motion.scope.model.bodies
+    proof, bodies = _Proof(motion, _tried(motion.scope)), motion.scope.model.bodies
     shapes = {shape.kind: (body, shape) for body in bodies for shape in proof.shapes_of(body)}
     made = [body for body, part in bodies.items() if part.parts is not None]
     possible = (pair for pair in shapes.values() if not pair[1].impossible(proof.value))
@@ -95,7 +116,7 @@ def other_masses(motion: Motion) -> Iterator[Check]:
     yield from (x for x in (found,) if x.status == "fails")
 
 
-def tried(scope: Scope) -> dict[Node, float]:
+def _tried(scope: Scope) -> dict[Node, float]:
     """Values of parameters without one, and of coordinates: mass properties hold at any orientation."""
     rng, symbols = Random(3), scope.symbols
     known = {x: float(v) for x, v in scope.values_of_parameters(rng).items()}

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -269,9 +269,23 @@ MOST_CURVES, MOST_MODES = 8, 9  # pairs of which Bode's diagrams are drawn, mode
 MOST_VALUES = 60  # of a parameter at which its roots are looked at
 
 
-def modes_drawn(entries: Mapping[str, Any], panels: Sequence[DrawnPanel]) -> Check:
-    """Check of the headings above each mode, and of the bars of those that are not animated."""
-    return attempted(DRAWN, "modes as machines get them", lambda: _wrong_modes(entries["modes"], panels))
+def small_motions_drawn(
+    drawn: str, entries: Mapping[str, Any], panels: Sequence[DrawnPanel], letters: Mapping[str, str], model: Model
+) -> Check:
+    """Check of a picture of small motions.
+
+    "modes": the headings above each mode, and the bars of those that are not animated; "bode": |W| and the phase of W
+    at every frequency that is drawn; "locus": the roots over a parameter, each drawn at the value of its colour, and no
+    others.
+
+    Args:
+        letters: how the names of coordinates, inputs and parameters are set.
+    """
+    if drawn == "modes":
+        return attempted(DRAWN, "modes as machines get them", lambda: _wrong_modes(entries["modes"], panels))
+    pencil = _Drawn(ReportedMotions(entries, PrintedModes({}), {}), letters)
+    wrong = partial(pencil.wrong_roots, panels, model) if drawn == "locus" else partial(pencil.wrong_responses, panels)
+    return attempted(DRAWN, BY_PENCIL, wrong)
 
 
 def _wrong_modes(modes: Sequence[Mapping[str, Any]], panels: Sequence[DrawnPanel]) -> str:
@@ -291,28 +305,6 @@ def _wrong_modes(modes: Sequence[Mapping[str, Any]], panels: Sequence[DrawnPanel
         ):
             return f"the bars of mode {k} are not its shape"
     return ""
-
-
-def responses_drawn(entries: Mapping[str, Any], panels: Sequence[DrawnPanel], letters: Mapping[str, str]) -> Check:
-    """Bode's diagrams: |W| and the phase of W at every frequency that is drawn.
-
-    Args:
-        letters: how the names of coordinates and inputs are set.
-    """
-    drawn = _Drawn(ReportedMotions(entries, PrintedModes({}), {}), letters)
-    return attempted(DRAWN, BY_PENCIL, lambda: drawn.wrong_responses(panels))
-
-
-def roots_drawn(
-    entries: Mapping[str, Any], panels: Sequence[DrawnPanel], letters: Mapping[str, str], model: Model
-) -> Check:
-    """Check of the roots over a parameter: each is drawn at the value of its colour, and there are no others.
-
-    Args:
-        letters: how the names of parameters are set.
-    """
-    drawn = _Drawn(ReportedMotions(entries, PrintedModes({}), {}), letters)
-    return attempted(DRAWN, BY_PENCIL, lambda: drawn.wrong_roots(panels, model))
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,12 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.equilibrium import Equilibrium, StaticEquations, standing_system
 from eomgen.mechanics.linearization import FirstOrder
-from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
+from eomgen.proof.certificate import certify
+from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.in_numbers import STEP, with_inputs
@@ -31,6 +33,19 @@ ASIDE = (
 )  # of a coordinate or 1: near an equilibrium where the restoring force begins with a higher power
 BY_MOTION = "50 digits"
 NOTHING_ACCELERATED = "no acceleration at the equilibria"
+
+
+def certify_equilibria(places: Sequence[Equilibrium]) -> Certificate:
+    """Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there."""
+    if not places:
+        return Certificate(())
+    balanced = (balance_check(places), _pushes_check(places))
+    try:
+        first = FirstOrder.of(standing_system(places[0].statics.system))
+        equations = certify(first.equations, begins=False)
+    except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
+        return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
+    return Certificate((*equations.checks, *balanced, *_resting_checks(first, places)))
 
 
 def balance_check(places: Sequence[Equilibrium]) -> Check:
@@ -73,7 +88,7 @@ def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
     return [sum(abs(next(values)) * size for size in sizes) for _ in slopes]
 
 
-def pushes_check(places: Sequence[Equilibrium]) -> Check:
+def _pushes_check(places: Sequence[Equilibrium]) -> Check:
     """Check that the free bodies are in equilibrium: weights, loads and constraint forces add up to nothing."""
     name = "the multipliers at every equilibrium hold the free bodies"
     return attempted(name, BY_MOTION, lambda: _first_at(places[:MOST], _pushed))
@@ -116,7 +131,7 @@ def _places(place: Equilibrium, wanted: Sequence[Node], known: Mapping[Node, Any
     return found | {x: fifty_digits().number(1) * place.numbers[x] for x in wanted if x not in exact}
 
 
-def resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator[Check]:
+def _resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator[Check]:
     """Checks of the equilibria of a system by its equations of motion."""
     proofs = [_Proof(first, place) for place in places[:MOST]]
     yield _of_all(NOTHING_ACCELERATED, proofs, _Proof.wrong, BY_MOTION)

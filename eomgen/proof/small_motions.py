@@ -22,10 +22,12 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization import LinearEquations, Modes, SmallMotions
-from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
+from eomgen.mechanics.linearization import EQUILIBRIUM, LinearEquations, Modes, SmallMotions
+from eomgen.proof.certificate import certify
+from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
 from eomgen.proof.neighbouring_motions import Differences, DigitColumn, MotionDifference
+from eomgen.proof.reported_small_motions import PrintedModes, linear_entries, small_motions_reported
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, sums_of_products, tolerances
@@ -35,6 +37,22 @@ BY_DIFFERENCES = "differences at 50 digits"
 
 
 # -- the matrices --------------------------------------------------------------------------------------------------
+
+
+def certify_small_motions(modes: Modes, entries: Mapping[str, Any], printed: PrintedModes) -> Certificate:
+    """Check the equations of motion, the small motions against differences of these, and what is reported of them.
+
+    Args:
+        entries: as machines get them.
+        printed: the texts of the derivation.
+    """
+    small = modes.small
+    values = small.reference.system.scope.model.exact_parameters()
+    equations = certify(small.first.equations, begins=small.reference.about != EQUILIBRIUM)
+    valued = small.reference.valued
+    reported = linear_entries(entries, small.state_matrix, small.input_matrix) if valued else ()
+    printed_checks = small_motions_reported(entries, printed, values)
+    return Certificate((*equations.checks, *small_motion_checks(modes), *reported, *printed_checks))
 
 
 def small_motion_checks(modes: Modes) -> Iterator[Check]:

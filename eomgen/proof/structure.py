@@ -11,7 +11,7 @@ Reactions are found in two ways before they come here, by virtual work and by th
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property, partial
 from itertools import combinations, pairwise
 from random import Random
@@ -41,10 +41,12 @@ from eomgen.mechanics.statics import (
     place_of,
 )
 from eomgen.proof.at_a_state import balanced_least
-from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
+from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import STRUNG, acting_otherwise, strung_otherwise, threads_of
 from eomgen.proof.free_bodies import named_otherwise
+from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
+from eomgen.proof.reported_sections import ReportedSections, ReportedWork, sections_reported, works_reported
 from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
 from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
@@ -59,8 +61,33 @@ LETTERS = dict(zip("NVM", KINDS, strict=True))
 PREFIXES = {"": 1.0, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}  # of N and N m
 
 
-def structure_checks(
-    found: StaticReactions, sections: Mapping[str, SectionForces], influence: InfluenceLine | None = None
+def certify_structure(
+    found: StaticReactions,
+    sections: Mapping[str, SectionForces],
+    influence: InfluenceLine | None = None,
+    *,
+    reported: Iterable[tuple[str, ReportedSections]] = (),
+    works: Iterable[ReportedWork] = (),
+) -> Certificate:
+    """Check the two ways, every body's balance, section forces from the other end, influence lines by loads.
+
+    Args:
+        sections: the section forces by body; reported: every report of them.
+        works: reported derivations of reactions by virtual work, of a structure in the plane.
+    """
+    values = found.system.scope.model.exact_parameters()
+    return Certificate(
+        (
+            *_structure_checks(found, sections, influence),
+            *other_data(found.system.motion),
+            *sections_reported(sections, reported, values),
+            *works_reported(found, state_of(found), works),
+        )
+    )
+
+
+def _structure_checks(
+    found: StaticReactions, sections: Mapping[str, SectionForces], influence: InfluenceLine | None
 ) -> Iterator[Check]:
     """Checks of every reaction, of the section forces by body, and of an influence line."""
     wrong = ", ".join(reaction.name for reaction in found.disagreeing)

@@ -15,7 +15,6 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.certificate import certify, certify_standing
 from eomgen.codegen import compiled, program_of
 from eomgen.documents import Linearization, Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
@@ -32,6 +31,8 @@ from eomgen.proof import (
     PhaseMotion,
     Tally,
     TriedState,
+    certify,
+    certify_standing,
     differing,
     instant_checks,
     moving_states,

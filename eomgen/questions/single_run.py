@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.certificate import certify
 from eomgen.codegen import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
@@ -20,7 +19,7 @@ from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
 from eomgen.mechanics.free_bodies import with_friction
 from eomgen.model import Output, Typed, WrittenEquation
-from eomgen.proof import Certificate, Check, run_checks, watched_checks
+from eomgen.proof import Certificate, Check, certify, run_checks, watched_checks
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.simulation import (
     SAMPLES,

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from eomgen import pipeline
-from eomgen.certificate import certify as certificate_of_equations
 from eomgen.codegen import parameter_vector
 from eomgen.documents import (
     Document,
@@ -52,6 +51,7 @@ from eomgen.model import (
     with_values,
 )
 from eomgen.proof import Certificate, Check, NumericState, reaction_numbers, reaction_texts
+from eomgen.proof import certify as certificate_of_equations
 from eomgen.questions import Answers, solve
 from eomgen.simulation import ReactionColumns
 from eomgen.symbolic.exact import book_form

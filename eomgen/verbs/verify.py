@@ -8,13 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from eomgen import files
-from eomgen.certificate import certify as certificate_of_equations
 from eomgen.documents import Document, Lines, plain_document, proven, with_constraints_closed
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Case, Judge, Verdict
 from eomgen.model import AtRest, Model, WrittenEquation, with_values
 from eomgen.proof import Certificate, verdicts_again
+from eomgen.proof import certify as certificate_of_equations
 
 LARGEST = 1_000_000  # bytes of a file of answers
 

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import eomgen.certificate
 import eomgen.model.reader
+import eomgen.proof.certificate
 from eomgen.proof import identities
 from eomgen.proof.check import Certificate
 
@@ -21,7 +21,11 @@ from eomgen.proof.check import Certificate
 @contextmanager
 def one_model() -> Iterator[None]:
     """Within it a text is read once and equations are proven once."""
-    read, prove, trials_of = eomgen.model.reader._loads, eomgen.certificate.certify, eomgen.certificate.Trials
+    read, prove, trials_of = (
+        eomgen.model.reader._loads,
+        eomgen.proof.certificate.certify,
+        eomgen.proof.certificate.Trials,
+    )
     models: dict[bytes, Any] = {}
     proofs: dict[bool, dict[int, tuple[Any, Certificate]]] = {False: {}, True: {}}
     trials: dict[int, tuple[Any, Any]] = {}
@@ -46,12 +50,12 @@ def one_model() -> Iterator[None]:
         return Certificate(checks if rhs is None else (*checks, known.code(rhs)))
 
     _replace("certify", prove, certify)
-    eomgen.model.reader._loads, eomgen.certificate.Trials = loads, shared_trials
+    eomgen.model.reader._loads, eomgen.proof.certificate.Trials = loads, shared_trials
     try:
         yield
     finally:
         _replace("certify", certify, prove)
-        eomgen.model.reader._loads, eomgen.certificate.Trials = read, trials_of
+        eomgen.model.reader._loads, eomgen.proof.certificate.Trials = read, trials_of
 
 
 def _once(known: dict[int, tuple[Any, Any]], key: Any, make: Callable[[Any], Any]) -> Any:

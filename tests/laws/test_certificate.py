@@ -12,7 +12,6 @@ from derivations import equations as equations_of
 from derivations import moving
 
 import eomgen
-from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import formulations, tree
@@ -28,6 +27,7 @@ from eomgen.mechanics.kinematics import motion as kinematics
 from eomgen.mechanics.kinematics import scene as contacts
 from eomgen.model.forces.elements import Reach
 from eomgen.model.forces.weights import Gravity
+from eomgen.proof.certificate import certify
 from eomgen.proof.printed import Printed
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression.node import Scalar, linear_terms

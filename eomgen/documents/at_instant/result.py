@@ -7,7 +7,6 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.certificate import certify
 from eomgen.documents.at_instant.steps import (
     cell,
     field_payload,
@@ -28,7 +27,7 @@ from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, all_centrodes, body_motions
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
-from eomgen.proof import Certificate, instant_checks
+from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.study import kinematic_state
 from eomgen.symbolic.expression import Node, Scalar, Vector
 from eomgen.symbolic.numeric import doing

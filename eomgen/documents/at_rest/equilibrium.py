@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.certificate import certify
 from eomgen.documents.bounded import page
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.drawing import Sketch, draw_model
@@ -31,7 +30,7 @@ from eomgen.documents.statements import (
     narrow_grid,
     prose,
 )
-from eomgen.errors import DerivationError, ModelError, RunFailed
+from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.equilibrium import (
     Curve,
@@ -42,21 +41,11 @@ from eomgen.mechanics.equilibrium import (
     Stability,
     StaticEquations,
     reactions_or_why,
-    standing_system,
 )
 from eomgen.mechanics.free_bodies import Reactions
-from eomgen.mechanics.linearization import FirstOrder
 from eomgen.mechanics.start import shown_numbers
 from eomgen.model import Model, Unit
-from eomgen.proof import (
-    BY_MOTION,
-    NOTHING_ACCELERATED,
-    Certificate,
-    balance_check,
-    pushes_check,
-    resting_checks,
-    unchecked,
-)
+from eomgen.proof import Certificate, certify_equilibria
 from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
@@ -95,15 +84,7 @@ class Resting(Result):
 
     def certify(self) -> Certificate:
         """Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there."""
-        if not self.places:
-            return Certificate(())
-        balanced = (balance_check(self.places), pushes_check(self.places))
-        try:
-            first = FirstOrder.of(standing_system(self.places[0].statics.system))
-            base = certify(first.equations, begins=False)
-        except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
-            return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
-        return Certificate((*base.checks, *balanced, *resting_checks(first, self.places)))
+        return certify_equilibria(self.places)
 
     @cached_property
     def derivation(self) -> Document:

@@ -35,18 +35,7 @@ from eomgen.mechanics.statics import (
     conditions_of,
 )
 from eomgen.model import Model, ModelOrPath, Values, model_at
-from eomgen.proof import (
-    Certificate,
-    Check,
-    DrawnPanel,
-    ReportedWork,
-    diagrams_drawn,
-    other_data,
-    sections_reported,
-    state_of,
-    structure_checks,
-    works_reported,
-)
+from eomgen.proof import Certificate, Check, DrawnPanel, ReportedWork, certify_structure, diagrams_drawn
 from eomgen.study import study_at_rest
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import doing, tolerances
@@ -135,11 +124,10 @@ class Statics(Result):
 
     def certify(self) -> Certificate:
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
-        checks = structure_checks(self.found, self.sections.found, self.influence)
         reported = reported_sections(self.sections, self.derivation.steps, section_payload(self.sections))
-        sections = sections_reported(self.sections.found, reported, self.model.exact_parameters())
-        works = works_reported(self.found, state_of(self.found), self._reported_works())
-        return Certificate((*checks, *other_data(self.found.system.motion), *sections, *works))
+        return certify_structure(
+            self.found, self.sections.found, self.influence, reported=reported, works=self._reported_works()
+        )
 
     def _reported_works(self) -> Iterator[ReportedWork]:
         """Works of some reactions in the plane, evenly spread over all."""

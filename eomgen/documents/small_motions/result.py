@@ -12,7 +12,6 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of, notation_of
 from eomgen.documents.figures import Picture, mathtext
 from eomgen.documents.motion_steps import assumption_steps, data_step
@@ -43,17 +42,7 @@ from eomgen.model import (
     names_of,
     range_of,
 )
-from eomgen.proof import (
-    Certificate,
-    Check,
-    DrawnPanel,
-    linear_entries,
-    modes_drawn,
-    responses_drawn,
-    roots_drawn,
-    small_motion_checks,
-    small_motions_reported,
-)
+from eomgen.proof import Certificate, Check, DrawnPanel, certify_small_motions, small_motions_drawn
 from eomgen.study import study_at_rest, study_of
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Call, Expression, Fraction, Scalar
@@ -195,25 +184,15 @@ class Linearization(Result):
 
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
-        first = self.small.first
-        entries, values = self.entries(), self.model.exact_parameters()
-        reported = linear_entries(entries, self.A, self.B) if self.valued else ()
-        printed = small_motions_reported(entries, printed_modes(self.derivation), values)
-        begun = certify(first.equations, begins=self.small.reference.about != EQUILIBRIUM)
-        return begun + small_motion_checks(self.modes) + reported + printed
+        return certify_small_motions(self.modes, self.entries(), printed_modes(self.derivation))
 
     def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
         """Bode's diagrams and roots over a parameter, by M, C, K and B as machines get them; the modes by these."""
-        notation = notation_of(self.model)
-        if panels and self.over is not None:
-            yield roots_drawn(
-                self.entries(), panels, {x: mathtext(x, notation) for x in self.model.parameters}, self.model
-            )
-        elif panels and self.drawn == "bode":
-            names = (*self.coordinates, *self.inputs)
-            yield responses_drawn(self.entries(), panels, {x: mathtext(x, notation) for x in names})
-        elif panels:
-            yield modes_drawn(self.entries(), panels)
+        if panels:
+            notation, names = notation_of(self.model), (*self.coordinates, *self.inputs, *self.model.parameters)
+            drawn = "locus" if self.over is not None else self.drawn
+            letters = {x: mathtext(x, notation) for x in names}
+            yield small_motions_drawn(drawn, self.entries(), panels, letters, self.model)
 
     # -- as outputs ask ------------------------------------------------------------------------------------
 

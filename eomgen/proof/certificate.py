@@ -12,7 +12,11 @@ from typing import TYPE_CHECKING
 
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.free_bodies import SystemFriction
-from eomgen.proof import Certificate, Printed, Trials, identity_checks, other_data
+from eomgen.proof.check import Certificate
+from eomgen.proof.identities import identity_checks
+from eomgen.proof.masses import other_data
+from eomgen.proof.printed import Printed
+from eomgen.proof.trials import Trials
 from eomgen.symbolic.numeric import doing, growing
 
 if TYPE_CHECKING:
