@@ -40,11 +40,11 @@ from eomgen.proof import (
     other_data,
     place_of,
     read_back,
+    run_checks,
     second_definition,
     small_motion_checks,
     values_of,
 )
-from eomgen.questions.single_run import RunProof
 from eomgen.simulation import PhaseRun, Trajectory, joined
 from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state
 from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
@@ -472,7 +472,7 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     if t == 0:
         return ""
     runs = motion.runs_to(output.at)
-    found = RunProof(None, motion.models.p, motion.stepping, motion.models)(joined(motion.models, runs))
+    found = Certificate(run_checks(joined(motion.models, runs), motion.models, motion.stepping))
     if found.ok is None:
         raise DerivationError(
             "the motion has phases of which nothing could be checked",

@@ -15,11 +15,10 @@ from moving import equal
 from slow_run import usual
 
 import eomgen
-from eomgen import certificate
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints import elimination
 from eomgen.mechanics.dynamics.system import free_system_of, system_of
-from eomgen.proof import identities
+from eomgen.proof import certificate, identities
 from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.exact.equality import equal_at_random_states
 
