@@ -188,14 +188,13 @@ class Equations(Result):
         Raises:
             MissingValues: parameters without values.
         """
-        from eomgen.mechanics.linearization import slopes_at
 
         s = self.graph.symbols
         values = (t, *(parameter_vector(self.model) if p is None else p), *(self.start() if x is None else x))
         nodes = (s.t, *s.parameters.values(), *s.q, *s.u)
         known: dict[Any, Any] = dict(zip(nodes, map(float, values), strict=True))
         own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
-        return slopes_at(self.study.first_order, known | dict(zip(s.inputs.values(), own, strict=True)), single=single)
+        return self.study.first_order.slopes_at(known | dict(zip(s.inputs.values(), own, strict=True)), single=single)
 
     def to_sympy_system(self) -> Any:
         """A SymbolicSystem of sympy.physics.mechanics: q' by q and u, M and forcing; theta' is theta_dot(t).

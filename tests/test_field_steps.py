@@ -12,7 +12,7 @@ from eomgen.documents import rendering
 from eomgen.documents.at_instant.plots import centrode_panel
 from eomgen.documents.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.documents.document import Document
-from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
+from eomgen.mechanics.instant.motion_kind import Kinds
 from eomgen.study import MotionFromStart, Study
 from eomgen.symbolic.exact.normal_forms import equal
 from eomgen.symbolic.expression.text import parse
@@ -144,7 +144,7 @@ def test_a_centrode_is_drawn_where_the_centre_runs():
 
     motion = journey_of(LADDER)
     system = motion.phase.system
-    (found,) = all_centrodes(Kinds(system, motion.start))
+    (found,) = Kinds(system, motion.start).centrodes()
     panel = Figure().subplots()
     centrode_panel(panel, system, found, {**motion.phase.numeric_parameters, **motion.numbers})
     fixed, moving, now = (line.get_xydata() for line in panel.get_lines())

@@ -7,7 +7,7 @@ from fractions import Fraction
 from each import each
 
 from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
-from eomgen.symbolic.exact.linear import LinearSystem, Pivots, sparse_solution
+from eomgen.symbolic.exact.linear import LinearSystem, Pivots
 from eomgen.symbolic.expression.derivatives import symbols_of
 from eomgen.symbolic.expression.formula import cos, function, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
@@ -23,7 +23,7 @@ def system(rows, right, unknowns, **how):
         state = {x: number(Fraction(7 + 3 * k, 11)) for k, x in enumerate(symbols_of(scalars))}
         return evaluate(scalars, state, fifty_digits())
 
-    return sparse_solution(LinearSystem(rows, right, unknowns, values), Pivots(**how))
+    return LinearSystem(rows, right, unknowns, values).eliminated(Pivots(**how))
 
 
 def rank(a) -> int:
@@ -47,10 +47,10 @@ def test_a_small_coefficient_is_none_the_less_one():
     r, theta, b = g.symbol("r"), g.symbol("theta"), g.symbol("b")
     state = {r: fifty_digits().number(Fraction(1, 10**40)), theta: fifty_digits().number(1)}
     rows = LinearSystem([{0: 1, 1: r * sin(theta)}, {1: 1}], [0, b], 2, lambda x: evaluate(x, state, fifty_digits()))
-    found = sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants
+    found = rows.eliminated(Pivots(rank=rank, sure=1, factors=[r])).constants
     assert equal_at_random_states([(found[0], -r * sin(theta) * b)]).equal
     state[theta] = state[r]  # an angle that constraints hold at 0, in numbers of 50 digits
-    assert sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants[0] == 0
+    assert rows.eliminated(Pivots(rank=rank, sure=1, factors=[r])).constants[0] == 0
 
 
 def test_what_vanishes_where_ties_hold_and_not_beside_stays_and_is_no_pivot():
@@ -62,7 +62,7 @@ def test_what_vanishes_where_ties_hold_and_not_beside_stays_and_is_no_pivot():
     nothing = sin(c) * sin(c) + cos(c) * cos(c) - 1
     lines = [{0: 1, 1: s}, {0: c, 1: 1, 2: nothing}, {1: nothing, 2: s + 1}]
     rows = LinearSystem(lines, [*b, 3], 3, lambda x: evaluate(x, state, fifty_digits()))
-    found = sparse_solution(rows, Pivots(vanishes=lambda x: equal_at_random_states([(x, 0)]).equal)).constants
+    found = rows.eliminated(Pivots(vanishes=lambda x: equal_at_random_states([(x, 0)]).equal)).constants
     assert equal_at_random_states([(found[1] * (1 - c * s), b[1] - c * b[0]), (found[0], b[0] - s * found[1])]).equal
     assert found[2] == 3 / (s + 1)
 
@@ -74,7 +74,7 @@ def test_what_vanishes_in_the_piece_of_one_state_is_not_zero_in_the_others(size)
     s, b, c = g.symbol("s"), g.symbol("b"), g.symbol("c")
     state = {s: fifty_digits().number(-2)}
     rows = LinearSystem([{0: 1, 1: s + size(s)}, {1: 1}], [b, c], 2, lambda x: evaluate(x, state, fifty_digits()))
-    found = sparse_solution(rows, Pivots()).constants
+    found = rows.eliminated(Pivots()).constants
     assert equal_at_real_states([(found[0], b - (s + size(s)) * c)], states=8).equal
 
 

@@ -36,7 +36,7 @@ from eomgen.identification.constrained_rows import (
     sampled_rows,
 )
 from eomgen.mechanics.dynamics import System
-from eomgen.symbolic.exact import LinearSystem, Pivots, exact_state, simplest, sparse_solution
+from eomgen.symbolic.exact import LinearSystem, Pivots, exact_state, simplest
 from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
@@ -369,7 +369,7 @@ def by_transfers(
     if len(found) < len(follow):
         return {}
     values = partial(evaluate, values=here, arithmetic=fifty_digits())
-    solved = sparse_solution(LinearSystem(found, [0] * len(found), len(moving), values), Pivots(last=kept))
+    solved = LinearSystem(found, [0] * len(found), len(moving), values).eliminated(Pivots(last=kept))
     texts = {}
     for j in follow:
         for i, share in solved.shares.get(j, {}).items():

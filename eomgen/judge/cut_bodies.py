@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import Samples
 from eomgen.judge.terms import angles_in
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, effects_of_load, efforts_of
+from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, efforts_of
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.statics import KINDS, MemberAxis
@@ -134,10 +134,10 @@ def _loads(system: System) -> Iterator[ActingForce]:
             for link, mass in zip(system.motion.links, axes.masses, strict=True):
                 weight = PointForce((link.name, mass.com), times(mass.m, load.acceleration))
                 if not is_zero(mass.m):
-                    pushes = _pushes(system, effects_of_load(axes, weight))
+                    pushes = _pushes(system, axes.effects_of(weight))
                     yield ActingForce(f"the weight of {link.name}", pushes, force.name)
         acts = [load for load in force.loads if isinstance(load, (PointForce, Couple))]
-        pushes = tuple(push for load in acts for push in _pushes(system, effects_of_load(axes, load)))
+        pushes = tuple(push for load in acts for push in _pushes(system, axes.effects_of(load)))
         if pushes:
             pushes = resultant(pushes) if force.spread else pushes
             held = {*symbols_of([x for push in pushes for x in (*push.force, push.couple)])}

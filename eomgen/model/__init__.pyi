@@ -15,9 +15,6 @@ from eomgen.model.composite import Composite as Composite
 # One piece where it is in the body
 from eomgen.model.composite import PlacedPiece as PlacedPiece
 
-# Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre
-from eomgen.model.composite import about as about
-
 # k A
 from eomgen.model.composite import matrix_times as matrix_times
 

@@ -18,12 +18,10 @@ from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
     Pose,
-    SpatialInertia,
     Vector,
     added,
     cos,
     is_zero,
-    minus,
     over,
     plus,
     product,
@@ -74,13 +72,8 @@ class Composite:
         com = _center(placed, _weights(pieces, masses, value))
         I: Matrix = (ZERO, ZERO, ZERO)
         for part in placed:
-            I = added(I, matrix_times(part.sign, about(part.mass, com)))
+            I = added(I, matrix_times(part.sign, part.mass.about(com)))
         return Composite(placed, MassProperties(m, com, I))
-
-
-def about(mass: MassProperties, point: Vector) -> Matrix:
-    """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""
-    return SpatialInertia.about_center(mass.m, minus(mass.com, point), mass.I).I
 
 
 def matrix_times(k: Any, A: Matrix) -> Matrix:

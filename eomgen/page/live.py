@@ -24,7 +24,7 @@ from eomgen.codegen import (
 )
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import is_guess, is_typed, left_of
+from eomgen.mechanics.constraints import is_guess, is_typed
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Scope
 from eomgen.mechanics.start import start_speeds
@@ -131,7 +131,9 @@ class Live:
                 found["ties"] = self.constraints.program
                 found["turned"] = program_of(declared.scope.rates, system.symbols, inputs=system.inputs)
             if self.phase.edges:
-                found["edges"] = program_of(left_of(self.phase.edges), system.symbols, inputs=system.inputs)
+                found["edges"] = program_of(
+                    tuple(edge.left for edge in self.phase.edges), system.symbols, inputs=system.inputs
+                )
         return found
 
     def _frame(self) -> tuple[Scalar, ...]:

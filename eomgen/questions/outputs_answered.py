@@ -36,7 +36,7 @@ from eomgen.errors import (
 )
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
-from eomgen.mechanics.instant import InstantKinematics, requests_motion, requests_of
+from eomgen.mechanics.instant import InstantKinematics, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
     FUNCTIONS,
@@ -54,7 +54,7 @@ from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact import book_form
-from eomgen.symbolic.expression import Call, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
+from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import (
     FLOAT,
     PatienceEnded,
@@ -499,3 +499,9 @@ def _valued(answer: Answer, value: float, where: str) -> Answer:
     if math.isfinite(value):
         return replace(answer, value=float(value) + 0.0)  # -0 is 0
     return replace(answer, message=NO_VALUE.format(where))
+
+
+def requests_motion(formula: Expression) -> bool:
+    """True if a formula contains velocities or accelerations: functions of them, or rates of coordinates."""
+    moves = any(call.name in FUNCTIONS and FUNCTIONS[call.name].moves for call in formula.calls)
+    return moves or any(name.endswith("'") for name in formula.names)

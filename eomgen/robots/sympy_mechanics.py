@@ -33,7 +33,7 @@ from eomgen.frozen import dataclass
 from eomgen.model import Model, loads
 from eomgen.robots.sympy_joints import Words, file_texts, lagrangian_method, speeds_as_rates, tables_of_joints
 from eomgen.robots.tables import Entries, Nine, Triple, toml_text, without_empty
-from eomgen.symbolic.exact import LinearSystem, unique_solution, vanishes
+from eomgen.symbolic.exact import LinearSystem, vanishes
 from eomgen.symbolic.expression import (
     IDENTITY,
     LONGEST,
@@ -253,7 +253,7 @@ class _Energies:
             len(u),
             lambda found: evaluate(found, state, FLOAT),
         )
-        found = unique_solution(system, vanishes=vanishes)
+        found = system.unique_solution(vanishes=vanishes)
         others = [
             row for k, row in enumerate(rows) if k not in chosen
         ]  # of fewer speeds than rates: these constraint rates

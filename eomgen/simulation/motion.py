@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.codegen import compiled, program_of
 from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE, left_of, singular_blocks, stopped_at
+from eomgen.mechanics.constraints import PLACE, singular_blocks
 from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.departure import RestDeparture
@@ -148,7 +148,7 @@ def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | 
     requested = () if plan.until is None else (plan.until(phase),)
     if any(type(x) is not Node for x in requested):
         raise UsageError("nothing in the condition moves: it holds always or never", fix='write "theta = pi/2"')
-    further = (*left_of(phase.edges), *requested)
+    further = (*(edge.left for edge in phase.edges), *requested)
     if not further and not phase.bounds:
         return None
     whole = phase.signals.measured(further)
@@ -169,7 +169,8 @@ def _at_edge(phase: PhaseModel, run: Run) -> Run:
     k = -1 if run.crossing is None else run.crossing.index - len(phase.bounds)
     if not 0 <= k < len(phase.edges):
         return run
-    return replace(run, status="singular", message=stopped_at(phase.edges[k], run.end), crossing=None)
+    message = f"Stopped at t = {run.end:.6g} s: {phase.edges[k].words}, and how it goes on is not determined."
+    return replace(run, status="singular", message=message, crossing=None)
 
 
 def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:

@@ -5,7 +5,7 @@ Model, configuration of its contacts -> PhaseModel: the equations of one phase, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Mapping
+from collections.abc import Callable, Container, Hashable, Mapping
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
@@ -15,7 +15,6 @@ import numpy as np
 from eomgen.codegen import RightHandSide, bordered, compiled, kinematic_rates, program_of
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import edges_of
 from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
@@ -23,6 +22,7 @@ from eomgen.mechanics.dynamics import (
     WellPosed,
 )
 from eomgen.mechanics.free_bodies import Reactions, equations_of_motion
+from eomgen.mechanics.kinematics import Motion, SystemScene
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Edge
 from eomgen.simulation.constraint_drift import (
@@ -369,3 +369,15 @@ class ExactSlope:
         matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
         solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=tolerances.LEAST_CHANGE)[0]
         return np.vstack([rates.reshape(-1, m), solved[:n]])
+
+
+def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
+    """Edges of all constraints of the model except the open ones."""
+    constraints = [
+        (name, constraint) for name, constraint in motion.scope.model.constraints.items() if name not in open
+    ]
+    return tuple(
+        edge
+        for name, constraint in constraints
+        for edge in constraint.edges(SystemScene(motion, f"{constraint.table}.{name}"))
+    )

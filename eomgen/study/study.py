@@ -41,7 +41,7 @@ from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Model, OutputSource, WrittenEquation
-from eomgen.symbolic.exact import LinearSystem, general_solution, legible, readable_all
+from eomgen.symbolic.exact import LinearSystem, legible, readable_all
 from eomgen.symbolic.expression import (
     Call,
     Expression,
@@ -508,7 +508,7 @@ class Study:
             entries, needed = (readable_all(x, Work.ANSWER, self.system.scope.positive) for x in (entries, needed))
         flat = iter(entries)
         rows = [{j: next(flat) for j in row} for row in rows]
-        solution = general_solution(LinearSystem(rows, needed, len(right), values_at_a_state(self.system, entries)))
+        solution = LinearSystem(rows, needed, len(right), values_at_a_state(self.system, entries)).solution()
         names = (*symbols.a, *(symbols.lam[m] for m in kept))
         missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # results with one are not used
         found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}

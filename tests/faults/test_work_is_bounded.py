@@ -25,7 +25,7 @@ from eomgen.simulation import integrator as pace
 from eomgen.simulation import motion as simulation_motion
 from eomgen.simulation.integrator import Stepping, march
 from eomgen.symbolic.exact.expansion import expanded
-from eomgen.symbolic.exact.linear import LinearSystem, general_solution
+from eomgen.symbolic.exact.linear import LinearSystem
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric import work
@@ -145,7 +145,7 @@ def elimination() -> None:
     x, y = symbols()
     values = {x: 2.0, y: 3.0}
     system = LinearSystem([{0: x, 1: y}, {0: y, 1: x}], [1, 1], 2, lambda scalars: [values[each] for each in scalars])
-    general_solution(system)
+    system.solution()
 
 
 def evaluation() -> None:

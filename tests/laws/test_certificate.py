@@ -241,7 +241,7 @@ REACTION_ERRORS = [
     ("ch22_p1", effects.Axes, "arm", to_the_other_side),
     ("arm3", effects, "_armatures", lambda motion, link: [(0, 1)] if link.joint.efforts() else []),
     ("elastic_pendulum", effects, "_effort_effects", lambda axes, effort: []),
-    ("ch18_p3", balance, "effects_of_load", lambda axes, load: ()),
+    ("ch18_p3", balance, "_applied", lambda system, axes: [(0,) * 6 for _ in axes.motion.links]),
 ]
 
 

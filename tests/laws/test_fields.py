@@ -17,7 +17,7 @@ import eomgen
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.instant.kinematic_state import body_motions, composition_of
-from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
+from eomgen.mechanics.instant.motion_kind import Kinds
 from eomgen.mechanics.kinematics.motion import (
     VelocityField,
 )
@@ -415,7 +415,7 @@ constraints.B = { kind = "pin", points = ["coupler.B", "rocker.B"] }
 def test_centrodes_of_cardans_motion_are_circles_one_twice_the_other():
     """A ladder: the circle of radius l about the corner, and that over the ladder as diameter."""
     kinds, _ = kinds_of(CARDAN)
-    (found,) = all_centrodes(kinds)
+    (found,) = kinds.centrodes()
     assert (found.fixed_curve.kind, found.moving_curve.kind) == ("circle", "circle")
     assert [to_text(x) for x in (*found.fixed_curve.at[:2], found.fixed_curve.radius)] == ["0", "0", "l"]
     assert [to_text(x) for x in (*found.moving_curve.at[:2], found.moving_curve.radius)] == ["1/2*l", "0", "1/2*l"]
@@ -424,7 +424,7 @@ def test_centrodes_of_cardans_motion_are_circles_one_twice_the_other():
 def test_centrodes_of_a_rolling_wheel_are_the_line_and_its_rim():
     """y = 0, and the circle of the radius R."""
     kinds, _ = kinds_of(WHEEL)
-    (found,) = all_centrodes(kinds)
+    (found,) = kinds.centrodes()
     assert (found.fixed_curve.kind, found.moving_curve.kind) == ("line", "circle")
     assert [to_text(x) for x in found.fixed_curve.along] == ["1", "0", "0"]
     assert to_text(found.fixed_curve.at[1]) == "0"
@@ -434,7 +434,7 @@ def test_centrodes_of_a_rolling_wheel_are_the_line_and_its_rim():
 def test_the_centre_of_a_crossed_parallelogram_runs_on_an_ellipse_with_the_pivots_as_foci():
     """|C - O1| + |C - O2| = d in the ground, |C - A| + |C - B| = d in the coupler's axes, where the loop closes."""
     kinds, _ = kinds_of(ANTIPARALLELOGRAM)
-    (found,) = all_centrodes(kinds)
+    (found,) = kinds.centrodes()
     assert found.body == "coupler"
     assert found.fixed_curve.kind == found.moving_curve.kind == "curve"
     for state in kinds.possible.states:
@@ -448,7 +448,7 @@ def test_the_centre_of_a_crossed_parallelogram_runs_on_an_ellipse_with_the_pivot
 def test_the_moving_centrode_touches_the_fixed_one(text):
     """Both places of the centre are the same place, and it has the same velocity along both curves."""
     kinds, _ = kinds_of(text)
-    (found,) = all_centrodes(kinds)
+    (found,) = kinds.centrodes()
     system, possible = kinds.system, kinds.possible
     field, pose = system.motion.field(found.body), system.motion.link(found.body).pose
     moved = pose.point(found.moving)

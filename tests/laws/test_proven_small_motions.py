@@ -45,8 +45,8 @@ def test_a_wrong_matrix_is_seen(monkeypatch: pytest.MonkeyPatch, letter: str, wh
 
 def test_a_wrong_state_matrix_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """x' = A x"""
-    right = linearization.state_matrix_of
-    monkeypatch.setattr(linearization, "state_matrix_of", lambda e: right(e) * 1.001)
+    right = reduction.LinearEquations.state_matrix.fget
+    monkeypatch.setattr(reduction.LinearEquations, "state_matrix", property(lambda e: right(e) * 1.001))
     assert "they satisfy x' = A x + B w" in wrong_checks()
 
 
@@ -84,8 +84,8 @@ def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     assert proven["ok"] is True
     assert {"name", "status", "ok", "how", "detail"} <= proven["checks"][-1].keys()
     assert json.loads(run(main, ["linearize", str(PENDULUM), "--json", "--no-certify"]).stdout)["certificate"] is None
-    right = linearization.state_matrix_of
-    monkeypatch.setattr(linearization, "state_matrix_of", lambda e: right(e) * 1.001)
+    right = reduction.LinearEquations.state_matrix.fget
+    monkeypatch.setattr(reduction.LinearEquations, "state_matrix", property(lambda e: right(e) * 1.001))
     failed = run(main, ["linearize", str(PENDULUM)])
     assert failed.exit_code == 3
     assert "do not trust this result" in failed.stdout

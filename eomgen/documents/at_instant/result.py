@@ -25,7 +25,7 @@ from eomgen.documents.motion_steps import data_step
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, all_centrodes, body_motions
+from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, body_motions
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.study import kinematic_state
@@ -122,7 +122,7 @@ class Kinematics(Result):
         """
         from eomgen.documents.at_instant.plots import mechanism_picture
 
-        return mechanism_picture(self.state, () if self.kinds is None else all_centrodes(self.kinds))
+        return mechanism_picture(self.state, () if self.kinds is None else self.kinds.centrodes())
 
     # -- for machines --------------------------------------------------------------------------------
 

@@ -39,7 +39,6 @@ from eomgen.mechanics.instant import (
     PointPair,
     Readable,
     RotationCenter,
-    all_centrodes,
     body_motions,
     composition_of,
 )
@@ -99,12 +98,12 @@ def field_steps(
     motions, particles = body_motions(system, state, kinds), particles_of(system)
     bodies = [motion for motion in motions if motion.body not in particles]
     steps = (kinds_step(motions, particles), *fields_step(bodies, shown, plane=system.scope.model.space == "plane"))
-    return steps if kinds is None else (*steps, *centrodes_step(all_centrodes(kinds), kinds.constants.positive))
+    return steps if kinds is None else (*steps, *centrodes_step(kinds.centrodes(), kinds.constants.positive))
 
 
 def field_payload(system: System, state: Mapping[Node, Scalar], kinds: Kinds | None = None) -> dict[str, Any]:
     """The same for machines: every expression is text of the grammar."""
-    found = {} if kinds is None else {each.body: each for each in all_centrodes(kinds)}
+    found = {} if kinds is None else {each.body: each for each in kinds.centrodes()}
     return {motion.body: _payload(motion, found.get(motion.body)) for motion in body_motions(system, state, kinds)}
 
 

@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion, Principal, short_form
-from eomgen.model import MassProperties, about, about_axis, matrix_times, polar, second_moments
+from eomgen.model import MassProperties, about_axis, matrix_times, polar, second_moments
 from eomgen.symbolic.expression import (
     ZERO,
     Matrix,
@@ -321,7 +321,7 @@ class InertiaRow:
     def shift(self, point: Vector) -> Matrix:
         """m (d.d 1 - d d^T), the parallel-axis term, with the sign of the piece."""
         without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
-        return matrix_times(self.sign, about(without, point))
+        return matrix_times(self.sign, without.about(point))
 
 
 @dataclass(frozen=True)

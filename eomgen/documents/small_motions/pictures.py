@@ -14,7 +14,7 @@ from eomgen.documents.drawing import Sketch, artist_of, draw_model, limits
 from eomgen.documents.figures import Picture, mathtext
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.linearization import LinearEquations, Mode, Modes, SmallMotions, state_matrix_of
+from eomgen.mechanics.linearization import LinearEquations, Mode, Modes, SmallMotions
 from eomgen.model import Range
 from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, tolerances
@@ -262,7 +262,7 @@ def _matrix_over(small: SmallMotions, parameter: str) -> MatrixOf:
         found: dict[str, Any] = {
             name: [[float(next(numbers)) for _ in range(width)] for width in shapes[name]] for name in names
         }
-        return state_matrix_of(replace(exact, **found))
+        return replace(exact, **found).state_matrix
 
     return at
 

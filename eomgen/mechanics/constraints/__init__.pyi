@@ -62,23 +62,14 @@ from eomgen.mechanics.constraints.rows import Constraints as Constraints
 # One scalar row of a constraint
 from eomgen.mechanics.constraints.rows import Row as Row
 
-# Edges of all constraints of the model except the open ones
-from eomgen.mechanics.constraints.rows import edges_of as edges_of
-
 # True for each scalar that is zero at all values of its symbols; shared parts are evaluated once
 from eomgen.mechanics.constraints.rows import hold_identically as hold_identically
 
 # True if the scalar is zero at all values of its symbols (exactly, at random states)
 from eomgen.mechanics.constraints.rows import holds_identically as holds_identically
 
-# Distance left to each edge, at which a motion ends
-from eomgen.mechanics.constraints.rows import left_of as left_of
-
 # The limits of constraints beyond which a run goes, with the first instant that is seen, of LOOKED rows
 from eomgen.mechanics.constraints.rows import limits_passed as limits_passed
 
 # The rows that a constraint has while it is closed, whether it is so or not: how far an open contact is open
 from eomgen.mechanics.constraints.rows import rows_of_constraint as rows_of_constraint
-
-# Reason why a motion ends there
-from eomgen.mechanics.constraints.rows import stopped_at as stopped_at

@@ -24,7 +24,7 @@ from eomgen.mechanics.kinematics import (
 )
 from eomgen.mechanics.state import Numbers
 from eomgen.model import ModelOrPath, Values, model_at
-from eomgen.symbolic.exact import LinearSystem, Pivots, general_solution, simplest
+from eomgen.symbolic.exact import LinearSystem, Pivots, simplest
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -535,7 +535,7 @@ def _fields(forms: _Forms) -> list[DifferentialForm]:
     """Fields that span what all rows allow, as functions of y."""
     n = len(forms.y)
     rows = [{k: x for k, x in enumerate(w) if not is_zero(x)} for w in (*forms.held, *(w for _, w in forms.moving))]
-    solution = general_solution(LinearSystem(rows, [0] * len(rows), n, forms.values), Pivots(last=(n - 1,)))
+    solution = LinearSystem(rows, [0] * len(rows), n, forms.values).solution(Pivots(last=(n - 1,)))
     return [
         tuple(1 if k == f else -solution.shares[k].get(f, 0) if k in solution.shares else 0 for k in range(n))
         for f in solution.free

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from random import Random
@@ -21,7 +21,7 @@ from eomgen.mechanics.kinematics import (
     Scope,
     SystemScene,
 )
-from eomgen.model import ConstraintRow, Edge, Model, PointForce, Push
+from eomgen.model import ConstraintRow, Model, PointForce, Push
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
 from eomgen.symbolic.expression import (
     Fraction,
@@ -414,23 +414,6 @@ def _settled(x: Scalar, verdict: Equality | None) -> bool:
 LOOKED = 200  # rows of a run at which limits are looked at
 
 
-def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
-    """Edges of all constraints of the model except the open ones."""
-    constraints = [
-        (name, constraint) for name, constraint in motion.scope.model.constraints.items() if name not in open
-    ]
-    return tuple(
-        edge
-        for name, constraint in constraints
-        for edge in constraint.edges(SystemScene(motion, f"{constraint.table}.{name}"))
-    )
-
-
-def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
-    """Distance left to each edge, at which a motion ends."""
-    return tuple(edge.vanishes - Fraction(tolerances.AT_AN_EDGE) for edge in edges)
-
-
 def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, ...]:
     """The limits of constraints beyond which a run goes, with the first instant that is seen, of LOOKED rows.
 
@@ -454,11 +437,6 @@ def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, 
                     found.append(Problem(f"{constraint.table}.{name}", what, fix="end the run before"))
                     break
     return tuple(found)
-
-
-def stopped_at(edge: Edge, t: float) -> str:
-    """Reason why a motion ends there."""
-    return f"Stopped at t = {t:.6g} s: {edge.words}, and how it goes on is not determined."
 
 
 MOST_SYMBOLS = 18  # in a velocity row that is multiplied out

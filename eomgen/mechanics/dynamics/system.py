@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
@@ -30,7 +30,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     Symbols,
-    combined,
     depends_on,
     inner,
     is_zero,
@@ -376,7 +375,7 @@ def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
 
 def _over(old: Scope, new: Scope, u: Sequence[Node], rows: SpeedRows) -> Scope:
     """q' = N u + nu with u = rows . w + bias put in, and the meaning of every name."""
-    N = tuple(combined(row, [rows[x][0] for x in u]) for row in old.N)
+    N = tuple(_combined(row, [rows[x][0] for x in u]) for row in old.N)
     nu = tuple(bias + inner(row, [rows[x][1] for x in u]) for row, bias in zip(old.N, old.nu, strict=True))
     new = replace(new, N=N, nu=nu)
     rates = {f"{q.name}'": rate for q, rate in zip(new.symbols.q, new.rates, strict=True)}
@@ -409,3 +408,15 @@ def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node
     else:
         fix = "declare one for each degree of freedom: leave out those that follow from the others"
     raise ModelError(f"{what} ({named})", "speeds", fix)
+
+
+def _combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[Any, ...]:
+    """The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row."""
+    total: list[Any] = []
+    for factor, row in zip(factors, rows, strict=True):
+        total = total or [0] * len(row)
+        if not is_zero(factor):
+            for i, x in enumerate(row):
+                if not is_zero(x):
+                    total[i] = total[i] + factor * x
+    return tuple(total)

@@ -19,7 +19,6 @@ from eomgen.symbolic.exact import (
     LinearSystem,
     Solution,
     cramer,
-    general_solution,
     has_period,
     outside_of_turns,
     readable,
@@ -468,7 +467,7 @@ class ClosedForms:
             n = len(statics.lam)
             lines = [{j: entries[n * k + j] for j in range(n)} for k in range(len(rows))]
             values = digits_at(self.values)
-            solution = general_solution(LinearSystem(lines, readable_all(right, Work.VALUE), n, values))
+            solution = LinearSystem(lines, readable_all(right, Work.VALUE), n, values).solution()
         except (DerivationError, NoValue, ZeroDivisionError):
             return None
         if not all(map(_is_nothing, solution.left)) or not _satisfied(lines, right, solution):

@@ -12,7 +12,7 @@ from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_sys
 from eomgen.mechanics.equilibrium.search import Equilibrium
 from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions, named_reactions
 from eomgen.mechanics.start import values_where_at_rest
-from eomgen.symbolic.exact import LinearSystem, Solution, general_solution, readable_all, simplest, vanishes
+from eomgen.symbolic.exact import LinearSystem, Solution, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import Work, digits_at
 
@@ -149,7 +149,7 @@ def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
     rows = [{j: next(flat) for j in range(len(sought))} for _ in slopes]
     readable_right = readable_all(right, Work.VALUE)
     own, shaken = (
-        general_solution(LinearSystem(rows, readable_right, len(sought), digits_at(values)))
+        LinearSystem(rows, readable_right, len(sought), digits_at(values)).solution()
         for values in (statics.system.scope.values_of_parameters(Random(3), shaken=each) for each in (False, True))
     )
     return shaken if len(shaken.free) == len(own.free) else own  # m1 - m2 is 0 at m1 = m2 alone

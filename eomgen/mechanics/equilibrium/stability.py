@@ -14,7 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
-from eomgen.symbolic.exact import LinearSystem, cramer, general_solution, readable, sign_of_terms, simplest, vanishes
+from eomgen.symbolic.exact import LinearSystem, cramer, readable, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import Node, Scalar, gradient, is_zero, jacobian, substituted
 from eomgen.symbolic.numeric import (
     NoValue,
@@ -228,7 +228,7 @@ class _Place:
         values = self.values or self.statics.system.scope.values_of_parameters(Random(3))
         for column, a in enumerate(along):
             rows = [{j: row[k] for j, k in enumerate(others)} for row in J]
-            solution = general_solution(LinearSystem(rows, [-row[a] for row in J], len(others), digits_at(values)))
+            solution = LinearSystem(rows, [-row[a] for row in J], len(others), digits_at(values)).solution()
             if len(solution.constants) < len(others):
                 raise NoValue("the constraints do not determine the other coordinates there")
             for j, k in enumerate(others):

@@ -91,9 +91,6 @@ from eomgen.mechanics.free_bodies.wrenches import Effect as Effect
 # All components: those of the joints, of the drives of given motions, and of the constraints
 from eomgen.mechanics.free_bodies.wrenches import components_of as components_of
 
-# A load on its body; none on the ground
-from eomgen.mechanics.free_bodies.wrenches import effects_of_load as effects_of_load
-
 # Effects of drive, spring, damper and rotor of a body's joint, on the body first; () for a constraint
 from eomgen.mechanics.free_bodies.wrenches import efforts_of as efforts_of
 

@@ -14,7 +14,6 @@ from eomgen.mechanics.free_bodies.wrenches import (
     Axes,
     Component,
     components_of,
-    effects_of_load,
     joint_effects,
     placements_of,
     seen_by_carriers,
@@ -305,7 +304,7 @@ def _center_accelerations(axes: Axes) -> list[Vector]:
 def _applied(system: System, axes: Axes) -> list[tuple[Scalar, ...]]:
     """(force, moment about the mass centre) of everything given, on every body."""
     totals: list[tuple[Scalar, ...]] = [(0,) * 6 for _ in axes.motion.links]
-    effects = [e for load in (*system.loads.placed, *system.loads.weights) for e in effects_of_load(axes, load)]
+    effects = [e for load in (*system.loads.placed, *system.loads.weights) for e in axes.effects_of(load)]
     for effect in (*effects, *joint_effects(system)):
         totals[effect.link] = tuple(a + b for a, b in zip(totals[effect.link], effect.six, strict=True))
     return totals

@@ -25,7 +25,7 @@ from eomgen.mechanics.free_bodies.solution import (
     values_at_a_state,
 )
 from eomgen.mechanics.free_bodies.wrenches import Component, joint_friction, normals_of_round, sliding_friction
-from eomgen.symbolic.exact import LinearSystem, Solution, ValuesAt, components, cramer, unique_solution
+from eomgen.symbolic.exact import LinearSystem, Solution, ValuesAt, components, cramer
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -349,7 +349,7 @@ def _solved(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) 
     """The unknowns: by determinants where they are few, else by elimination."""
     entries = [x for row in rows for x in row.values()]
     equations = LinearSystem(rows, right, len(right), values_at_a_state(system, entries))
-    return list(unique_solution(equations, vanishes=holds_identically))
+    return list(equations.unique_solution(vanishes=holds_identically))
 
 
 # -------- round contacts --------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from dataclasses import replace
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row, holds_identically
 from eomgen.mechanics.free_bodies.balance import Balance
-from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect, effects_of_load, efforts_of
+from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import BodyLink, Motion
 from eomgen.model import AXIS_NAMES, PointForce
 from eomgen.symbolic.expression import (
@@ -195,7 +195,7 @@ def _left_of_row(balance: Balance, row: Row, q: Node) -> Scalar:
     if is_zero(slope):
         return 0
     seen = motion if row.carrier is None else motion.seen_from(row.carrier)
-    left = _work(seen, [e for push in row.pushes for e in effects_of_load(Axes(seen), push)], q) - slope
+    left = _work(seen, [e for push in row.pushes for e in Axes(seen).effects_of(push)], q) - slope
     return 0 if is_zero(left) or holds_identically(left) else left
 
 

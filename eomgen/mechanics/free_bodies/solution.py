@@ -20,7 +20,7 @@ from eomgen.mechanics.free_bodies.balance import (
     with_what_is_carried,
 )
 from eomgen.mechanics.free_bodies.wrenches import Effect
-from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, general_solution, readable_all, sign_of_terms
+from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, readable_all, sign_of_terms
 from eomgen.symbolic.expression import Node, Scalar, SparseRow, is_zero, substituted
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits
 
@@ -98,8 +98,7 @@ def _solved(
 
     last = [j for j, c in enumerate(balance.components) if c.friction_effects]
     values = values_at_a_state(balance.system, entries)
-    return general_solution(
-        LinearSystem(rows, needed, len(balance.names), values),
+    return LinearSystem(rows, needed, len(balance.names), values).solution(
         Pivots(rank=simple, last=last, sure=sure, tests=tests, factors=parameters, steady=has_sign, regular=regular),
     )
 

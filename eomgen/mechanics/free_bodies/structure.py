@@ -15,10 +15,10 @@ from eomgen.mechanics.free_bodies.velocity_plan import (
     MOST_MOTIONS,
     VelocityPlan,
 )
-from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, joint_effects
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.model import BodyPoint, Constraint, declared_at
-from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, general_solution, readable_all
+from eomgen.symbolic.exact import LinearSystem, Pivots, Solution, readable_all
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -89,7 +89,7 @@ class Structure:
     def pushes(self) -> tuple[tuple[str, tuple[Effect, ...]], ...]:
         """(owner, effects of a unit) of every row; of an unknown of the loads its derivative, on the bodies."""
         axes = Axes(self.system.motion)
-        given = [e for load in self.system.loads.placed for e in effects_of_load(axes, load)]
+        given = [e for load in self.system.loads.placed for e in axes.effects_of(load)]
         given += joint_effects(self.system)
         own = [(component.owner, component.effects) for component in self.components]
         return (*own, *((p.name, tuple(filter(None, (_slope_of(e, p) for e in given)))) for p in self.unknowns))
@@ -247,7 +247,7 @@ class Structure:
         deltas = tuple(graph.symbol(f"(delta {k})") for k in range(len(self.rows)))
         sure = () if self.is_special else tuple(self.system.symbols.parameters.values())
         equations = LinearSystem(self.rows, deltas, len(self.columns), digits_at(parameters))
-        solution = general_solution(equations, Pivots(factors=sure))
+        solution = equations.solution(Pivots(factors=sure))
         return _Solved(solution, deltas, len(self.columns), parameters)
 
     def _parameters(self, *, shaken: bool) -> State:

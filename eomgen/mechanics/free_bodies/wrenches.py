@@ -113,6 +113,24 @@ class Axes:
         link = self.motion.links[i]
         return in_turned_axes(self.of_body(link), minus(place, self.masses[i].com))
 
+    def effects_of(self, load: PointForce | Couple) -> tuple[Effect, ...]:
+        """A load on its body; none on the ground."""
+        body = load.body if isinstance(load, Couple) else load.place[0]
+        if body is None:
+            return ()
+        i = self.motion.index[body]
+        link = self.motion.links[i]
+        given = load.couple if isinstance(load, Couple) else load.force
+        vector = (
+            given
+            if load.axes == body and not self.plane
+            else self.of_ground(link, self.motion.in_ground_axes(given, load.axes))
+        )
+        beyond = None if load.beyond is None else apply(transposed(link.pose.R), load.beyond)
+        if isinstance(load, Couple):
+            return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1], beyond),)
+        return (Effect(i, vector, ZERO, self.arm(i, load.place[1]), load.place[1], beyond),)
+
 
 def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) -> list[Effect]:
     """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
@@ -184,25 +202,6 @@ def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vec
 
 def _over(magnitude: Scalar, square: Scalar) -> Scalar:
     return magnitude if type(square) is int and square == 1 else over(magnitude, square)
-
-
-def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]:
-    """A load on its body; none on the ground."""
-    body = load.body if isinstance(load, Couple) else load.place[0]
-    if body is None:
-        return ()
-    i = axes.motion.index[body]
-    link = axes.motion.links[i]
-    given = load.couple if isinstance(load, Couple) else load.force
-    vector = (
-        given
-        if load.axes == body and not axes.plane
-        else axes.of_ground(link, axes.motion.in_ground_axes(given, load.axes))
-    )
-    beyond = None if load.beyond is None else apply(transposed(link.pose.R), load.beyond)
-    if isinstance(load, Couple):
-        return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1], beyond),)
-    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1], beyond),)
 
 
 # -------- components ------------------------------------------------------------------------------------------
@@ -395,7 +394,7 @@ def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
         return False
     loads = (*system.loads.placed, *(push for row in system.constraints.rows for push in (*row.pushes, *row.tangent)))
     mine = [load for load in loads if link.name == (load.body if isinstance(load, Couple) else load.place[0])]
-    return all(is_zero(effect.six[5]) for load in mine for effect in effects_of_load(axes, load))
+    return all(is_zero(effect.six[5]) for load in mine for effect in axes.effects_of(load))
 
 
 def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str, Vector]]:
@@ -444,7 +443,7 @@ def _constraint_components(system: System, axes: Axes) -> list[Component]:
             continue
         found.append(_of_constraint(system, row, effects, () if row.round else _friction(axes, row)))
         if row.round and row.friction is not None:
-            along = tuple(e for push in row.tangent for e in effects_of_load(axes, push))
+            along = tuple(e for push in row.tangent for e in axes.effects_of(push))
             found.append(
                 Component(row.constraint, "constraint", "t", row.number + 1, along, bilateral_friction=row.friction)
             )
@@ -466,7 +465,7 @@ def seen_by_carriers(system: System) -> dict[int, tuple[str, Component]]:
 
 
 def _constraint_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
-    return tuple(e for push in row.pushes for e in effects_of_load(axes, push))
+    return tuple(e for push in row.pushes for e in axes.effects_of(push))
 
 
 def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
@@ -481,7 +480,7 @@ def _friction(axes: Axes, row: Row) -> tuple[FrictionShare, ...]:
         return ()
     ways = zip("ts", row.shares or (1,), (row.tangent, row.cross_tangent), strict=False)
     return tuple(
-        FrictionShare(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
+        FrictionShare(label, row.friction * share, tuple(e for push in pushes for e in axes.effects_of(push)))
         for label, share, pushes in ways
     )
 

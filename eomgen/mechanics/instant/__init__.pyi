@@ -43,14 +43,8 @@ from eomgen.mechanics.instant.motion_kind import Kind as Kind
 # The kinds of motion of the bodies of a system
 from eomgen.mechanics.instant.motion_kind import Kinds as Kinds
 
-# The centrodes of all bodies that have them
-from eomgen.mechanics.instant.motion_kind import all_centrodes as all_centrodes
-
 # Values of the output functions in one system: the scene in which the functions are written
 from eomgen.mechanics.instant.quantities import Quantities as Quantities
-
-# True if a formula contains velocities or accelerations: functions of them, or rates of coordinates
-from eomgen.mechanics.instant.quantities import requests_motion as requests_motion
 
 # True if a formula calls functions that are found from this source
 from eomgen.mechanics.instant.quantities import requests_of as requests_of

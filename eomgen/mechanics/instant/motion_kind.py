@@ -157,6 +157,16 @@ class Kinds:
                 return f"{body}.{name}"
         return ""
 
+    def centrodes(self) -> tuple[Centrodes, ...]:
+        """The centrodes of all bodies that have them."""
+        found = []
+        for link in self.system.motion.links:
+            try:
+                found.append(centrodes_of(self, link.name))
+            except (DerivationError, MissingValues):  # no motion near the start at which it could be tried
+                continue
+        return tuple(each for each in found if each is not None)
+
 
 def fixed_point(field: VelocityField) -> Vector:
     """The point of a body whose velocity and acceleration vanish together, where there is one and omega turns.
@@ -525,17 +535,6 @@ def centrodes_of(kinds: Kinds, body: str) -> Centrodes | None:
         return None
     curves = [curve_of(place, kinds.possible, kinds.constants) for place in (fixed, moving)]
     return Centrodes(body, fixed, moving, *curves)
-
-
-def all_centrodes(kinds: Kinds) -> tuple[Centrodes, ...]:
-    """The centrodes of all bodies that have them."""
-    found = []
-    for link in kinds.system.motion.links:
-        try:
-            found.append(centrodes_of(kinds, link.name))
-        except (DerivationError, MissingValues):  # no motion near the start at which it could be tried
-            continue
-    return tuple(each for each in found if each is not None)
 
 
 def parameters(kinds: Kinds) -> int:

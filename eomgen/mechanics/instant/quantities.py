@@ -49,12 +49,6 @@ from eomgen.symbolic.numeric import Work
 # hold the symbols a, in which they are linear.
 
 
-def requests_motion(formula: Expression) -> bool:
-    """True if a formula contains velocities or accelerations: functions of them, or rates of coordinates."""
-    moves = any(call.name in FUNCTIONS and FUNCTIONS[call.name].moves for call in formula.calls)
-    return moves or any(name.endswith("'") for name in formula.names)
-
-
 def requests_of(formula: Expression, source: str) -> bool:
     """True if a formula calls functions that are found from this source."""
     return any(call.name in FUNCTIONS and FUNCTIONS[call.name].source == source for call in formula.calls)

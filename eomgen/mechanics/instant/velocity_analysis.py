@@ -23,7 +23,7 @@ from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.start import Start, values_where_at_rest
 from eomgen.model import Model, WrittenEquation, freed, is_node
-from eomgen.symbolic.exact import LinearSystem, Pivots, collected_in, general_solution, legible, readable_all
+from eomgen.symbolic.exact import LinearSystem, Pivots, collected_in, legible, readable_all
 from eomgen.symbolic.expression import (
     Expression,
     Fraction,
@@ -503,8 +503,7 @@ def solution_of(
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
-    found = general_solution(
-        LinearSystem(rows, [line.right for line in lines], len(unknowns), digits_at(values)),
+    found = LinearSystem(rows, [line.right for line in lines], len(unknowns), digits_at(values)).solution(
         Pivots(tolerance=tolerances.ELIMINATED_AT_50 if near is None else tolerances.RANK),
     )
     result = {}

@@ -14,7 +14,7 @@ from eomgen.mechanics.integrals.first_integrals import (
 )
 from eomgen.mechanics.integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.kinematics import primitive
-from eomgen.symbolic.exact import LinearSystem, Solution, general_solution, sign_of_terms, simplest, vanishes
+from eomgen.symbolic.exact import LinearSystem, Solution, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -328,12 +328,12 @@ def _solved(
     Parameters are off any special value, m1 - m2 is 0 at m1 = m2 alone, unless the rows determine less for these.
     """
     try:
-        own = general_solution(LinearSystem(rows, right, unknowns, digits_at(Closure(system.constraints).generic())))
+        own = LinearSystem(rows, right, unknowns, digits_at(Closure(system.constraints).generic())).solution()
     except (DerivationError, MissingValues):
         return None
     with suppress(DerivationError, MissingValues):
         shaken = Closure(system.constraints).generic(shaken=True)
-        found = general_solution(LinearSystem(rows, right, unknowns, digits_at(shaken)))
+        found = LinearSystem(rows, right, unknowns, digits_at(shaken)).solution()
         return found if len(found.free) == len(own.free) else own
     return own
 

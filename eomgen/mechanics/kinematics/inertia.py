@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model import MassProperties, about
+from eomgen.model import MassProperties
 from eomgen.symbolic.expression import (
     ZERO,
     Fraction,
@@ -186,7 +186,7 @@ class SystemInertia:
         """I_P of the bodies together, ground axes."""
         total: Matrix = (ZERO, ZERO, ZERO)
         for body in bodies:
-            total = added(total, about(self.in_ground(body), point))
+            total = added(total, self.in_ground(body).about(point))
         return total
 
     def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector:

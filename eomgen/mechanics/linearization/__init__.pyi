@@ -2,16 +2,10 @@
 
 # The equations of motion of a system, and their first derivatives, as graph scalars
 from eomgen.mechanics.linearization.first_order import FirstOrder as FirstOrder
-
-# (d x'/d x, d x'/d w) at a state, x = (q, u)
-from eomgen.mechanics.linearization.first_order import slopes_at as slopes_at
 from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
 
 # The equations of small motions about a reference
 from eomgen.mechanics.linearization.linearization import SmallMotions as SmallMotions
-
-# A of x' = A x, x = (q_i, u_i)
-from eomgen.mechanics.linearization.linearization import state_matrix_of as state_matrix_of
 from eomgen.mechanics.linearization.modes import MATRICES as MATRICES
 
 # speeds of matrices whose entries are written as a book does

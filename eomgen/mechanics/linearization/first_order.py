@@ -138,6 +138,33 @@ class FirstOrder:
         WellPosed(equations).refuse_massless()
         return FirstOrder(equations, tuple(relations))
 
+    def slopes_at(self, state: Mapping[Node, Any], *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
+        """(d x'/d x, d x'/d w) at a state, x = (q, u); where constraints follow from others their multipliers are the
+        least.
+
+        Args:
+            state: t, parameters, inputs, q and u as floats.
+            single: nan where a change opens constraints that follow from others: no acceleration then closes them all.
+        """
+        e, s = self.equations, self.system.symbols
+        nq, nu, k, w = len(s.q), len(s.u), len(e.J), len(s.inputs)
+        here = Doubles(state)
+        M, J, N = (here.array(rows, nu) for rows in (e.M, e.J, e.N))
+        K = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+        right = np.concatenate([here.array((e.forcing,), nu)[0], -here.array((e.gamma,), k)[0]])
+        found = _solved(K, right, k)
+        here = here.with_values(dict(zip((*s.a, *s.lam), found.tolist(), strict=True)))
+        columns = {"R_q": nq, "R_u": nu, "W": w, "A_q": nq, "A_u": nu, "S_q": nq}
+        at = {name: here.array(self.derivatives[name], n) for name, n in columns.items()}
+        slopes = np.block([[at["R_q"], at["R_u"], -at["W"]], [at["A_q"], at["A_u"], np.zeros((k, w))]])
+        changes = _solved(K, slopes, k)
+        below = 0.0 - changes[:nu]
+        if single:
+            left = abs(K @ changes - slopes).max(axis=0, initial=0.0)
+            below[:, left > tolerances.RANK * (1.0 + abs(slopes).max(axis=0, initial=0.0))] = np.nan
+        both = np.vstack([np.hstack([at["S_q"], N, np.zeros((nq, w))]), below])
+        return both[:, : nq + nu], both[:, nq + nu :]
+
 
 def _held(system: System) -> list[list[Scalar]]:
     """A row for each driven coordinate: it moves as given, and not otherwise."""
@@ -196,34 +223,6 @@ def _same(A: np.ndarray, B: np.ndarray) -> np.ndarray:
 # EquationsOfMotion -> A, B of dx' = A dx + B dw at any state, in numbers.
 #
 # K [da; dlam] = -[R_q dq + R_u du - W dw; A_q dq + A_u du],   K = [M, -J^T; J, 0],   dq' = S_q dq + N du
-
-
-def slopes_at(first: FirstOrder, state: Mapping[Node, Any], *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """(d x'/d x, d x'/d w) at a state, x = (q, u); where constraints follow from others their multipliers are the
-    least.
-
-    Args:
-        state: t, parameters, inputs, q and u as floats.
-        single: nan where a change opens constraints that follow from others: no acceleration then closes them all.
-    """
-    e, s = first.equations, first.system.symbols
-    nq, nu, k, w = len(s.q), len(s.u), len(e.J), len(s.inputs)
-    here = Doubles(state)
-    M, J, N = (here.array(rows, nu) for rows in (e.M, e.J, e.N))
-    K = np.block([[M, -J.T], [J, np.zeros((k, k))]])
-    right = np.concatenate([here.array((e.forcing,), nu)[0], -here.array((e.gamma,), k)[0]])
-    found = _solved(K, right, k)
-    here = here.with_values(dict(zip((*s.a, *s.lam), found.tolist(), strict=True)))
-    columns = {"R_q": nq, "R_u": nu, "W": w, "A_q": nq, "A_u": nu, "S_q": nq}
-    at = {name: here.array(first.derivatives[name], n) for name, n in columns.items()}
-    slopes = np.block([[at["R_q"], at["R_u"], -at["W"]], [at["A_q"], at["A_u"], np.zeros((k, w))]])
-    changes = _solved(K, slopes, k)
-    below = 0.0 - changes[:nu]
-    if single:
-        left = abs(K @ changes - slopes).max(axis=0, initial=0.0)
-        below[:, left > tolerances.RANK * (1.0 + abs(slopes).max(axis=0, initial=0.0))] = np.nan
-    both = np.vstack([np.hstack([at["S_q"], N, np.zeros((nq, w))]), below])
-    return both[:, : nq + nu], both[:, nq + nu :]
 
 
 def _solved(K: np.ndarray, right: np.ndarray, constraints: int) -> np.ndarray:

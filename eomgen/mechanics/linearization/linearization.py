@@ -113,7 +113,7 @@ class SmallMotions:
     @cached_property
     def state_matrix(self) -> np.ndarray:
         """A of x' = A x + B w, x = (q_i, u_i)."""
-        return state_matrix_of(self.numbers)
+        return self.numbers.state_matrix
 
     @cached_property
     def input_matrix(self) -> np.ndarray:
@@ -146,12 +146,6 @@ class SmallMotions:
             )
         reference, first = _balanced(system, about, guess, wanted)
         return _about(first, reference, wanted)
-
-
-def state_matrix_of(e: LinearEquations) -> np.ndarray:
-    """A of x' = A x, x = (q_i, u_i)."""
-    M, C, K = (floats(x) for x in (e.M, e.C, e.K))
-    return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
 
 
 def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[SmallMotions | None]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside, state_matrix_of
+from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
@@ -434,7 +434,7 @@ def _with_others(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> np.
     x = np.zeros(len(every) + len(small.whole.speeds), dtype=complex)
     x[places] = v
     if others and eigenvalue:
-        A = state_matrix_of(small.whole) - eigenvalue * np.eye(len(x))
+        A = small.whole.state_matrix - eigenvalue * np.eye(len(x))
         free = [k for k in range(len(x)) if k not in places]
         x[free] = np.linalg.lstsq(A[:, free], -A[:, places] @ v, rcond=None)[0]
     return x[: len(every)]

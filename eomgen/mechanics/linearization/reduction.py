@@ -103,6 +103,12 @@ class LinearEquations:
         upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in E[i]] for i, row in enumerate(F)]
         return upper + [[*self.K[i], *(s * m + c for m, c in zip(self.M[i], self.C[i], strict=True))] for i in range(n)]
 
+    @property
+    def state_matrix(self) -> np.ndarray:
+        """A of x' = A x, x = (q_i, u_i)."""
+        M, C, K = (floats(x) for x in (self.M, self.C, self.K))
+        return np.block([[floats(self.F), floats(self.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+
 
 # -- accelerations and multipliers of the reference -------------------------------------------------------
 

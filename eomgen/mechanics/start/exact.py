@@ -17,7 +17,7 @@ from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates, start_speeds
 from eomgen.mechanics.state import Doubles, Numbers, Split
-from eomgen.symbolic.exact import LinearSystem, general_solution, simplest, unique_solution
+from eomgen.symbolic.exact import LinearSystem, simplest
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -291,7 +291,7 @@ class _Sought:
             rows.append({j: e for j, e in enumerate(line) if not is_zero(e)} | forces)
             right.append(0)
         try:
-            return unique_solution(LinearSystem(rows, right, n + (k if W else 0), self._digits))[:n]
+            return LinearSystem(rows, right, n + (k if W else 0), self._digits).unique_solution()[:n]
         except DerivationError:
             return ()
 
@@ -450,7 +450,7 @@ def speeds_near(system: System, places: State, numbers: Mapping[Node, float]) ->
     still = substituted(rows, dict.fromkeys(u, 0))
     lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in jacobian(rows, u)]
     values = digits_at(system.scope.values_of_parameters(Random(3)))
-    solution = general_solution(LinearSystem(lines, [-x for x in still], len(u), values))
+    solution = LinearSystem(lines, [-x for x in still], len(u), values).solution()
     known = {j: Fraction(f"{numbers[u[j]]:.{DIGITS}g}") for j in solution.free}
     found: dict[Node, Scalar] = {u[j]: x for j, x in known.items()}
     for j, x in solution.constants.items():

@@ -19,7 +19,7 @@ from itertools import pairwise
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, effects_of_load, joint_effects
+from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, joint_effects
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import vanishes
@@ -369,7 +369,7 @@ class MemberLoads:
         for force in system.loads.applied:
             if not force.spread and not system.scope.model.forces[force.name].by_mass:
                 placed = [load for load in force.loads if isinstance(load, (PointForce, Couple))]
-                effects = [e for load in placed for e in effects_of_load(axes, load) if e.link == link]
+                effects = [e for load in placed for e in axes.effects_of(load) if e.link == link]
                 yield from (self._placed(effect, f"the force '{force.name}'") for effect in effects)
         yield from (effect for effect in joint_effects(system) if effect.link == link)
 

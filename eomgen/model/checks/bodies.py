@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import Catalog
-from eomgen.model.composite import Composite, about, sources
+from eomgen.model.composite import Composite, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.positions import DocumentPath
@@ -242,7 +242,7 @@ def _float(x: Any) -> float:
 def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Diagnostic]:
     I = composite.whole.I
     moments = [_float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
-    size = max(abs(_float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)
+    size = max(abs(_float(x)) for p in composite.pieces for row in p.mass.about(composite.whole.com) for x in row)
     if not possible(moments, size):
         listed = ", ".join(f"{x:g}" for x in moments)
         what = f"no body has the inertia of '{name}': [{listed}] breaks the triangle inequality"

@@ -5,7 +5,8 @@ from __future__ import annotations
 from eomgen.frozen import dataclass
 from eomgen.model.forces.load import Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
-from eomgen.symbolic.expression import AnyScalar, Vector
+from eomgen.symbolic.expression import AnyScalar, Fraction, Vector
+from eomgen.symbolic.numeric import tolerances
 
 
 @dataclass(frozen=True)
@@ -48,6 +49,11 @@ class Edge:
 
     words: str
     vanishes: AnyScalar
+
+    @property
+    def left(self) -> AnyScalar:
+        """Distance left to the edge, at which a motion ends."""
+        return self.vanishes - Fraction(tolerances.AT_AN_EDGE)
 
 
 def direction_of(scene: LoadContext, v: Vector) -> Vector:

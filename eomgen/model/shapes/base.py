@@ -9,7 +9,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression import ZERO, Matrix, Vector, matrix_of, parse
+from eomgen.symbolic.expression import ZERO, Matrix, SpatialInertia, Vector, matrix_of, minus, parse
 from eomgen.symbolic.numeric import tolerances
 
 Cell = Callable[[Sequence[Any]], Vector]
@@ -24,6 +24,10 @@ class MassProperties:
     m: Any
     com: Vector
     I: Matrix
+
+    def about(self, point: Vector) -> Matrix:
+        """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""
+        return SpatialInertia.about_center(self.m, minus(self.com, point), self.I).I
 
 
 @dataclass(frozen=True, kw_only=True)

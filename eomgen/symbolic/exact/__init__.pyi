@@ -74,15 +74,6 @@ from eomgen.symbolic.exact.linear import Pivots as Pivots
 from eomgen.symbolic.exact.linear import Solution as Solution
 from eomgen.symbolic.exact.linear import ValuesAt as ValuesAt
 
-# x as far as the rows determine it, by elimination; common factors are divided out first where any are named
-from eomgen.symbolic.exact.linear import general_solution as general_solution
-
-# Solution by elimination: pivots are plain numbers if there are any; least fill-in comes first (Markowitz)
-from eomgen.symbolic.exact.linear import sparse_solution as sparse_solution
-
-# x of as many rows as unknowns: by minors where the unknowns are few, else by elimination
-from eomgen.symbolic.exact.linear import unique_solution as unique_solution
-
 # Scalars as a person writes them, each made so once
 from eomgen.symbolic.exact.normal_forms import Legibly as Legibly
 

@@ -40,9 +40,6 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import PIECEWISE, check_patience, lengths_of, tolerances
 
-__all__ = ["LinearSystem", "Pivots", "Solution", "general_solution", "unique_solution"]
-
-
 TOGETHER = 4  # unknowns of one set of normal equations
 PIECES_TRIED = 8  # states at which something vanishes in every piece: it may stand in any of them
 
@@ -98,6 +95,64 @@ class LinearSystem:
     unknowns: int
     values: ValuesAt
 
+    def solution(self, pivots: Pivots | None = None) -> Solution:
+        """x as far as the rows determine it, by elimination; named common factors are divided out first."""
+        pivots = pivots or Pivots()
+        return scaled_solution(self, pivots) if pivots.factors else self.eliminated(pivots)
+
+    def eliminated(self, pivots: Pivots) -> Solution:
+        """Solution by elimination: pivots are plain numbers if there are any; least fill-in comes first (Markowitz)."""
+        rank, late, sure = pivots.rank, frozenset(pivots.last), pivots.sure
+
+        def tested(line: _Line, j: int) -> bool:
+            """True if W has the entry too: friction alone does not determine the normal force that it comes from."""
+            return j not in late or not is_zero(line.test.get(j, 0))
+
+        def divides(line: _Line, j: int, x: Scalar) -> int:
+            """The rank of an entry as a pivot, no better than that of W's."""
+            if not tested(line, j):
+                return (sure or 0) + 1
+            return max(rank(x), rank(line.test[j])) if j in late else rank(x)
+
+        lines = _lines(self, pivots)
+        order: list[tuple[int, _Line]] = []
+        if sure is not None:
+            _eliminate(
+                lines,
+                order,
+                lambda line, j, x: (divides(line, j, x), j in late),
+                pivots,
+                worst=(sure, True),
+            )
+        waits = bool(late) or (sure is not None and any(line.entries for line in lines))
+        if sure is not None:
+            _normal(lines, order, self.values)
+        if pivots.regular:
+            _squares(lines, order, late, self.values, pivots.tolerance)
+        done = len(order)
+        _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots)
+        free = tuple(j for j in range(self.unknowns) if j not in {pivot for pivot, _ in order})
+        constants, shares = _substituted(order, free, pivots)
+        worst = None if waits else max((rank(line.entries[j]) for j, line in order), default=0)
+        unsure = any(divides(line, j, line.entries[j]) > (sure or 0) for j, line in order[done:])
+        return Solution(constants, shares, free, tuple(line.right for line in lines), worst, unsure)
+
+    def unique_solution(self, *, vanishes: Callable[[Scalar], bool] | None = None) -> tuple[Scalar, ...]:
+        """x of as many rows as unknowns: by minors where the unknowns are few, else by elimination.
+
+        Args:
+            vanishes: says if an entry is zero at all states, not only where the values are (None: by these values).
+        Raises:
+            DerivationError: there is no single solution.
+        """
+        if self.unknowns <= cramer.LARGEST_BLOCK and len(self.rows) == self.unknowns:
+            found, _ = cramer.solution_by_minors(self.rows, [(x,) for x in self.right], vanishes=vanishes or is_zero)
+            return tuple(x for (x,) in found)
+        solution = self.solution(Pivots(vanishes=vanishes) if vanishes else None)
+        if solution.free:
+            raise DerivationError("the equations have no single solution")
+        return tuple(solution.constants[j] for j in range(self.unknowns))
+
 
 def _number_first(a: Scalar) -> int:
     return 1 if type(a) is Node else 0
@@ -138,44 +193,6 @@ class Pivots:
     steady: Callable[[Node], bool] = lambda _: True
     regular: bool = False
     vanishes: Callable[[Scalar], bool] = in_every_piece
-
-
-def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
-    """Solution by elimination: pivots are plain numbers if there are any; least fill-in comes first (Markowitz)."""
-    rank, late, sure = pivots.rank, frozenset(pivots.last), pivots.sure
-
-    def tested(line: _Line, j: int) -> bool:
-        """True if W has the entry too: friction alone does not determine the normal force that it comes from."""
-        return j not in late or not is_zero(line.test.get(j, 0))
-
-    def divides(line: _Line, j: int, x: Scalar) -> int:
-        """The rank of an entry as a pivot, no better than that of W's."""
-        if not tested(line, j):
-            return (sure or 0) + 1
-        return max(rank(x), rank(line.test[j])) if j in late else rank(x)
-
-    lines = _lines(system, pivots)
-    order: list[tuple[int, _Line]] = []
-    if sure is not None:
-        _eliminate(
-            lines,
-            order,
-            lambda line, j, x: (divides(line, j, x), j in late),
-            pivots,
-            worst=(sure, True),
-        )
-    waits = bool(late) or (sure is not None and any(line.entries for line in lines))
-    if sure is not None:
-        _normal(lines, order, system.values)
-    if pivots.regular:
-        _squares(lines, order, late, system.values, pivots.tolerance)
-    done = len(order)
-    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots)
-    free = tuple(j for j in range(system.unknowns) if j not in {pivot for pivot, _ in order})
-    constants, shares = _substituted(order, free, pivots)
-    worst = None if waits else max((rank(line.entries[j]) for j, line in order), default=0)
-    unsure = any(divides(line, j, line.entries[j]) > (sure or 0) for j, line in order[done:])
-    return Solution(constants, shares, free, tuple(line.right for line in lines), worst, unsure)
 
 
 def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
@@ -502,7 +519,7 @@ def scaled_solution(system: LinearSystem, pivots: Pivots) -> Solution:
     """Solution by elimination, once the common factors in `pivots.factors` are divided out of rows and columns."""
     found = without_common_factors(system.rows, system.right, frozenset(pivots.factors), pivots.tests, pivots.steady)
     scaled = replace(system, rows=found.rows, right=found.right)
-    solution = sparse_solution(scaled, replace(pivots, tests=found.tests))
+    solution = scaled.eliminated(replace(pivots, tests=found.tests))
     s = found.columns
     constants = {j: over(x, s.get(j, 1)) for j, x in solution.constants.items()}
     shares = {j: {f: over(x * s.get(f, 1), s.get(j, 1)) for f, x in own.items()} for j, own in solution.shares.items()}
@@ -619,26 +636,3 @@ def _common(line: list[PowerProduct], own: Collection[Node]) -> SymbolPowers:
 #     common factors        rows and columns in units of their own       products of the symbols named
 #
 # Numbers have `symbolic.numeric.dense`, the prime field `symbolic.numeric.arithmetic`.
-
-
-def general_solution(system: LinearSystem, pivots: Pivots | None = None) -> Solution:
-    """x as far as the rows determine it, by elimination; common factors are divided out first where any are named."""
-    pivots = pivots or Pivots()
-    return scaled_solution(system, pivots) if pivots.factors else sparse_solution(system, pivots)
-
-
-def unique_solution(system: LinearSystem, *, vanishes: Callable[[Scalar], bool] | None = None) -> tuple[Scalar, ...]:
-    """x of as many rows as unknowns: by minors where the unknowns are few, else by elimination.
-
-    Args:
-        vanishes: says if an entry is zero at all states, not only where the values are (None: decided by these values).
-    Raises:
-        DerivationError: there is no single solution.
-    """
-    if system.unknowns <= cramer.LARGEST_BLOCK and len(system.rows) == system.unknowns:
-        found, _ = cramer.solution_by_minors(system.rows, [(x,) for x in system.right], vanishes=vanishes or is_zero)
-        return tuple(x for (x,) in found)
-    solution = general_solution(system, Pivots(vanishes=vanishes) if vanishes else None)
-    if solution.free:
-        raise DerivationError("the equations have no single solution")
-    return tuple(solution.constants[j] for j in range(system.unknowns))

@@ -27,7 +27,6 @@ from eomgen.symbolic.expression import (
     Node,
     Owner,
     Scalar,
-    argument,
     depends_on,
     linear_terms,
     order,
@@ -80,7 +79,7 @@ def outside_of_turns(equations: Iterable[Scalar]) -> frozenset[Node]:
         x = stack.pop()
         inside: Iterable[Scalar | None] = x.args
         if x.op in ("sin", "cos"):
-            terms = linear_terms(argument(x, 0))
+            terms = linear_terms(x.args[0])
             inside = (a for a, c in terms.items() if a is not None and (a.op != "symbol" or type(c) is not int))
         for a in inside:
             if type(a) is Node and a not in seen:
@@ -362,7 +361,8 @@ def _values(
 def _inverse(graph: Owner, name: str, value: Scalar) -> Scalar:
     """One angle with this cosine or sine: of cos(y) it is y."""
     if type(value) is Node and value.op == name:
-        return argument(value, 0)
+        angle: Scalar = value.args[0]
+        return angle
     return graph.call("a" + name, value)
 
 

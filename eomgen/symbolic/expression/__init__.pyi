@@ -40,9 +40,6 @@ from eomgen.symbolic.expression.formula import Instruction as Instruction
 
 # A name as an argument: of a constraint (`B`), a body, a point (`arm.end`), a member (`n1-n2`), a coordinate
 from eomgen.symbolic.expression.formula import Reference as Reference
-
-# The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row
-from eomgen.symbolic.expression.formula import combined as combined
 from eomgen.symbolic.expression.formula import cos as cos
 from eomgen.symbolic.expression.formula import function as function
 from eomgen.symbolic.expression.formula import inner as inner
@@ -77,9 +74,6 @@ from eomgen.symbolic.expression.node import ScalarRow as ScalarRow
 from eomgen.symbolic.expression.node import ScalarRows as ScalarRows
 from eomgen.symbolic.expression.node import SparseRow as SparseRow
 from eomgen.symbolic.expression.node import State as State
-
-# Argument number k of x
-from eomgen.symbolic.expression.node import argument as argument
 
 # a with its like terms collected: (theta1 - pi/2) + (theta2 - theta1) -> theta2 - pi/2
 from eomgen.symbolic.expression.node import collected as collected

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import difflib
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import field
 from math import isqrt
 from typing import Any, TypeVar, overload
@@ -584,18 +584,6 @@ def inner(a: Iterable[Any], b: Iterable[Any]) -> Any: ...
 def inner(a: Iterable[Any], b: Iterable[Any]) -> Any:
     """The sum of a_k b_k; what is multiplied by 0 is not looked at."""
     return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
-
-
-def combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[Any, ...]:
-    """The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row."""
-    total: list[Any] = []
-    for factor, row in zip(factors, rows, strict=True):
-        total = total or [0] * len(row)
-        if not is_zero(factor):
-            for i, x in enumerate(row):
-                if not is_zero(x):
-                    total[i] = total[i] + factor * x
-    return tuple(total)
 
 
 def selected(a: Any, bound: Any, if_below: Any, if_above: Any) -> Any:
