@@ -107,7 +107,7 @@ def _streams(content: bytes) -> Iterator[str]:
 
 def _unpacked(page: str) -> str:
     """A page of HTML with all that it carries packed."""
-    from eomgen.proof.reports_read import copies_undone, unpacked
+    from eomgen.page.reports_read import copies_undone, unpacked
 
     def inside(found: re.Match[str]) -> str:
         try:
@@ -156,7 +156,7 @@ def _apart(found: str, right: str) -> str:
 
 def _pages(text: str) -> Iterable[Callable[[str], Iterable[Any]]]:
     """The reader of a page of LaTeX or Markdown; none of another text."""
-    from eomgen.proof.pages_read import latex_page, markdown_page
+    from eomgen.documents.pages_read import latex_page, markdown_page
 
     return [latex_page] if "\\begin{document}" in text else [markdown_page] if "\n$$\n" in text else []
 

@@ -10,9 +10,9 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
+from eomgen.documents.pages_read import SetLetters, tokens_of, tree_value, typeset
 from eomgen.documents.read_back import misspelt, page_read_back
 from eomgen.documents.texts_read import json_read_back, text_read_back
-from eomgen.proof.pages_read import SetLetters, tokens_of, tree_value, typeset
 from eomgen.symbolic.numeric.evaluation import FLOAT
 from eomgen.symbolic.print.latex import Notation
 

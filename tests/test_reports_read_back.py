@@ -12,14 +12,14 @@ from slow_run import usual
 
 import eomgen
 from eomgen.documents.figures import KINDS, kinds_of_lines
+from eomgen.documents.pages_read import tokens_of
 from eomgen.page.contents import Attachment, Report, ReportSection
 from eomgen.page.figure import COLORS, number_axis
 from eomgen.page.formats import written_as
 from eomgen.page.markup import mathml
 from eomgen.page.read_back import _carried, report_read_back
 from eomgen.page.report import Subject, report, report_of
-from eomgen.proof.pages_read import tokens_of
-from eomgen.proof.reports_read import copies_undone, curves_of, markup_of, tex_of
+from eomgen.page.reports_read import copies_undone, curves_of, markup_of, tex_of
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.print.names import ACCENTS, STYLES
 

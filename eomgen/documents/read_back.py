@@ -15,6 +15,24 @@ from random import Random
 from typing import Any
 
 from eomgen.documents.document import Document
+from eomgen.documents.pages_read import (
+    GREEK_LETTERS,
+    PAGES,
+    PageBlock,
+    PageLine,
+    SetLetters,
+    Tokens,
+    Tree,
+    between_equals,
+    closing_brace,
+    names_of_tree,
+    said_by,
+    spoken,
+    tokens_of,
+    tree_value,
+    typeset,
+    unlike_words,
+)
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -40,28 +58,7 @@ from eomgen.documents.statements import (
 )
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.proof import (
-    GREEK_LETTERS,
-    PAGES,
-    Check,
-    PageBlock,
-    PageLine,
-    SetLetters,
-    Tokens,
-    Tree,
-    between_equals,
-    checked,
-    closing_brace,
-    differing,
-    names_of_tree,
-    said_by,
-    spoken,
-    tokens_of,
-    tree_value,
-    typeset,
-    unchecked,
-    unlike_words,
-)
+from eomgen.proof import Check, checked, differing, unchecked
 from eomgen.symbolic.expression import LONGEST, Graph, Node, Scalar, order, parse, sampled_of
 from eomgen.symbolic.numeric import READ_BACK, NoValue, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import Notation

@@ -23,16 +23,15 @@ from eomgen.model import Model, Unit
 from eomgen.page.live import Live, live_of, single_reactions
 from eomgen.page.markup import in_a_script, mathml, packed
 from eomgen.page.packing import packed_columns
+from eomgen.page.reports_read import columns_unpacked, unpacked
 from eomgen.proof import (
     Check,
     NumericState,
     Tally,
-    columns_unpacked,
     differing,
     picture_of_page,
     pictures_reported,
     states_shown,
-    unpacked,
 )
 from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
 from eomgen.simulation import PhaseModel, Trajectory

@@ -12,28 +12,32 @@ from functools import partial
 
 import numpy as np
 
-from eomgen.documents import HOW, Formula, PageComparison, Wanted, flat, formula_said, wanted_of
-from eomgen.errors import ExpressionError
+from eomgen.documents import (
+    HOW,
+    Formula,
+    PageComparison,
+    PageLine,
+    SetLetters,
+    Wanted,
+    flat,
+    formula_said,
+    spoken,
+    typeset_name,
+    wanted_of,
+)
 from eomgen.model import Unit
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.formats import FilesByName
-from eomgen.proof import (
-    Check,
-    PageLine,
+from eomgen.page.reports_read import (
     ReadCurves,
     ReadReport,
-    SetLetters,
-    Tally,
-    checked,
     columns_reported,
     html_report,
     latex_report,
     markdown_report,
     notebook_report,
-    spoken,
-    tokens_of,
-    typeset,
 )
+from eomgen.proof import Check, Tally, checked
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.numeric import NoValue, tolerances
 
@@ -184,11 +188,7 @@ def _other_text(content: bytes, right: str) -> str:
 def _named(line: PageLine, letters: SetLetters) -> str:
     """The name of a column that a legend says."""
     if len(line) == 1 and line[0].tex:
-        try:
-            tree = typeset(tokens_of(line[0].tex), letters)
-        except ExpressionError:  # of no column
-            return ""
-        return str(tree[1]) if tree[0] == "symbol" else ""
+        return typeset_name(line[0].tex, letters)
     return "".join(part.character for part in line)
 
 

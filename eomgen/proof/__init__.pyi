@@ -59,6 +59,12 @@ from eomgen.proof.degrees_of_freedom import lines_otherwise as lines_otherwise
 # Rows of constraints that keep a value of the start, with their gaps
 from eomgen.proof.degrees_of_freedom import rows_that_stay as rows_that_stay
 
+# Content of one panel of a diagram
+from eomgen.proof.drawn_panels import DrawnPanel as DrawnPanel
+
+# Its panels, bars of colours left out
+from eomgen.proof.drawn_panels import panels_of as panels_of
+
 # Check that the values set in each run are of their ranges and laws
 from eomgen.proof.drawn_values import drawn_otherwise as drawn_otherwise
 
@@ -118,46 +124,6 @@ from eomgen.proof.masses import other_data as other_data
 
 # Accuracy that a run promises: an error of at most 10 (rtol size + atol) for each step
 from eomgen.proof.motion import Promise as Promise
-from eomgen.proof.pages_read import GREEK_LETTERS as GREEK_LETTERS
-from eomgen.proof.pages_read import PAGES as PAGES
-
-# One block of a page
-from eomgen.proof.pages_read import PageBlock as PageBlock
-from eomgen.proof.pages_read import PageLine as PageLine
-
-# Typesetting of symbols
-from eomgen.proof.pages_read import SetLetters as SetLetters
-from eomgen.proof.pages_read import Tokens as Tokens
-
-# (operation, *parts); ("number", c), ("symbol", name)
-from eomgen.proof.pages_read import Tree as Tree
-
-# Sides between the equality signs that are not inside brackets or braces
-from eomgen.proof.pages_read import between_equals as between_equals
-
-# Index at which the brace that opens at k closes
-from eomgen.proof.pages_read import closing_brace as closing_brace
-
-# The names of the symbols of a tree
-from eomgen.proof.pages_read import names_of_tree as names_of_tree
-
-# Character that a formula stands for in a sentence: $\cdot$, $^{2}$; "" for any other formula
-from eomgen.proof.pages_read import said_by as said_by
-
-# Words as they are compared: without blanks and brackets, exponents as digits, a dot for a product
-from eomgen.proof.pages_read import spoken as spoken
-
-# The commands, numbers and letters of a formula; an index in braces always, L_{x} for L_x
-from eomgen.proof.pages_read import tokens_of as tokens_of
-
-# A tree in numbers
-from eomgen.proof.pages_read import tree_value as tree_value
-
-# A formula of LaTeX as a tree
-from eomgen.proof.pages_read import typeset as typeset
-
-# Number of parts that say these words; None where they say others
-from eomgen.proof.pages_read import unlike_words as unlike_words
 
 # Message that names a pin which is on the other side of its links' hinges than reported; ""
 from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
@@ -209,39 +175,6 @@ from eomgen.proof.reported_small_motions import PrintedModes as PrintedModes
 
 # Check of a picture of small motions
 from eomgen.proof.reported_small_motions import small_motions_drawn as small_motions_drawn
-
-# Content of one panel of a diagram
-from eomgen.proof.reports_read import DrawnPanel as DrawnPanel
-
-# The curves of a drawing with its axes
-from eomgen.proof.reports_read import ReadCurves as ReadCurves
-
-# Content of a report as it is read back
-from eomgen.proof.reports_read import ReadReport as ReadReport
-
-# Columns of a table that a page carries: a line that names them, then their differences
-from eomgen.proof.reports_read import columns_reported as columns_reported
-
-# Columns that are named
-from eomgen.proof.reports_read import columns_unpacked as columns_unpacked
-
-# A report as a page of HTML
-from eomgen.proof.reports_read import html_report as html_report
-
-# A report as LaTeX: texts under pictures and in its proof are words
-from eomgen.proof.reports_read import latex_report as latex_report
-
-# A report as Markdown; of a picture the words under it
-from eomgen.proof.reports_read import markdown_report as markdown_report
-
-# The words of a notebook, without its cells of code
-from eomgen.proof.reports_read import notebook_report as notebook_report
-
-# Its panels, bars of colours left out
-from eomgen.proof.reports_read import panels_of as panels_of
-
-# Bytes that a page carries packed: gzip, then base64
-from eomgen.proof.reports_read import unpacked as unpacked
 
 # Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there
 from eomgen.proof.resting import certify_equilibria as certify_equilibria

@@ -43,11 +43,11 @@ from eomgen.mechanics.statics import (
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_loads import STRUNG, acting_otherwise, strung_otherwise, threads_of
+from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
 from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
 from eomgen.proof.reported_sections import ReportedSections, ReportedWork, sections_reported, works_reported
-from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
 from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
 

@@ -556,6 +556,15 @@ def typeset(tokens: Sequence[str], letters: SetLetters) -> Tree:
     return TypesetReading(tuple(tokens), letters).whole()
 
 
+def typeset_name(tex: str, letters: SetLetters) -> str:
+    """Name of the symbol that a formula is; "" of any other formula."""
+    try:
+        tree = typeset(tokens_of(tex), letters)
+    except ExpressionError:
+        return ""
+    return str(tree[1]) if tree[0] == "symbol" else ""
+
+
 def names_of_tree(tree: Tree) -> Iterable[str]:
     """The names of the symbols of a tree."""
     if tree[0] == "symbol":
