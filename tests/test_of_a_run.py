@@ -15,8 +15,9 @@ from scipy.special import ellipj, ellipk
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
+from eomgen.model import requested_of
 from eomgen.model.fields import Table
-from eomgen.questions.of_a_run import requested_of
+from eomgen.proof import SamplesOfRun
 from eomgen.symbolic.numeric.isolation import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow
@@ -207,14 +208,14 @@ def test_an_extreme_that_falls_between_few_samples_is_no_contradiction():
     )
     run = eomgen.simulate(eomgen.loads(text), time=2 * math.pi, samples=6)
     assert run.quantities["push"].value > 2 * np.max(np.abs(run["x"]))
-    assert [check.status for check in run.proof.whole.checks()] == ["holds"]
+    assert [check.status for check in SamplesOfRun(run.proof.whole).checks()] == ["holds"]
 
 
 def test_a_wrong_extreme_fails_the_proof(monkeypatch):
     """A sample above the maximum contradicts it."""
     model = replace(eomgen.loads(PENDULUM), outputs=Table({"peak": eomgen.Output(value="max(q')")}))
     run = eomgen.simulate(model, time=4, samples=101)
-    whole = run.proof.whole
+    whole = SamplesOfRun(run.proof.whole)
     assert [check.status for check in whole.checks()] == ["holds"]
     monkeypatch.setattr(ChebyshevPieces, "extreme", lambda self, sign: (0.9 * max(self.c[:, 0]), 0.0))
     assert [check.status for check in whole.checks()] == ["fails"]
@@ -222,14 +223,14 @@ def test_a_wrong_extreme_fails_the_proof(monkeypatch):
 
 def test_what_is_told_of_a_run_is_held_against_its_samples(swing):
     """Another value at an instant, none where it is met, one of a later event: each differs from the samples."""
-    found = swing.proof.whole
+    found, samples = swing.proof.whole, SamplesOfRun(swing.proof.whole)
     model = eomgen.loads(PENDULUM)
     for text in ("q at t = 1", "q' at q = 0, event 2", "max(q')", "q + 1", "q at t = 20", "q' at q = 0, event 40"):
         requested = requested_of(model, text)
-        assert found.answered_otherwise(requested, found.of(requested).value) == ""
+        assert samples.answered_otherwise(requested, found.of(requested).value) == ""
     at = requested_of(model, "q at t = 1")
-    assert "it is not 1.9" in found.answered_otherwise(at, 1.9)
-    assert "no value, and it is met near t = 1" in found.answered_otherwise(at, None)
-    assert "2" in found.answered_otherwise(requested_of(model, "q"), 2.1)
+    assert "it is not 1.9" in samples.answered_otherwise(at, 1.9)
+    assert "no value, and it is met near t = 1" in samples.answered_otherwise(at, None)
+    assert "2" in samples.answered_otherwise(requested_of(model, "q"), 2.1)
     later = replace(found.of(requested_of(model, "q' at q = 0, event 3")))
-    assert found.answered_otherwise(requested_of(model, "q' at q = 0, event 2"), later.value)
+    assert samples.answered_otherwise(requested_of(model, "q' at q = 0, event 2"), later.value)

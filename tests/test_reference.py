@@ -20,7 +20,7 @@ from eomgen.cli import main
 from eomgen.model.model import Model
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.quantities import UNITS
-from eomgen.questions.of_a_run import is_of_a_run
+from eomgen.simulation import is_of_a_run
 from eomgen.symbolic.expression.formula import NAMES
 
 ROOT = Path(__file__).parent.parent

@@ -29,7 +29,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
-from eomgen.questions.of_a_run import WholeRun
+from eomgen.simulation import WholeRun
 from eomgen.sweeps import workers
 from eomgen.sweeps import workers as kernel
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of

@@ -24,7 +24,7 @@ from eomgen.mechanics.free_bodies.wrenches import Axes, components_of
 from eomgen.model import outputs
 from eomgen.model.outputs.base import OutputFunction, OutputSource
 from eomgen.page.figure import rest_figure
-from eomgen.questions.of_a_run import is_of_a_run
+from eomgen.simulation import is_of_a_run
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"

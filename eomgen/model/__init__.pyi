@@ -244,9 +244,6 @@ from eomgen.model.quantities import Typed as Typed
 # factor * pi^pi_power, in units of SI
 from eomgen.model.quantities import Unit as Unit
 
-# Both sides of `left = right`, each with its unit
-from eomgen.model.quantities import parse_typed_equation as parse_typed_equation
-
 # A time [s]: a number, "500 ms", (500, "ms"), a quantity of pint; a plain number is in seconds
 from eomgen.model.quantities import seconds as seconds
 
@@ -301,6 +298,12 @@ from eomgen.model.replaced import range_of as range_of
 
 # Refuses a name of what takes no values
 from eomgen.model.replaced import refuse_what_is_not_set as refuse_what_is_not_set
+
+# Output requested by a text
+from eomgen.model.replaced import requested_of as requested_of
+
+# Request whose plain numbers of the instant have the units of the model file, and these readings
+from eomgen.model.replaced import requested_typed as requested_typed
 
 # A function of time that is given in Python: a number in SI or with a unit, an expression, samples [SI]
 from eomgen.model.replaced import time_law as time_law

@@ -1,11 +1,12 @@
-"""Model -> the model with what a person typed: values, starts, inputs.
+"""Model -> the model with what a person typed: values of parameters, starts and inputs; and what was taken.
 
-Model -> the model with what a person typed: values of parameters, starts and inputs; and what was taken.
+Requests are typed too: a range, an equation, an output of a text, "max(reaction_x(A))", "theta' at theta = 0, event 2".
 """
 
 from __future__ import annotations
 
 import math
+import re
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
@@ -20,12 +21,13 @@ from eomgen.frozen import dataclass
 from eomgen.model.arithmetic import value_of
 from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.driven import law_of, with_feedback
-from eomgen.model.fields import Table, WrittenEquation, is_mixed
+from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation, is_mixed
 from eomgen.model.model import Model
+from eomgen.model.parts import Output
 from eomgen.model.quantities import Typed, Unit, parse_typed_equation
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.model.typed import Settled, Typing, shown
-from eomgen.symbolic.expression import Expression
+from eomgen.symbolic.expression import Expression, parse
 
 Values = Mapping[str, Typed]
 
@@ -435,3 +437,70 @@ def _finite(values: list[float], text: str) -> list[float]:
     if all(math.isfinite(x) for x in values):
         return values
     raise UsageError(f"'{text}' is no range: its values are no numbers", fix=LIKE)
+
+
+# -- requests of outputs -------------------------------------------------------------------------
+
+
+def requested_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
+    """Request whose plain numbers of the instant have the units of the model file, and these readings.
+
+    Raises:
+        UsageError: the instant cannot be read, or a unit does not fit.
+    """
+    formula, at, rest = text.partition(" at ")
+    condition, comma, event = rest.partition(", event")
+    if text in model.outputs or not at or condition.strip() == AtRest.text:
+        return text, ()
+    try:
+        sides = parse_typed_equation(condition)
+        _, taken = equation_typed(model, condition, declared=True)
+    except ExpressionError as error:
+        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
+    units = {each.typed: each.unit for each in taken}
+    written = (f"{side.text} {units.get(side.text, '') if unit is None else unit.text}".strip() for side, unit in sides)
+    return f"{formula} at {' = '.join(written)}{comma}{event}", taken
+
+
+def requested_of(model: Model, text: str) -> Output:
+    """Output requested by a text: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
+
+    In a formula the name of an output without an instant stands for its formula.
+
+    Raises:
+        UsageError: the text cannot be read, or a name in it is unknown.
+    """
+    if text in model.outputs:
+        return model.outputs[text]
+    formula, at, condition = text.partition(" at ")
+    condition, comma, event = condition.partition(", event")
+    try:
+        output = Output(value=parse(_in_full(model, formula.strip()), references=True))
+        if at:
+            when: Any = AtRest() if condition.strip() == AtRest.text else equation_in(model, condition.strip())
+            output = replace(output, at=when)
+        if comma:
+            output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
+        replace(model, outputs=Table({"asked": output}))
+    except ValueError as error:
+        raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", fix=f"2, or {EVERY}") from error
+    except ExpressionError as error:
+        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
+    except ModelError as error:
+        raise UsageError(f"'{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
+    return output
+
+
+def _in_full(model: Model, formula: str) -> str:
+    """Formula in which names of outputs without an instant are replaced by their formulas."""
+    tables = [*model.trusses.values(), model]
+    others = {
+        name
+        for part in tables
+        for what, x in vars(part).items()
+        if isinstance(x, Table) and what != "outputs"
+        for name in x
+    }
+    plain = {name: f"({output.value})" for name, output in model.outputs.items() if output.at is None}
+    names = "|".join(map(re.escape, plain.keys() - others))
+    return re.sub(rf"(?<![\w.])({names})(?![\w.'(])", lambda found: plain[found[0]], formula) if names else formula

@@ -1,25 +1,16 @@
 """Door of the room: what other rooms may import from `eomgen.proof`."""
 
+# Solver from which answers came
+from eomgen.proof.answers import AnswerSolver as AnswerSolver
+
+# Proof of the equations, where an answer needs them, then of every answer
+from eomgen.proof.answers import certify_answers as certify_answers
+
 # A system in one phase, at a state
 from eomgen.proof.at_a_state import NumericState as NumericState
 
-# The first state of each supply where the motion has accelerations
-from eomgen.proof.at_a_state import moving_states as moving_states
-
-# Message if a number is wrong by more than its change between nearby states; ""
-from eomgen.proof.at_a_state import off_by as off_by
-
-# Time and first coordinates of a state, in words
-from eomgen.proof.at_a_state import place_of as place_of
-
-# A printed formula as a scalar of the system
-from eomgen.proof.at_a_state import read_back as read_back
-
 # Check the equations of a system
 from eomgen.proof.certificate import certify as certify
-
-# Check what no coordinate moves: where it stands, what is applied to it, the balance of every body
-from eomgen.proof.certificate import certify_standing as certify_standing
 from eomgen.proof.check import SIGNS as SIGNS
 
 # The proof that comes with a result
@@ -107,20 +98,11 @@ from eomgen.proof.imported_mjcf import mjcf_otherwise as mjcf_otherwise
 # Checks of a printed kinematic state
 from eomgen.proof.instant import instant_checks as instant_checks
 
-# Message if the value of a function of the motion differs from that of its second definition; ""
-from eomgen.proof.instant import second_definition as second_definition
-
-# Every symbol at the instant, with 50 digits; parameters and rates that have no value are something
-from eomgen.proof.instant import values_of as values_of
-
 # Stated mass properties of bodies about a point
 from eomgen.proof.masses import Stated as Stated
 
 # Checks of every shape, of the parts of bodies, and of all stated mass properties
 from eomgen.proof.masses import mass_checks as mass_checks
-
-# A failing check of parameters or masses that are not those of the file; the check of sampled functions
-from eomgen.proof.masses import other_data as other_data
 
 # Accuracy that a run promises: an error of at most 10 (rtol size + atol) for each step
 from eomgen.proof.motion import Promise as Promise
@@ -182,9 +164,6 @@ from eomgen.proof.resting import certify_equilibria as certify_equilibria
 # Check the equations of motion, the small motions against differences of these, and what is reported of them
 from eomgen.proof.small_motions import certify_small_motions as certify_small_motions
 
-# Checks of the reference state, the matrices, and the modes
-from eomgen.proof.small_motions import small_motion_checks as small_motion_checks
-
 # States in motion at which every constraint holds, positions and speeds, by where dependent coordinates are free
 from eomgen.proof.states import consistent_states as consistent_states
 
@@ -205,3 +184,6 @@ from eomgen.proof.verdicts import JudgedEquation as JudgedEquation
 
 # Checks of all verdicts; those that numbers cannot decide are unchecked
 from eomgen.proof.verdicts import verdicts_again as verdicts_again
+
+# The samples of a run as a witness of its outputs
+from eomgen.proof.whole_run import SamplesOfRun as SamplesOfRun

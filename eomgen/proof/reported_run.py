@@ -7,7 +7,7 @@ its name; a column has the right name if it is the integral of the column that i
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property, partial
 from typing import Any
@@ -23,7 +23,8 @@ from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow
 from eomgen.proof.emitted_code import WORK
 from eomgen.proof.instant import second_definition
 from eomgen.proof.motion import Leg, Promise, code_and_steps, energy_and_constraints
-from eomgen.simulation import Phase, PhaseModels, Stepping, Trajectory, formulas_of
+from eomgen.proof.whole_run import SamplesOfRun
+from eomgen.simulation import Phase, PhaseModels, Stepping, Trajectory, WholeRun, formulas_of
 from eomgen.symbolic.expression import Expression, Fraction, Scalar, order
 from eomgen.symbolic.numeric import NoValue, tolerances
 
@@ -37,17 +38,14 @@ def run_checks(
     found: Trajectory,
     models: PhaseModels,
     how: Stepping,
-    *,
-    instants: np.ndarray | None = None,
-    answers: Iterable[Check] = (),
+    whole: WholeRun | None = None,
 ) -> tuple[Check, ...]:
     """Checks of a run; an unmade one where a Python function sets an input.
 
     Args:
         models: its phases.
         how: the tolerances of the run.
-        instants: those at which it must have a row; None: its own.
-        answers: checks of what was requested of the whole run.
+        whole: the outputs of the whole run, and the instants at which it must have a row; None: those that it has.
     """
     if _is_fed(found):
         what = "a Python function sets an input: its values between the states are not known"
@@ -55,8 +53,7 @@ def run_checks(
     return (
         *code_and_steps(_legs(found, how), _promise(found, how)),
         *(watched_checks(found, how) if found.watch is None else found.watched),
-        *answers,
-        *rows_left_out(found, instants),
+        *(() if whole is None else (*SamplesOfRun(whole).checks(), *rows_left_out(found, whole.plan.instants))),
         *reaction_columns_hold(found),
         *output_columns_hold(found, formulas_of(models.model)),
         *_contacts(found, models),

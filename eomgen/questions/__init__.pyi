@@ -3,12 +3,6 @@
 # The runs, each as `simulator(time, parameters, start)` gives it
 from eomgen.questions.batch_of_runs import many_runs as many_runs
 
-# Output requested by a text
-from eomgen.questions.of_a_run import requested_of as requested_of
-
-# Request whose plain numbers of the instant have the units of the model file, and these readings
-from eomgen.questions.of_a_run import requested_typed as requested_typed
-
 # One output: exact, as a number, or why there is none
 from eomgen.questions.outputs_answered import Answer as Answer
 

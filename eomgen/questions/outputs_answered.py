@@ -49,9 +49,8 @@ from eomgen.model import (
     Values,
     model_at,
 )
-from eomgen.proof import Certificate
-from eomgen.questions.of_a_run import is_of_a_run
-from eomgen.questions.proof_of_answers import Solver, certificate_of
+from eomgen.proof import AnswerSolver, Certificate, certify_answers
+from eomgen.simulation import is_of_a_run
 from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
@@ -80,7 +79,7 @@ class Answers(dict[str, Answer], Result):
         stopped: "interrupted" or "out of patience", where only the outputs before it were sought; "" for a whole run.
     """
 
-    def __init__(self, found: Mapping[str, Answer], solver: Solver, stopped: str = "") -> None:
+    def __init__(self, found: Mapping[str, Answer], solver: AnswerSolver, stopped: str = "") -> None:
         super().__init__(found)
         self._solver, self.stopped = solver, stopped
 
@@ -112,7 +111,7 @@ class Answers(dict[str, Answer], Result):
     def certify(self) -> Certificate:
         """Proof of the equations, then of every number by the motion in numbers and of every text by its number."""
         with doing("the proof of the answers"):
-            return certificate_of(self._solver, self)
+            return certify_answers(self._solver, self)
 
 
 def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values | None = None) -> Answers:

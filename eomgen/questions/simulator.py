@@ -31,11 +31,11 @@ from eomgen.model import (
     WrittenEquation,
     law_of,
     nearest,
+    requested_of,
     seconds,
     with_values,
 )
 from eomgen.proof import Certificate, checked, rows_that_stay
-from eomgen.questions.of_a_run import WholeRun, requested_of
 from eomgen.questions.single_run import finished_run, phase_models, run
 from eomgen.simulation import (
     DerivedAt,
@@ -45,6 +45,7 @@ from eomgen.simulation import (
     Plan,
     Stepping,
     Trajectory,
+    WholeRun,
     breakpoints_of,
     formulas_of,
     has_phases,

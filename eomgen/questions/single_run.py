@@ -19,8 +19,7 @@ from eomgen.frozen import dataclass, with_fields
 from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
 from eomgen.mechanics.free_bodies import with_friction
 from eomgen.model import Output, Typed, WrittenEquation
-from eomgen.proof import Certificate, Check, certify, run_checks, watched_checks
-from eomgen.questions.of_a_run import WholeRun
+from eomgen.proof import Certificate, Check, SamplesOfRun, certify, run_checks, watched_checks
 from eomgen.simulation import (
     SAMPLES,
     Accuracy,
@@ -31,6 +30,7 @@ from eomgen.simulation import (
     Run,
     Stepping,
     Trajectory,
+    WholeRun,
     condition_of,
     formulas_of,
     instants_of,
@@ -48,25 +48,21 @@ class RunProof:
     """Proof of a run: a trajectory -> its certificate.
 
     Args:
-        equations: as they were derived; None: they are proven elsewhere.
+        equations: as they were derived.
         how: the tolerances of the run.
         models: its phases.
         whole: the whole run, for outputs such as extremes and means.
     """
 
-    equations: Equations | None
+    equations: Equations
     how: Stepping
     models: PhaseModels
-    whole: WholeRun | None = None
+    whole: WholeRun
 
     @doing("the proof of the run")
     def __call__(self, found: Trajectory) -> Certificate:
         """The proof of the equations, then that of the run."""
-        proven = Certificate(()) if self.equations is None else certify(self.equations.graph)
-        if self.whole is None:
-            return proven + run_checks(found, self.models, self.how)
-        answers, instants = self.whole.checks(), self.whole.plan.instants
-        return proven + run_checks(found, self.models, self.how, instants=instants, answers=answers)
+        return certify(self.equations.graph) + run_checks(found, self.models, self.how, self.whole)
 
     def watch(self, found: Trajectory) -> tuple[Check, ...]:
         """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
@@ -76,14 +72,14 @@ class RunProof:
 def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:
     """Difference in words between a reported value of an output and the samples of the run; "" without one.
 
-    It is that of `WholeRun.answered_otherwise`.
+    It is that of `SamplesOfRun.answered_otherwise`.
 
     Raises:
         NoValue: the states of the run are not known.
     """
-    if not isinstance(found.proof, RunProof) or found.proof.whole is None:
+    if not isinstance(found.proof, RunProof):
         raise NoValue("the states of the run are not known")
-    return found.proof.whole.answered_otherwise(output, reported)
+    return SamplesOfRun(found.proof.whole).answered_otherwise(output, reported)
 
 
 @doing("the motion in time")

@@ -36,10 +36,10 @@ from eomgen.model import (
     Values,
     model_at,
     names_of,
+    requested_of,
     seconds,
 )
 from eomgen.proof import Certificate, Check, Tally, checked, differing
-from eomgen.questions import requested_of
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation import instants_of
 from eomgen.study import Study, study_of

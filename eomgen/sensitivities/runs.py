@@ -16,10 +16,10 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import CORNERS
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model, Output, Table, model_at
+from eomgen.model import Model, Output, Table, model_at, requested_of
 from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
-from eomgen.questions import requested_of, solve
+from eomgen.questions import solve
 from eomgen.simulation import breakpoints_of, changing, has_phases, solver_of, step
 from eomgen.study import Study
 from eomgen.symbolic.expression import Expression, Node, Scalar, depends_on, order, substituted, tangent

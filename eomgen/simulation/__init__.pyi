@@ -1,8 +1,5 @@
 """Door of the room: what other rooms may import from `eomgen.simulation`."""
 
-# Formulas of a model along one phase of its motion
-from eomgen.simulation.columns import OutputColumns as OutputColumns
-
 # The outputs that are functions of the state: at no given instant, and of no linearized system
 from eomgen.simulation.columns import formulas_of as formulas_of
 
@@ -45,9 +42,6 @@ from eomgen.simulation.integrator import Run as Run
 
 # Options of an integrator
 from eomgen.simulation.integrator import Stepping as Stepping
-
-# The states of one phase at any instant of it
-from eomgen.simulation.motion import DenseMotion as DenseMotion
 
 # A motion in one phase, and the condition sought on it
 from eomgen.simulation.motion import FirstTime as FirstTime
@@ -102,3 +96,9 @@ from eomgen.simulation.solvers import solver_of as solver_of
 
 # One step of an integrator, to the next breakpoint at the latest; it goes on until the end
 from eomgen.simulation.solvers import step as step
+
+# Outputs of a whole motion
+from eomgen.simulation.whole_run import WholeRun as WholeRun
+
+# True if an output is a function of a whole run: extremes, means, or values at the n-th event
+from eomgen.simulation.whole_run import is_of_a_run as is_of_a_run

@@ -27,10 +27,10 @@ from eomgen.model import (
     loads,
     range_of,
     refuse_what_is_not_set,
+    requested_of,
     seconds,
     typed_values,
 )
-from eomgen.questions import requested_of
 from eomgen.sensitivities import unit_of_slope
 from eomgen.simulation import Stepping, Trajectory, refuse_bad_run
 from eomgen.sweeps.design import FIXED, Stepped, SweepPlan, plan_of, refuse_bad_design, spread_of, texts

@@ -29,9 +29,9 @@ from typing import Any
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
-from eomgen.model import AtRest, Model, Output, OutputSource, Table, with_values
+from eomgen.model import AtRest, Model, Output, OutputSource, Table, requested_of, with_values
 from eomgen.pipeline import simulator
-from eomgen.questions import Simulator, requested_of, solve
+from eomgen.questions import Simulator, solve
 from eomgen.sensitivities import slope_in_si
 from eomgen.simulation import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of

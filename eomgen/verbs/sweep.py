@@ -7,8 +7,7 @@ from dataclasses import replace
 from eomgen.documents import Document
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.model import Model, range_of
-from eomgen.questions import requested_typed
+from eomgen.model import Model, range_of, requested_typed
 from eomgen.sweeps import TABLE, Stepped, planned, spread_of, sweep_reported, swept
 from eomgen.verbs.assignments import assignments, typed
 

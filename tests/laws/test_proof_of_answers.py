@@ -14,8 +14,8 @@ from slider_crank import SLIDER_CRANK
 import eomgen
 from eomgen.cli import main
 from eomgen.model.forces import weights as distributed
+from eomgen.proof.answers import _by_coincidence
 from eomgen.questions import outputs_answered as answers
-from eomgen.questions.proof_of_answers import _by_coincidence
 from eomgen.study import StateAtInstant
 
 pytestmark = pytest.mark.slow

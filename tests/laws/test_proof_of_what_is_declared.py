@@ -15,8 +15,8 @@ from eomgen.model.constraints.strand import Stop
 from eomgen.model.constraints.string import String
 from eomgen.model.joints.one_axis import Cylindrical, Screw
 from eomgen.model.joints.path import Path, PathPiece
+from eomgen.proof.answers import wrong_way
 from eomgen.questions import outputs_answered as answers
-from eomgen.questions.proof_of_answers import wrong_way
 from eomgen.study import MotionFromStart
 
 pytestmark = pytest.mark.slow

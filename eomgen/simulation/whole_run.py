@@ -1,4 +1,4 @@
-"""Phases of a run -> outputs of the whole run: extremes and their times, means, periods, values at events.
+"""Phases of a run -> WholeRun: its outputs as a whole, extremes and their times, means, periods, values at events.
 
 A formula is approximated by Chebyshev polynomials between the integrator's steps, so that an extreme, a zero and an
 integral are those of the motion and not of its samples.
@@ -7,34 +7,20 @@ integral are those of the motion and not of its samples.
 from __future__ import annotations
 
 import math
-import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property, partial
-from typing import Any
+from functools import cached_property
 
 import numpy as np
 
-from eomgen.errors import DerivationError, ExpressionError, ModelError, RunFailed, UsageError
+from eomgen.errors import DerivationError, ExpressionError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
-from eomgen.model import (
-    EVERY,
-    AtRest,
-    Model,
-    Output,
-    OutputSource,
-    Table,
-    Taken,
-    WrittenEquation,
-    equation_in,
-    equation_typed,
-    formula_at,
-    parse_typed_equation,
-)
-from eomgen.proof import Check, Tally, differing
-from eomgen.simulation import DenseMotion, OutputColumns, PhaseRun, Plan
-from eomgen.symbolic.expression import Call, Expression, parse
+from eomgen.model import EVERY, Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
+from eomgen.simulation.columns import OutputColumns
+from eomgen.simulation.motion import DenseMotion, Plan
+from eomgen.simulation.phase_run import PhaseRun
+from eomgen.symbolic.expression import Call, Expression
 from eomgen.symbolic.numeric import ChebyshevPieces, resolved_curve, tolerances
 
 
@@ -96,157 +82,14 @@ class WholeRun:
         requested = {name: output for name, output in self.model.outputs.items() if is_of_a_run(output)}
         return {name: self.of(output) for name, output in requested.items()}
 
-    def checks(self) -> Iterator[Check]:
-        """Checks of extremes, means, mean squares and values at events against the samples of the run alone."""
-        tally = Tally("outputs of the whole run agree with its samples", "samples as they were integrated")
-        for name, output in self.model.outputs.items():
-            if isinstance(output.at, WrittenEquation) and output.event is not None:
-                tally.add(name, partial(self._events_against_samples, output))
-            for call in output.value.calls if is_of_a_run(output) else ():
-                if call.name in _FUNCTIONS:
-                    tally.add(str(call), partial(self._against_samples, call))
-        yield from tally.checks()
-
-    def answered_otherwise(self, output: Output, reported: float | None) -> str:
-        """Difference in words between a reported value of an output and the samples of the run; "" without one.
-
-        For an output at an event, both sides of its condition must be equal there among the samples, the event must
-        not be one that the samples show to come later in the order of events, and the value must be that of the
-        samples there. No value must be reported only where the event does not occur, or the formula has no value.
-
-        Args:
-            reported: the value in SI; None: no value is reported.
-        """
-        if output.event == EVERY or output.from_ is not None or requests_of(output.value, OutputSource.SMALL_MOTIONS):
-            return ""
-        if not isinstance(output.at, WrittenEquation):
-            return self._by_samples(output, reported) if output.at is None else ""
-        n, met = int(output.event or 1), self._met_by_samples(output.at)
-        if reported is None:
-            if len(met) < n:
-                return ""
-            when = sum(met[n - 1]) / 2
-            value = self._value_near(output.value, when)
-            return f"no value, and it is met near t = {when:.6g} s" if math.isfinite(value) else ""
-        found = self.of(output)
-        if not found.t:
-            return f"{reported:.10g} for no event"
-        before = sum(end < found.t[0] * (1 - tolerances.SAME_PLACE) for _, end in met)
-        if before >= n:
-            return f"{reported:.10g} at t = {found.t[0]:.6g} s, and it is met {before} times before"
-        return self._events_against_samples(output, reported)
-
-    def _by_samples(self, output: Output, reported: float | None) -> str:
-        """Difference from the samples, of each function of the run, or of a formula at the start; ""."""
-        if requests_of(output.value, OutputSource.OF_A_RUN):
-            calls = [call for call in output.value.calls if call.name in _FUNCTIONS]
-            wrong = (self._against_samples(call) for call in calls)
-            return next(filter(None, wrong), "") or self._otherwise_reported(output, calls, reported)
-        start = float(self._sampled(output.value)[0][1][0])
-        if reported is None:
-            return f"no value for {start:.10g}" if math.isfinite(start) else ""
-        return differing(reported, start, tolerances.CARRIED)
-
-    def _otherwise_reported(self, output: Output, calls: Sequence[Call], reported: float | None) -> str:
-        """Difference between a reported value and the formula of the functions of the run; ""."""
-        found = self.of(output).value
-        if not isinstance(found, float) or reported is None:
-            return "" if found is reported or isinstance(found, tuple) else f"{reported} for {found}"
-        values = (y for call in calls for _, y in self._sampled(formula_at(call, 0)))
-        size = max(abs(found), self._duration, *(float(np.max(np.abs(y), initial=0.0)) for y in values))
-        return "" if abs(reported - found) <= tolerances.CARRIED * size else f"{reported:.10g} for {found:.10g}"
-
-    def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
-        """Intervals between samples [s] in which the difference of the sides of a condition changes its sign."""
-        curves = self._sampled(condition.left - condition.right)
-        sure = tolerances.CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
-        found: list[tuple[float, float]] = []
-        for t, y in curves:
-            known = np.flatnonzero(np.abs(y) > sure)
-            turns = np.flatnonzero(y[known[:-1]] * y[known[1:]] < 0)
-            found += [(float(t[known[k]]), float(t[known[k + 1]])) for k in turns]
-        return found
-
-    def _value_near(self, formula: Expression, when: float) -> float:
-        """Value of a formula at the sample nearest to an instant."""
-        t, y = (np.concatenate(each) for each in zip(*self._sampled(formula), strict=True))
-        return float(y[np.argmin(np.abs(t - when))])
-
-    def _against_samples(self, call: Call) -> str:
-        """Difference between the value of a function of the run and the samples, in words; "" without one.
-
-        No sample is beyond an extreme, and the curve has that value at its instant. A mean is near that of the
-        trapezium rule, the last value is that of the last sample, and a period is the mean time between upward
-        passages of the samples through the mean.
-        """
-        formula = formula_at(call, 0)
-        reported, when = self._called(call)
-        curves = self._sampled(formula)
-        values = np.concatenate([y for _, y in curves])
-        size = float(np.max(np.abs(values)))
-        if call.name == "period":
-            return self._period_against_samples(reported, curves)
-        if call.name in ("mean", "rms"):
-            return self._mean_against_samples(reported, curves, 2 if call.name == "rms" else 1)
-        if call.name == "last":
-            return _not_at(curves, when[0], reported, size)
-        sign = 1 if call.name.endswith("max") else -1
-        extreme = float(np.max(sign * values))
-        if call.name.startswith("time"):
-            return _not_at(curves, reported, sign * extreme, size)
-        beyond = extreme - sign * reported
-        rise = max(float(np.max(np.abs(np.diff(y)), initial=0.0)) for _, y in curves)
-        if beyond > tolerances.CARRIED * size or -beyond > rise + tolerances.CARRIED * size:
-            return f"{reported:.10g} for the sample {sign * extreme:.10g}"
-        return _not_at(curves, when[0], reported, size)
-
-    def _sampled(self, formula: Expression) -> list[_Curve]:
+    def sampled(self, formula: Expression) -> list[tuple[np.ndarray, np.ndarray]]:
         """(t, values of the formula) of each phase, at its requested states and at the integrator's steps."""
         states = [(run, *run.measured) for run in self.runs]
         return [(t, self._columns(formula, run).along(t, x)["asked"]) for run, t, x in states]
 
-    def _mean_against_samples(self, reported: float, curves: Sequence[_Curve], power: int) -> str:
-        pairs = [(t, y**power) for t, y in curves]
-        size, count = max(float(np.max(np.abs(y))) for _, y in pairs), sum(len(y) for _, y in pairs)
-        fine, coarse = (sum(float(np.trapezoid(y[::k], t[::k])) for t, y in pairs) / self._duration for k in (1, 2))
-        unsure = 4 * abs(fine - coarse) + tolerances.CARRIED * size + size * len(pairs) / count
-        return (
-            f"{reported:.10g}, squared {reported**2:.10g}, for {fine:.10g}"
-            if abs(reported**power - fine) > unsure
-            else ""
-        )
-
-    def _period_against_samples(self, reported: float, curves: Sequence[_Curve]) -> str:
-        """Difference between a period and the samples' passages through the mean; instants are known to a step."""
-        level = sum(float(np.trapezoid(y, t)) for t, y in curves) / self._duration
-        steps = [(t[k], t[k + 1]) for t, y in curves for k in np.flatnonzero((y[:-1] < level) & (y[1:] >= level))]
-        if len(steps) < 2:
-            return ""
-        (first, after), (last, end) = steps[0], steps[-1]
-        low, high = ((x - y) / reported for x, y in ((last, after), (end, first)))
-        return "" if low - 1 < len(steps) < high + 2 else f"{reported:.10g} for {len(steps)} passages of the samples"
-
-    def _events_against_samples(self, output: Output, reported: float | None = None) -> str:
-        """Difference in words between an output at events and the samples there; "" without one.
-
-        Both sides of the condition must be equal there among the samples, and the value must be that of the samples.
-
-        Args:
-            reported: value that is checked; None: that of the output itself.
-        """
-        assert isinstance(output.at, WrittenEquation)
-        found = self.of(output)
-        sides = self._sampled(output.at.left - output.at.right)
-        curves = self._sampled(output.value)
-        largest = [max(float(np.max(np.abs(y))) for _, y in each) for each in (sides, curves)]
-        values = found.value if isinstance(found.value, tuple) else (found.value if reported is None else reported,)
-        for value, t in zip(values, found.t, strict=False):
-            wrong = _not_at(sides, t, 0.0, largest[0])
-            if value is not None and not wrong:
-                wrong = _not_at(curves, t, value, largest[1])
-            if wrong:
-                return wrong
-        return ""
+    def functions_in(self, output: Output) -> list[Call]:
+        """The functions of the whole run in an output."""
+        return [call for call in output.value.calls if call.name in _FUNCTIONS]
 
     # -- functions of the whole run -----------------------------------------------------------------
 
@@ -255,7 +98,7 @@ class WholeRun:
         when: list[float] = []
 
         def value(call: Call) -> float:
-            found, t = self._called(call)
+            found, t = self.called(call)
             when.extend(t)
             return found
 
@@ -270,7 +113,7 @@ class WholeRun:
     def _stands_inside(self, formula: Expression, name: str) -> bool:
         return all(what != name for kind, what in formula.code if kind == "name")
 
-    def _called(self, call: Call) -> tuple[float, tuple[float, ...]]:
+    def called(self, call: Call) -> tuple[float, tuple[float, ...]]:
         """Value of a function of the run, and the instant of this value."""
         if not requests_of(Expression(str(call), (("call", call),), (0,)), OutputSource.OF_A_RUN):
             what = f"'{call}' is a function of a state, next to functions of a whole run"
@@ -300,12 +143,12 @@ class WholeRun:
 
     def mean(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
         """1/T times the integral over the run."""
-        return sum(pieces.integral() for pieces in self._pieces(formula)) / self._duration, ()
+        return sum(pieces.integral() for pieces in self._pieces(formula)) / self.duration, ()
 
     def rms(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
         """The root of the mean square."""
         squares = (resolved_curve(_squared(pieces), _edges(pieces)) for pieces in self._pieces(formula))
-        return math.sqrt(sum(square.integral() for square in squares) / self._duration), ()
+        return math.sqrt(sum(square.integral() for square in squares) / self.duration), ()
 
     def period(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
         """The mean time between upward passages through the mean.
@@ -437,7 +280,8 @@ class WholeRun:
         return {}
 
     @property
-    def _duration(self) -> float:
+    def duration(self) -> float:
+        """Time from the start to the end [s]."""
         return float(self.runs[-1].run.end - self.runs[0].here.t)
 
 
@@ -451,22 +295,6 @@ _FUNCTIONS: dict[str, Callable[[WholeRun, Expression], tuple[float, tuple[float,
     "last": WholeRun.last,
     "period": WholeRun.period,
 }
-
-
-_Curve = tuple[np.ndarray, np.ndarray]
-NEAREST = 2  # samples on either side of an instant, which bound the value of a curve between them
-
-
-def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) -> str:
-    """Message if a curve cannot have this value at an instant, judged by its samples; ""."""
-    for t, y in curves:
-        k = int(np.searchsorted(t, when))
-        near = y[max(0, k - NEAREST) : k + NEAREST]
-        if len(near) and t[0] <= when <= t[-1]:
-            slack = float(np.max(near) - np.min(near)) + tolerances.CARRIED * size
-            if not (np.isfinite(slack) and not np.min(near) - slack <= value <= np.max(near) + slack):
-                return ""
-    return f"at t = {when:.10g} s it is not {value:.10g}"
 
 
 def is_of_a_run(output: Output) -> bool:
@@ -488,70 +316,3 @@ def _squared(pieces: ChebyshevPieces) -> Callable[[np.ndarray], np.ndarray]:
 
 def _less(pieces: ChebyshevPieces, level: float) -> Callable[[np.ndarray], np.ndarray]:
     return lambda t: pieces.g(t) - level
-
-
-# -- requests as they are typed --------------------------------------------------------------------------------
-
-
-def requested_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
-    """Request whose plain numbers of the instant have the units of the model file, and these readings.
-
-    Raises:
-        UsageError: the instant cannot be read, or a unit does not fit.
-    """
-    formula, at, rest = text.partition(" at ")
-    condition, comma, event = rest.partition(", event")
-    if text in model.outputs or not at or condition.strip() == AtRest.text:
-        return text, ()
-    try:
-        sides = parse_typed_equation(condition)
-        _, taken = equation_typed(model, condition, declared=True)
-    except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
-    units = {each.typed: each.unit for each in taken}
-    written = (f"{side.text} {units.get(side.text, '') if unit is None else unit.text}".strip() for side, unit in sides)
-    return f"{formula} at {' = '.join(written)}{comma}{event}", taken
-
-
-def requested_of(model: Model, text: str) -> Output:
-    """Output requested by a text: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
-
-    In a formula the name of an output without an instant stands for its formula.
-
-    Raises:
-        UsageError: the text cannot be read, or a name in it is unknown.
-    """
-    if text in model.outputs:
-        return model.outputs[text]
-    formula, at, condition = text.partition(" at ")
-    condition, comma, event = condition.partition(", event")
-    try:
-        output = Output(value=parse(_in_full(model, formula.strip()), references=True))
-        if at:
-            when: Any = AtRest() if condition.strip() == AtRest.text else equation_in(model, condition.strip())
-            output = replace(output, at=when)
-        if comma:
-            output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
-        replace(model, outputs=Table({"asked": output}))
-    except ValueError as error:
-        raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", fix=f"2, or {EVERY}") from error
-    except ExpressionError as error:
-        raise UsageError(f"'{text}': {error.what}", fix=error.fix) from error
-    except ModelError as error:
-        raise UsageError(f"'{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
-    return output
-
-
-def _in_full(model: Model, formula: str) -> str:
-    """Formula in which names of outputs without an instant are replaced by their formulas."""
-    tables = [*model.trusses.values(), model]
-    others = {
-        name
-        for part in tables
-        for what, x in vars(part).items()
-        if isinstance(x, Table) and what != "outputs"
-        for name in x
-    }
-    plain = {name: f"({output.value})" for name, output in model.outputs.items() if output.at is None}
-    names = "|".join(map(re.escape, plain.keys() - others))
-    return re.sub(rf"(?<![\w.])({names})(?![\w.'(])", lambda found: plain[found[0]], formula) if names else formula

@@ -16,35 +16,21 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.codegen import compiled, program_of
-from eomgen.documents import Linearization, Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
-from eomgen.mechanics.linearization import MATRICES
+from eomgen.mechanics.linearization import MATRICES, Modes
 from eomgen.mechanics.start import Start
 from eomgen.model import FUNCTIONS, AtRest, Model, Output, OutputSource, WrittenEquation, names_of
-from eomgen.proof import (
-    Certificate,
-    Check,
-    NumericState,
-    PhaseMotion,
-    Tally,
-    TriedState,
-    certify,
-    certify_standing,
-    differing,
-    instant_checks,
-    moving_states,
-    off_by,
-    other_data,
-    place_of,
-    read_back,
-    run_checks,
-    second_definition,
-    small_motion_checks,
-    values_of,
-)
+from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
+from eomgen.proof.certificate import certify, certify_standing
+from eomgen.proof.check import Certificate, Check, Tally, differing
+from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.proof.instant import instant_checks, second_definition, values_of
+from eomgen.proof.masses import other_data
+from eomgen.proof.reported_run import run_checks
+from eomgen.proof.small_motions import small_motion_checks
 from eomgen.simulation import PhaseRun, Trajectory, joined
 from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state
 from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, depends_on, holds_op, symbols_of
@@ -58,7 +44,33 @@ LAST = 3  # so many before a speed changes its sign
 ASIDE = 1e-3  # relative change of a parameter, at which a closed form is checked too
 
 
-class Solver(Protocol):
+class Reported(Protocol):
+    """Answer to one output: a text, a number in its unit, either, or neither."""
+
+    @property
+    def exact(self) -> str | None: ...
+
+    @property
+    def value(self) -> float | None: ...
+
+    @property
+    def answered(self) -> bool: ...
+
+
+class Linearized(Protocol):
+    """Small motions, as `linearize` finds and proves them."""
+
+    @property
+    def modes(self) -> Modes: ...
+
+    def number_of(self, call: Call) -> int:
+        """k of frequency(k)."""
+
+    def certify(self) -> Certificate:
+        """Checks of the equations, and of the small motions."""
+
+
+class AnswerSolver(Protocol):
     """Solver from which answers came."""
 
     @property
@@ -73,10 +85,10 @@ class Solver(Protocol):
     def at_rest(self) -> StateAtInstant: ...
 
     @property
-    def linearization(self) -> Linearization: ...
+    def linearization(self) -> Linearized: ...
 
 
-def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certificate:
+def certify_answers(solver: AnswerSolver, answers: Mapping[str, Reported]) -> Certificate:
     """Proof of the equations, where an answer needs them, then of every answer."""
     proof = _Proof(solver, answers)
     of_a_motion = (*proof.begins(), *proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
@@ -85,8 +97,8 @@ def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certifica
 
 @dataclass(frozen=True)
 class _Proof:
-    solver: Solver
-    answers: Mapping[str, Quantity]
+    solver: AnswerSolver
+    answers: Mapping[str, Reported]
 
     @cached_property
     def requested(self) -> dict[str, Requested]:
@@ -125,7 +137,7 @@ class _Proof:
                 tally.add(name, partial(self._read_back, output, found))
         return tally.checks()
 
-    def _read_back(self, output: Output, found: Quantity) -> str:
+    def _read_back(self, output: Output, found: Reported) -> str:
         phase = self.solver.motions[False].phase
         number = number_of(read_back(phase.system, found.exact or ""), self._start_values)
         if math.isnan(number):
@@ -210,7 +222,7 @@ class _Proof:
         except (ModelError, DerivationError):  # a coordinate moves no mass, or loads are unknown: at rest alone
             return []
 
-    def _against_state(self, output: Output, found: Quantity) -> str:
+    def _against_state(self, output: Output, found: Reported) -> str:
         if found.value is None:
             raise DerivationError("it has no number", fix="give every parameter a value in [parameters]")
         state = self._state_of(output)
@@ -371,7 +383,7 @@ class _Proof:
                 return motion.run(LONG_WAY)  # at its own steps: a stiff floor is touched for milliseconds
         return motion.run(WAY, ROWS)
 
-    def _along(self, output: Output, found: Quantity) -> str:
+    def _along(self, output: Output, found: Reported) -> str:
         motion = self.solver.motions[output.from_ == "rest"]
         phase, run = motion.phase, self._way(motion)
         scalar, symbols = read_back(phase.system, found.exact or ""), phase.system.symbols
@@ -522,7 +534,7 @@ def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
 # by the matrices in floats and the eigenvalues of A, and by the formula at the proven instant with 50 digits.
 
 
-Requested = tuple[Output, Quantity]
+Requested = tuple[Output, Reported]
 
 
 def in_unit(value: float, output: Output) -> float:
@@ -534,7 +546,7 @@ def in_unit(value: float, output: Output) -> float:
 
 
 def of_small_motions(
-    found: Linearization, system: System, requested: Mapping[str, Requested], proven: Sequence[Check]
+    found: Linearized, system: System, requested: Mapping[str, Requested], proven: Sequence[Check]
 ) -> Iterator[Check]:
     """Checks of matrices and modes, as `linearize` proves them, and of the answers that contain them.
 
@@ -542,7 +554,7 @@ def of_small_motions(
         system: the system at the start; with the same contacts its equations are those of the small motions.
         proven: checks of the equations of that system.
     """
-    same = proven and found.small.first.system.modes == system.modes
+    same = proven and found.modes.small.first.system.modes == system.modes
     yield from small_motion_checks(found.modes) if same else found.certify().checks
     tally = Tally("answers of small motions are those of the matrices in numbers", "eigenvalues of A in doubles")
     for name, (output, answer) in requested.items():
@@ -551,26 +563,26 @@ def of_small_motions(
     yield from tally.checks()
 
 
-def _by_matrices(found: Linearization, system: System, output: Output, value: float) -> str:
+def _by_matrices(found: Linearized, system: System, output: Output, value: float) -> str:
     """Difference of a value from the same formula of matrices in floats and imaginary parts of A's eigenvalues; ""."""
-    small = found.small
+    small = found.modes.small
 
     def second(call: Call) -> Scalar:
         if call.name != "frequency":
             row, column = found.modes.place(call.name, *names_of(call))
             return Fraction(getattr(small.numbers, MATRICES[call.name])[row][column])
-        return Fraction(_rates(found)[int(found.number_of(call)) - 1])
+        return Fraction(_rates(found)[found.number_of(call) - 1])
 
     right = number_of(output.value.evaluate(system.scope.names, second), system.scope.known_exactly)
     frequency = any(call.name == "frequency" for call in output.value.calls)
     return differing(value, in_unit(right, output), tolerances.SAME_PLACE if frequency else tolerances.COMPUTED)
 
 
-def _rates(found: Linearization) -> list[float]:
+def _rates(found: Linearized) -> list[float]:
     """Frequencies by the eigenvalues of A, the lowest first; a zero for each rigid-body motion."""
     modes = found.modes.spectrum.oscillating
     still = sum(mode.frequency == 0 for mode in modes)
-    turning = sorted(np.linalg.eigvals(found.small.state_matrix).imag, reverse=True)[: len(modes) - still]
+    turning = sorted(np.linalg.eigvals(found.modes.small.state_matrix).imag, reverse=True)[: len(modes) - still]
     return [0.0] * still + [float(x) for x in reversed(turning)]
 
 
@@ -587,7 +599,7 @@ def of_one_instant(model: Model, requested: Mapping[str, Requested]) -> Iterator
     yield from tally.checks()
 
 
-def _by_state(state: KinematicState, output: Output, answer: Quantity) -> str:
+def _by_state(state: KinematicState, output: Output, answer: Reported) -> str:
     system, values = state.system, values_of(state)
     formula = output.value.evaluate(system.scope.names, Quantities(system).value)
     right = in_unit(float(evaluate((formula,), values, fifty_digits())[0]), output)
