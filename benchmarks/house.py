@@ -252,7 +252,7 @@ def figures(whole: House) -> Iterator[tuple[str, str]]:
         "of these rooms' names, used in others (in symbolic and mechanics: other folders)",
         str(len(whole.taken_from(LOWER))),
     )
-    for room in ("documents", "questions", "verbs", "proof", "judge"):
+    for room in ("documents", "results", "questions", "verbs", "proof", "judge"):
         yield f"foreign names in {room}", str(len(whole.taken_by(room)))
     doors = {m.name: len(door_of(f"eomgen.{m.name}")) for m in modules if m.is_init and m.name}
     yield "rooms with a door (names)", ", ".join(f"{name} {k}" for name, k in sorted(doors.items()) if k)

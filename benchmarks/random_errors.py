@@ -59,7 +59,7 @@ LEFT_OUT = (
 )
 MOST = 3  # runs of one error
 PAGES = ("report", "animate", "play")
-READ = ("documents", "scene", "page", "judge", "verbs", "symbolic/print")
+READ = ("documents", "results", "scene", "page", "judge", "verbs", "symbolic/print")
 
 
 @dataclass(frozen=True)

@@ -1,16 +1,8 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
 from eomgen.codegen.programs import InverseDynamics as InverseDynamics
-from eomgen.documents.at_instant.result import Kinematics as Kinematics
-from eomgen.documents.at_instant.result import kinematics as kinematics
-from eomgen.documents.at_rest.result import Statics as Statics
-from eomgen.documents.at_rest.result import statics as statics
 from eomgen.documents.figures import run_picture as run_picture
-from eomgen.documents.mass_properties.result import Inertia as Inertia
-from eomgen.documents.mass_properties.result import inertia as inertia
 from eomgen.documents.moving_picture import rest_picture as rest_picture
-from eomgen.documents.small_motions.result import Linearization as Linearization
-from eomgen.documents.small_motions.result import linearize as linearize
 from eomgen.equations import Equations as Equations
 from eomgen.errors import DerivationError as DerivationError
 from eomgen.errors import EomgenError as EomgenError
@@ -68,6 +60,14 @@ from eomgen.questions.outputs_answered import Answer as Answer
 from eomgen.questions.outputs_answered import solve as solve
 from eomgen.questions.simulator import Runs as Runs
 from eomgen.questions.simulator import Simulator as Simulator
+from eomgen.results.at_instant.result import Kinematics as Kinematics
+from eomgen.results.at_instant.result import kinematics as kinematics
+from eomgen.results.at_rest.result import Statics as Statics
+from eomgen.results.at_rest.result import statics as statics
+from eomgen.results.mass_properties.result import Inertia as Inertia
+from eomgen.results.mass_properties.result import inertia as inertia
+from eomgen.results.small_motions.result import Linearization as Linearization
+from eomgen.results.small_motions.result import linearize as linearize
 from eomgen.robots.importing import import_robot as import_robot
 from eomgen.robots.sympy_mechanics import from_sympy as from_sympy
 from eomgen.scene.making import scene_of as scene_of

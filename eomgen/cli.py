@@ -262,7 +262,7 @@ def statics_command(**options: Any) -> int:
     the mechanism that its release leaves, and by equilibrium; members of trusses; N, V and M along its beams. For a
     system that is free to move: its equilibria and their stability.
     """
-    from eomgen.documents import statics
+    from eomgen.results import statics
 
     return write_result(statics, **options)
 
@@ -300,7 +300,7 @@ def inertia_command(**options: Any) -> int:
     For each body and for all together; for a body of parts, the contribution of each. The products of inertia have both
     signs: that of the tensor (minus) and that of textbooks (plus).
     """
-    from eomgen.documents import inertia
+    from eomgen.results import inertia
 
     return write_result(inertia, at_start=True, **options)
 
@@ -327,8 +327,8 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
-    from eomgen.documents import linearize
     from eomgen.model import range_of
+    from eomgen.results import linearize
 
     refuse_idle(view=(options["plot"] is not None, OF_PLOT))
     if (over is not None) != (view == "locus"):

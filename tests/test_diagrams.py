@@ -9,13 +9,13 @@ import pytest
 from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.documents.at_rest.pictures import diagram_panels, influence_panel
 from eomgen.documents.letters import NamesArtist
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.statics.forces_in_sections import SectionForces
 from eomgen.mechanics.statics.influence import InfluenceLine
+from eomgen.results.at_rest.pictures import diagram_panels, influence_panel
 
 BEAM = """
 eomgen = 1

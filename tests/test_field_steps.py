@@ -9,10 +9,10 @@ import pytest
 import eomgen
 from eomgen import documents
 from eomgen.documents import rendering
-from eomgen.documents.at_instant.plots import centrode_panel
-from eomgen.documents.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.documents.document import Document
 from eomgen.mechanics.instant.motion_kind import Kinds
+from eomgen.results.at_instant.plots import centrode_panel
+from eomgen.results.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.study import MotionFromStart, Study
 from eomgen.symbolic.exact.normal_forms import equal
 from eomgen.symbolic.expression.text import parse

@@ -10,7 +10,7 @@ import pytest
 import eomgen
 from eomgen.documents.drawing import is_freer_outward
 from eomgen.documents.figures import figures, scale_of
-from eomgen.documents.mass_properties.result import inertia_scene
+from eomgen.results.mass_properties.result import inertia_scene
 from eomgen.scene import forms, plane_strokes
 from eomgen.scene.scene import Mark, drawn_start, frame_at
 from eomgen.scene.strokes import PictureSizes, SceneNumbers

@@ -12,8 +12,8 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.documents.figures import VIEWS, resultants
-from eomgen.documents.small_motions.pictures import dashes, roots_over
 from eomgen.model.replaced import range_of
+from eomgen.results.small_motions.pictures import dashes, roots_over
 from eomgen.verbs.reaction_picture import turn_of
 
 pytestmark = pytest.mark.slow

@@ -134,7 +134,7 @@ def small() -> Any:
 
 
 def wrong_modes(change: Callable[[dict[str, Any]], None]) -> str:
-    from eomgen.documents.small_motions.steps import printed_modes
+    from eomgen.results.small_motions.steps import printed_modes
 
     entries = small().entries()
     change(entries)
@@ -202,8 +202,8 @@ pull = { kind = "force", point = "beam.B", force = ["F", 0] }
 
 
 def wrong_sections(change: Callable[[Any, Any], None]) -> str:
-    from eomgen.documents.at_rest.section_steps import reported_sections, section_payload, section_steps
     from eomgen.proof.reported_sections import sections_reported
+    from eomgen.results.at_rest.section_steps import reported_sections, section_payload, section_steps
 
     sections = eomgen.statics(eomgen.loads(BEAM)).sections
     reported = dict(enumerate(reported_sections(sections, section_steps(sections), section_payload(sections))))

@@ -1,24 +1,10 @@
 """Door of the room: what other rooms may import from `eomgen.documents`."""
 
-# The parameters without a value
-# Velocities, accelerations and centres of rotation at one instant
-from eomgen.documents.at_instant.result import Kinematics as Kinematics
+# name = readable scalar (= then), up to a page of them; the rest is counted, not read
+from eomgen.documents.bounded import page as page
 
-# Velocities, accelerations, centres of rotation and kinds of motion at one instant
-from eomgen.documents.at_instant.result import kinematics as kinematics
-from eomgen.documents.at_rest.pictures import missing_values as missing_values
-
-# A structure at rest: every reaction by virtual work and by equilibrium
-from eomgen.documents.at_rest.result import Statics as Statics
-
-# A structure at rest; of a system that is free to move, its equilibria
-from eomgen.documents.at_rest.result import statics as statics
-
-# Message if contacts of bodies without coordinates cannot hold them at rest; "" where they do
-from eomgen.documents.at_rest.result import why_not_at_rest as why_not_at_rest
-
-# Step that derives one reaction from the virtual work of the mechanism that its release leaves
-from eomgen.documents.at_rest.steps import virtual_work_step as virtual_work_step
+# A table; where its columns do not fit side by side a formula for each of its cells
+from eomgen.documents.bounded import tabled as tabled
 
 # The derivation of the equations of motion of a system
 from eomgen.documents.derivation import derivation_of as derivation_of
@@ -41,6 +27,44 @@ from eomgen.documents.document import notation_of as notation_of
 # A document of one section without a head, for results that are no derivation
 from eomgen.documents.document import plain_document as plain_document
 
+# The document with symbols for names that are not the model's: of its reactions
+from eomgen.documents.document import with_symbols as with_symbols
+from eomgen.documents.drawing import ARROW as ARROW
+from eomgen.documents.drawing import INK as INK
+from eomgen.documents.drawing import LOAD as LOAD
+from eomgen.documents.drawing import REACTION as REACTION
+from eomgen.documents.drawing import PagePoint as PagePoint
+
+# A plane system in one configuration, in numbers
+from eomgen.documents.drawing import Sketch as Sketch
+
+# An arrow whose tip is at a place; `outward`: that begins there (velocities, displacements)
+from eomgen.documents.drawing import arrow as arrow
+
+# One stroke, in its layer
+from eomgen.documents.drawing import artist_of as artist_of
+
+# A load along a line: arrows whose tips are on it, their tails joined
+from eomgen.documents.drawing import distributed as distributed
+
+# Bodies, wires, hinges and supports on matplotlib axes; the axes have equal scales and no frame
+from eomgen.documents.drawing import draw_model as draw_model
+
+# True if an arrow that begins at its place meets fewer lines than one that ends there
+from eomgen.documents.drawing import is_freer_outward as is_freer_outward
+
+# The corners of the picture: all that is drawn, but for tracks, which go on
+from eomgen.documents.drawing import limits as limits
+
+# A couple: three quarters of a circle with an arrow, counter-clockwise for a positive sense
+from eomgen.documents.drawing import moment_arc as moment_arc
+
+# A name written along a line; the others keep off it
+from eomgen.documents.drawing import name_along as name_along
+
+# One more name of a model that is drawn: it is placed where it covers no other one
+from eomgen.documents.drawing import name_beside as name_beside
+
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
 
@@ -50,8 +74,14 @@ from eomgen.documents.figures import KINDS as KINDS
 # A picture that is drawn when it is saved, or shown in a notebook
 from eomgen.documents.figures import Picture as Picture
 
+# The unit in which the forces of a picture are written, and those of couples with it
+from eomgen.documents.figures import Scale as Scale
+
 # The coordinates of each unit
 from eomgen.documents.figures import by_unit as by_unit
+
+# A number with four figures, without a power of ten where it has less than eight digits: 12340, 0.05
+from eomgen.documents.figures import figures as figures
 
 # {reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike
 from eomgen.documents.figures import kinds_of_lines as kinds_of_lines
@@ -73,6 +103,9 @@ from eomgen.documents.figures import reactions_by_unit as reactions_by_unit
 
 # One of the pictures of a run
 from eomgen.documents.figures import run_picture as run_picture
+
+# The scale for the largest of some values: kN from 10 kN on; units without prefix where all are 0
+from eomgen.documents.figures import scale_of as scale_of
 
 # The expressions of the payload as texts
 from eomgen.documents.json_form import Texts as Texts
@@ -109,6 +142,12 @@ from eomgen.documents.latex import side_latex as side_latex
 # The document with sentences and formulas in place of listings
 from eomgen.documents.latex import with_listings_typeset as with_listings_typeset
 
+# The names of one panel
+from eomgen.documents.letters import NamesArtist as NamesArtist
+
+# A name and its place
+from eomgen.documents.letters import PlacedName as PlacedName
+
 # Quantities in a table, a row each: name, formula and number typeset; one longer than a line is shortened
 from eomgen.documents.markdown import listing_markdown as listing_markdown
 
@@ -118,11 +157,23 @@ from eomgen.documents.markdown import markdown_blocks as markdown_blocks
 # Plain text for Markdown: nothing in it is markup, and it stays on its line
 from eomgen.documents.markdown import markdown_escaped as markdown_escaped
 
-# Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes
-from eomgen.documents.mass_properties.result import inertia as inertia
-
 # First step, with the assumptions; none where nothing was assumed
 from eomgen.documents.motion_steps import assumption_steps as assumption_steps
+
+# The letters of the axes: xy in the plane
+from eomgen.documents.motion_steps import axes as axes
+
+# 1 coordinate, 2 coordinates
+from eomgen.documents.motion_steps import count as count
+
+# Step with the given data
+from eomgen.documents.motion_steps import data_step as data_step
+
+# The symbols, with commas between
+from eomgen.documents.motion_steps import listed_symbols as listed_symbols
+
+# Statement that names the contacts that are open where the system rests; none where all are closed
+from eomgen.documents.motion_steps import open_at_rest as open_at_rest
 
 # places of a trail in a frame
 from eomgen.documents.moving_picture import FINE as FINE
@@ -157,6 +208,9 @@ from eomgen.documents.moving_picture import mp4 as mp4
 
 # Progress as one line on a terminal's stderr
 from eomgen.documents.moving_picture import on_stderr as on_stderr
+
+# A scene at the start of its model
+from eomgen.documents.moving_picture import picture_of_scene as picture_of_scene
 
 # Refuses frames a second, and a speed, that no moving picture has
 from eomgen.documents.moving_picture import refuse_rates as refuse_rates
@@ -218,6 +272,9 @@ from eomgen.documents.proven_documents import with_start_reported as with_start_
 # The reactions of a system with their symbols, or why they cannot be derived
 from eomgen.documents.reaction_steps import letters_of as letters_of
 
+# A symbol for every reaction, none of them a name of the model
+from eomgen.documents.reaction_values import lettered as lettered
+
 # Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}
 from eomgen.documents.reaction_values import null_space as null_space
 
@@ -244,6 +301,15 @@ from eomgen.documents.read_back import PageComparison as PageComparison
 from eomgen.documents.read_back import Wanted as Wanted
 from eomgen.documents.read_back import wanted_of as wanted_of
 
+# Puts scalars into readable form, each once and with a budget of its own: none depends on those before it
+from eomgen.documents.reading import Reader as Reader
+
+# Content of a derivation, while parts of it get names
+from eomgen.documents.reading import Written as Written
+
+# r1, r2, ... for the roots of long sums, the lengths of springs, and v1, v2, ... for their rates
+from eomgen.documents.reading import with_roots_named as with_roots_named
+
 # The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x)
 from eomgen.documents.reading import without_cases as without_cases
 
@@ -252,16 +318,13 @@ from eomgen.documents.rendering import rendered as rendered
 
 # Result of a verb that can be shown: a derivation, entries for JSON, and a picture where it has one
 from eomgen.documents.result import Result as Result
-
-# Small motions about an equilibrium or a steady motion
-from eomgen.documents.small_motions.result import Linearization as Linearization
-
-# The small motions of a model about an equilibrium, or about its start, a steady motion
-from eomgen.documents.small_motions.result import linearize as linearize
 from eomgen.documents.statements import Cell as Cell
 
 # Something that a user types
 from eomgen.documents.statements import Code as Code
+
+# An entry of a matrix: M[theta, phi]
+from eomgen.documents.statements import Entry as Entry
 
 # sides joined by equality signs, on a line of their own
 from eomgen.documents.statements import Formula as Formula
@@ -272,11 +335,23 @@ from eomgen.documents.statements import Found as Found
 # A table of any columns
 from eomgen.documents.statements import Grid as Grid
 
+# A general law, printed as it stands: for text, and for LaTeX
+from eomgen.documents.statements import Law as Law
+
 # Text that stands as it is: paths, counts, words of a tool
 from eomgen.documents.statements import Lines as Lines
 
 # Quantities one after the other, each with its known values
 from eomgen.documents.statements import Listing as Listing
+
+# A matrix as it stands: rows of scalars or numbers
+from eomgen.documents.statements import Matrix as Matrix
+
+# A quantity by its letter: T, V, Q(theta), x(arm.center), speed(arm.center)^2
+from eomgen.documents.statements import Name as Name
+
+# Expressions that are too long to be printed
+from eomgen.documents.statements import Omitted as Omitted
 from eomgen.documents.statements import Piece as Piece
 
 # A sentence, with formulas inside
@@ -284,10 +359,14 @@ from eomgen.documents.statements import Prose as Prose
 
 # One result: exact, as a number, with the method; or the reason why it is missing
 from eomgen.documents.statements import Quantity as Quantity
+from eomgen.documents.statements import Side as Side
 from eomgen.documents.statements import Statement as Statement
 
 # One step of a derivation, a section of a document; `key` names it for machines, "" where it has no head
 from eomgen.documents.statements import Step as Step
+
+# The table with these of its columns; None: with those in which something stands
+from eomgen.documents.statements import narrow_grid as narrow_grid
 
 # A sentence of these pieces
 from eomgen.documents.statements import prose as prose

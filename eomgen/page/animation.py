@@ -27,7 +27,6 @@ from eomgen.documents import (
     refuse_rates,
     strip,
     virtual_movie,
-    virtual_work_step,
     with_start_reported,
 )
 from eomgen.equations import Equations
@@ -42,6 +41,7 @@ from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_
 from eomgen.proof import Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, page_stepping, page_time
 from eomgen.questions import run as simulated
+from eomgen.results import virtual_work_step
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation import Stepping, Trajectory
 from eomgen.symbolic.numeric import tolerances
@@ -375,7 +375,7 @@ def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movi
     Raises:
         UsageError: it shows fewer.
     """
-    from eomgen.documents import linearize
+    from eomgen.results import linearize
 
     if _ending(output) == ".html":
         raise UsageError("small motions have no page", fix="write a .gif")

@@ -26,7 +26,6 @@ from eomgen.documents import (
     kinds_of_lines,
     largest_reactions,
     mathtext,
-    missing_values,
     notation_of_run,
     owner_of,
     prose,
@@ -37,6 +36,7 @@ from eomgen.frozen import dataclass
 from eomgen.model import Model, Unit
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, curve_path, element, in_a_row, stepped
+from eomgen.results import missing_values
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.expression import Graph, Node
 from eomgen.symbolic.print import Notation

@@ -16,16 +16,11 @@ from eomgen.documents import (
     Document,
     Lines,
     Result,
-    Statics,
     document_of,
     drawing_at_rest,
-    inertia,
-    kinematics,
-    linearize,
     nearest_name,
     plain_document,
     proven,
-    statics,
     with_listings_typeset,
     with_start_reported,
 )
@@ -50,6 +45,7 @@ from eomgen.page.player import (
 from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, run_of_a_page, solve
+from eomgen.results import Statics, inertia, kinematics, linearize, statics
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
 from eomgen.symbolic.numeric import doing

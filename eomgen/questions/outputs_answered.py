@@ -13,19 +13,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents import (
-    Document,
-    Found,
-    Linearization,
-    Listing,
-    Quantity,
-    Result,
-    linearize,
-    listing_markdown,
-    plain_document,
-    why_not_at_rest,
-    without_cases,
-)
+from eomgen.documents import Document, Found, Listing, Quantity, Result, listing_markdown, plain_document, without_cases
 from eomgen.errors import (
     DerivationError,
     EomgenError,
@@ -50,6 +38,7 @@ from eomgen.model import (
     model_at,
 )
 from eomgen.proof import AnswerSolver, Certificate, certify_answers
+from eomgen.results import Linearization, linearize, why_not_at_rest
 from eomgen.simulation import is_of_a_run
 from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact import book_form

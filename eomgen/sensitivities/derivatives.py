@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents import Document, Found, Linearization, Listing, Quantity, Result, linearize, plain_document
+from eomgen.documents import Document, Found, Listing, Quantity, Result, plain_document
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import with_nodes_balanced
@@ -40,6 +40,7 @@ from eomgen.model import (
     seconds,
 )
 from eomgen.proof import Certificate, Check, Tally, checked, differing
+from eomgen.results import Linearization, linearize
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation import instants_of
 from eomgen.study import Study, study_of

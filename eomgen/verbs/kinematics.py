@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.documents import Kinematics, kinematics, nearest_name
+from eomgen.documents import nearest_name
 from eomgen.errors import ModelError, UsageError
 from eomgen.model import Model, WrittenEquation
+from eomgen.results import Kinematics, kinematics
 
 
 def kinematics_requested(

@@ -29,7 +29,6 @@ from eomgen.documents import (
     reaction_formulas,
     said,
     sums_of_open,
-    why_not_at_rest,
     with_start_reported,
 )
 from eomgen.equations import Equations
@@ -53,6 +52,7 @@ from eomgen.model import (
 from eomgen.proof import Certificate, Check, NumericState, reaction_numbers, reaction_texts
 from eomgen.proof import certify as certificate_of_equations
 from eomgen.questions import Answers, solve
+from eomgen.results import why_not_at_rest
 from eomgen.simulation import ReactionColumns
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Fraction, parse

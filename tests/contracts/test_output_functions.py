@@ -13,7 +13,6 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.documents.small_motions.result import linearize
 from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import system_of
@@ -25,6 +24,7 @@ from eomgen.model.outputs.base import OutputSource
 from eomgen.model.quantities import Unit
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.instant import second_definition
+from eomgen.results.small_motions.result import linearize
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.evaluation import NoValue

@@ -25,7 +25,7 @@ needs_sh = pytest.mark.skipif(os.name != "posix", reason="compilers that are she
 LONGEST = 60  # seconds of one process
 USED = [f"eomgen.verbs.{each.name}" for each in pkgutil.iter_modules(eomgen.verbs.__path__)]
 USED += ["eomgen.documents.figures", "eomgen.documents.latex"]
-USED += ["matplotlib.backends.backend_agg", "scipy.integrate", "eomgen.documents.at_rest.result"]  # slow to import
+USED += ["matplotlib.backends.backend_agg", "scipy.integrate", "eomgen.results.at_rest.result"]  # slow to import
 
 
 @dataclass(frozen=True)

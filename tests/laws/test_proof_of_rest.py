@@ -9,11 +9,11 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.documents.at_rest.result import statics
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.free_bodies import velocity_plan as blocks
 from eomgen.mechanics.statics.forces_in_sections import Extreme, SectionForces, SectionPiece
 from eomgen.proof.check import Certificate
+from eomgen.results.at_rest.result import statics
 from eomgen.symbolic.expression.formula import over
 
 pytestmark = pytest.mark.slow

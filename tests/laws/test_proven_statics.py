@@ -9,13 +9,13 @@ import pytest
 from known_answers import MODELS
 
 import eomgen
-from eomgen.documents.at_rest.result import statics as verb
 from eomgen.documents.json_form import as_dict
 from eomgen.documents.proven_documents import shown
 from eomgen.mechanics.equilibrium import search
 from eomgen.mechanics.statics import forces_in_sections as section_forces
 from eomgen.mechanics.statics import influence
 from eomgen.mechanics.statics import virtual_work as two_ways
+from eomgen.results.at_rest.result import statics as verb
 
 BEAM = MODELS / "gerber_beam.toml"
 PENDULUM = MODELS / "simple_pendulum.toml"

@@ -10,7 +10,7 @@ from functools import cache, cached_property, partial
 
 import numpy as np
 
-from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
+from eomgen.documents import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion, Principal, short_form
 from eomgen.model import MassProperties, about_axis, matrix_times, polar, second_moments

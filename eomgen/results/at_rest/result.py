@@ -6,20 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from eomgen.documents.at_rest.section_steps import (
-    Sections,
-    influence_payload,
-    influence_step,
-    reported_sections,
-    section_payload,
-    section_steps,
-    sections_of,
-)
-from eomgen.documents.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
-from eomgen.documents.document import Document
-from eomgen.documents.figures import Picture
-from eomgen.documents.result import Result
-from eomgen.documents.statements import Quantity
+from eomgen.documents import Document, Picture, Quantity, Result
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
@@ -36,6 +23,16 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import Certificate, Check, DrawnPanel, ReportedWork, certify_structure, diagrams_drawn
+from eomgen.results.at_rest.section_steps import (
+    Sections,
+    influence_payload,
+    influence_step,
+    reported_sections,
+    section_payload,
+    section_steps,
+    sections_of,
+)
+from eomgen.results.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
 from eomgen.study import study_at_rest
 from eomgen.symbolic.expression import Scalar
 from eomgen.symbolic.numeric import doing, tolerances
@@ -44,7 +41,7 @@ from eomgen.symbolic.print import to_text
 MOST_REPORTED = 8  # reactions whose virtual work is read again
 
 if TYPE_CHECKING:
-    from eomgen.documents.at_rest.equilibrium import Resting
+    from eomgen.results.at_rest.equilibrium import Resting
 
 
 @dataclass(frozen=True)
@@ -198,7 +195,7 @@ class Statics(Result):
         Raises:
             RunFailed: it is in space.
         """
-        from eomgen.documents.at_rest.pictures import statics_picture
+        from eomgen.results.at_rest.pictures import statics_picture
 
         return statics_picture(self.found, self.sections, self.influence)
 
@@ -264,7 +261,7 @@ def statics(
     model = model_at(model, parameters, start)
     study = study_at_rest(model)
     if has_degrees_of_freedom(study.system):
-        from eomgen.documents.at_rest.equilibrium import Resting
+        from eomgen.results.at_rest.equilibrium import Resting
 
         _refuse_for_resting(reaction=reaction, influence=influence)
         return Resting(model, study.equilibria)

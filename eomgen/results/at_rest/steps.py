@@ -9,11 +9,27 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from eomgen.documents.document import Document, document_of, with_symbols
-from eomgen.documents.motion_steps import count, data_step
-from eomgen.documents.reaction_values import lettered, reaction_name, said
-from eomgen.documents.statements import Cell, Formula, Grid, Law, Piece, Prose, Statement, Step, narrow_grid, prose
-from eomgen.documents.text import cell_text
+from eomgen.documents import (
+    Cell,
+    Document,
+    Formula,
+    Grid,
+    Law,
+    Piece,
+    Prose,
+    Statement,
+    Step,
+    cell_text,
+    count,
+    data_step,
+    document_of,
+    lettered,
+    narrow_grid,
+    prose,
+    reaction_name,
+    said,
+    with_symbols,
+)
 from eomgen.mechanics.free_bodies import (
     Reactions,
     RigidBlock,

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen import compiled, program_of
-from eomgen.documents.drawing import ARROW, REACTION, PagePoint, Sketch, arrow, draw_model, name_beside
-from eomgen.documents.figures import Picture
+from eomgen.documents import ARROW, REACTION, PagePoint, Picture, Sketch, arrow, draw_model, name_beside
 from eomgen.errors import MissingValues, RunFailed
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import FIXED, Centrodes, KinematicState, Mechanism

@@ -7,7 +7,12 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents.at_instant.steps import (
+from eomgen.documents import Cell, Document, Law, Picture, Piece, Prose, Quantity, Result, Step, data_step, document_of
+from eomgen.frozen import dataclass
+from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, body_motions
+from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
+from eomgen.proof import Certificate, certify, instant_checks
+from eomgen.results.at_instant.steps import (
     cell,
     field_payload,
     field_steps,
@@ -19,15 +24,6 @@ from eomgen.documents.at_instant.steps import (
     relative_payload,
     relative_steps,
 )
-from eomgen.documents.document import Document, document_of
-from eomgen.documents.figures import Picture
-from eomgen.documents.motion_steps import data_step
-from eomgen.documents.result import Result
-from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
-from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, body_motions
-from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
-from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.study import kinematic_state
 from eomgen.symbolic.expression import Node, Scalar, Vector
 from eomgen.symbolic.numeric import doing
@@ -120,7 +116,7 @@ class Kinematics(Result):
             RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
-        from eomgen.documents.at_instant.plots import mechanism_picture
+        from eomgen.results.at_instant.plots import mechanism_picture
 
         return mechanism_picture(self.state, () if self.kinds is None else self.kinds.centrodes())
 

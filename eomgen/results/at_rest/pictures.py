@@ -9,23 +9,25 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.at_rest.section_steps import Sections
-from eomgen.documents.drawing import (
+from eomgen.documents import (
     ARROW,
     INK,
     LOAD,
     REACTION,
     PagePoint,
+    Picture,
+    PlacedName,
+    Scale,
     Sketch,
     arrow,
     distributed,
     draw_model,
+    figures,
     is_freer_outward,
     moment_arc,
     name_along,
+    scale_of,
 )
-from eomgen.documents.figures import Picture, Scale, figures, scale_of
-from eomgen.documents.letters import PlacedName
 from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Axes, Component, Effect, members_of
@@ -39,6 +41,7 @@ from eomgen.mechanics.statics import (
     loads_at_rest,
 )
 from eomgen.model import Couple, Model, PointForce, SpreadLoad
+from eomgen.results.at_rest.section_steps import Sections
 from eomgen.symbolic.expression import ZERO, Node, Scalar
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import to_text
@@ -379,7 +382,7 @@ def _filled(panel: Any, curves: Iterable[tuple[np.ndarray, np.ndarray]], color: 
 
 def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
     """The values, each once at a place; zeros left out."""
-    from eomgen.documents.letters import NamesArtist
+    from eomgen.documents import NamesArtist
 
     points = list(points)
     largest = max((abs(y) for _, y in points), default=0.0)

@@ -9,26 +9,33 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.bounded import page
-from eomgen.documents.document import Document, document_of
-from eomgen.documents.drawing import Sketch, draw_model
-from eomgen.documents.figures import Picture
-from eomgen.documents.motion_steps import count, data_step, listed_symbols, open_at_rest
-from eomgen.documents.reaction_values import said
-from eomgen.documents.reading import Reader, Written, with_roots_named
-from eomgen.documents.result import Result
-from eomgen.documents.statements import (
+from eomgen.documents import (
     Cell,
+    Document,
     Entry,
     Formula,
     Law,
     Name,
+    Picture,
     Piece,
     Quantity,
+    Reader,
+    Result,
+    Sketch,
     Statement,
     Step,
+    Written,
+    count,
+    data_step,
+    document_of,
+    draw_model,
+    listed_symbols,
     narrow_grid,
+    open_at_rest,
+    page,
     prose,
+    said,
+    with_roots_named,
 )
 from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass

@@ -12,10 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import Document
-from eomgen.documents.motion_steps import listed_symbols, open_at_rest
-from eomgen.documents.statements import (
+from eomgen.documents import (
     Cell,
+    Document,
     Formula,
     Grid,
     Law,
@@ -24,11 +23,13 @@ from eomgen.documents.statements import (
     Side,
     Statement,
     Step,
+    cell_text,
+    listed_symbols,
     narrow_grid,
+    open_at_rest,
     prose,
 )
-from eomgen.documents.statements import Entry as Place
-from eomgen.documents.text import cell_text
+from eomgen.documents import Entry as Place
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linearization import (
     EQUILIBRIUM,

@@ -6,9 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from eomgen.documents.bounded import tabled
-from eomgen.documents.motion_steps import axes, count
-from eomgen.documents.statements import (
+from eomgen.documents import (
     Cell,
     Formula,
     Grid,
@@ -20,7 +18,10 @@ from eomgen.documents.statements import (
     Side,
     Statement,
     Step,
+    axes,
+    count,
     prose,
+    tabled,
 )
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import (

@@ -12,12 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import Document, document_of, notation_of
-from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.motion_steps import assumption_steps, data_step
-from eomgen.documents.result import Result
-from eomgen.documents.small_motions.steps import linearization_steps, printed_modes
-from eomgen.documents.statements import Quantity
+from eomgen.documents import (
+    Document,
+    Picture,
+    Quantity,
+    Result,
+    assumption_steps,
+    data_step,
+    document_of,
+    mathtext,
+    notation_of,
+)
 from eomgen.errors import DerivationError, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
@@ -43,6 +48,7 @@ from eomgen.model import (
     range_of,
 )
 from eomgen.proof import Certificate, Check, DrawnPanel, certify_small_motions, small_motions_drawn
+from eomgen.results.small_motions.steps import linearization_steps, printed_modes
 from eomgen.study import study_at_rest, study_of
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Call, Expression, Fraction, Scalar
@@ -265,7 +271,7 @@ class Linearization(Result):
         Raises:
             RunFailed: parameters have no values; there are no inputs; the equations are only known in numbers.
         """
-        from eomgen.documents.small_motions.pictures import bode_picture, locus_picture, modes_picture
+        from eomgen.results.small_motions.pictures import bode_picture, locus_picture, modes_picture
 
         if self.over is not None:
             return locus_picture(self.small, self.over)

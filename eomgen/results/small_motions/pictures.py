@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import notation_of
-from eomgen.documents.drawing import Sketch, artist_of, draw_model, limits
-from eomgen.documents.figures import Picture, mathtext
+from eomgen.documents import Picture, Sketch, artist_of, draw_model, limits, mathtext, notation_of
 from eomgen.errors import RunFailed
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import LinearEquations, Mode, Modes, SmallMotions

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from eomgen.documents.statements import Formula, Grid, Law, Name, Side, Statement, Step, prose
-from eomgen.documents.text import cell_text
+from eomgen.documents import Formula, Grid, Law, Name, Side, Statement, Step, cell_text, prose
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.free_bodies import Reactions

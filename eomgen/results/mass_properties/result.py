@@ -14,10 +14,31 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.document import Document, document_of
-from eomgen.documents.drawing import Sketch, draw_model, name_beside
-from eomgen.documents.figures import Picture
-from eomgen.documents.mass_properties.steps import (
+from eomgen.documents import (
+    Document,
+    Law,
+    Picture,
+    Prose,
+    Quantity,
+    Result,
+    Sketch,
+    Statement,
+    Step,
+    data_step,
+    document_of,
+    draw_model,
+    name_beside,
+    picture_of_scene,
+    prose,
+)
+from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
+from eomgen.frozen import dataclass
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.mechanics.start import Start
+from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest
+from eomgen.proof import Certificate, Stated, mass_checks
+from eomgen.results.mass_properties.steps import (
     LONGEST,
     InertiaEntry,
     InertiaSum,
@@ -35,17 +56,6 @@ from eomgen.documents.mass_properties.steps import (
     tensor_results,
     together,
 )
-from eomgen.documents.motion_steps import data_step
-from eomgen.documents.moving_picture import picture_of_scene
-from eomgen.documents.result import Result
-from eomgen.documents.statements import Law, Prose, Quantity, Statement, Step, prose
-from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
-from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import SystemInertia
-from eomgen.mechanics.start import Start
-from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest
-from eomgen.proof import Certificate, Stated, mass_checks
 from eomgen.scene import ROLES, LabelForm, Mark, PointForm, Scene, SceneFrame, ordered, scene_of_system
 from eomgen.study import study_of
 from eomgen.symbolic.expression import (
