@@ -292,6 +292,16 @@ def test_a_room_with_a_door_is_entered_by_its_door(own):
     assert len(given(package)) <= DOORS[own]
 
 
+@pytest.mark.parametrize("own", DOORS)
+def test_a_door_gives_no_name_of_a_module_of_its_room(own):
+    """Of `documents.figures` and its function `figures` the door would give the module, once that is loaded."""
+    folder = PACKAGE.joinpath(*own.split("."))
+    stub = (folder / "__init__.pyi").read_text(encoding="utf-8")
+    homes = {name: home for home, name in re.findall(r"^from (\S+) import (\w+) as \2$", stub, re.M)}
+    modules = {path.stem for path in folder.iterdir()}
+    assert {home for name, home in homes.items() if name in modules} <= {f"eomgen.{own}"}
+
+
 def test_all_rooms_with_a_stub_have_a_door_here():
     """A stub beside `__init__` is a door, and a door is kept."""
     stubs = {path.parent.relative_to(PACKAGE) for path in PACKAGE.glob("*/**/__init__.pyi")}

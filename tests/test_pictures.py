@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.documents.drawing import is_freer_outward
-from eomgen.documents.figures import figures, scale_of
+from eomgen.documents.figures import four_figures, scale_of
 from eomgen.results.mass_properties.result import inertia_scene
 from eomgen.scene import forms, plane_strokes
 from eomgen.scene.scene import Mark, drawn_start, frame_at
@@ -44,7 +44,7 @@ def test_all_forces_of_a_picture_are_in_one_unit_with_four_figures(values, texts
 @pytest.mark.parametrize(("value", "text"), [(41_934.6, "41930"), (1e-5, "0.00001"), (-2.0, "-2"), (0.0, "0")])
 def test_a_label_has_no_power_of_ten_where_it_is_short_without(value, text):
     """4.193e+04 is 41930."""
-    assert figures(value) == text
+    assert four_figures(value) == text
 
 
 def test_an_arrow_is_drawn_on_the_side_where_it_meets_fewer_lines():

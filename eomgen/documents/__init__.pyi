@@ -81,7 +81,7 @@ from eomgen.documents.figures import Scale as Scale
 from eomgen.documents.figures import by_unit as by_unit
 
 # A number with four figures, without a power of ten where it has less than eight digits: 12340, 0.05
-from eomgen.documents.figures import figures as figures
+from eomgen.documents.figures import four_figures as four_figures
 
 # {reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike
 from eomgen.documents.figures import kinds_of_lines as kinds_of_lines

@@ -147,7 +147,7 @@ class Scale:
 
     def number(self, value: float) -> str:
         """A value in SI as its number in these units."""
-        return figures(self(value))
+        return four_figures(self(value))
 
     def text(self, value: float, unit: str) -> str:
         """A value in SI as "41.93 kN"."""
@@ -162,7 +162,7 @@ def scale_of(values: Iterable[float]) -> Scale:
     return next((Scale(*pair) for pair in PREFIXES if largest >= ROOMY * pair[0]), Scale(*PREFIXES[-1]))
 
 
-def figures(value: float) -> str:
+def four_figures(value: float) -> str:
     """A number with four figures, without a power of ten where it has less than eight digits: 12340, 0.05."""
     text = f"{value:.{FIGURES}g}"
     return f"{float(text):.10f}".rstrip("0").rstrip(".") if tolerances.SMALLEST_PLAIN <= abs(value) < 1e8 else text

@@ -22,7 +22,7 @@ from eomgen.documents import (
     arrow,
     distributed,
     draw_model,
-    figures,
+    four_figures,
     is_freer_outward,
     moment_arc,
     name_along,
@@ -394,7 +394,7 @@ def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
         )
         if abs(y) > tolerances.COMPUTED * largest and not twin:
             shown.append((x, y))
-    names = [PlacedName(figures(y), (x, y), INK, 8.0, rank) for rank, (x, y) in enumerate(shown)]
+    names = [PlacedName(four_figures(y), (x, y), INK, 8.0, rank) for rank, (x, y) in enumerate(shown)]
     panel.add_artist(NamesArtist(names, [np.column_stack(line.get_data()) for line in panel.lines[1:]]))
     panel.margins(x=0.03, y=0.22)
     if not largest:
