@@ -77,8 +77,6 @@ from eomgen.sensitivities.derivatives import sensitivity as sensitivity
 from eomgen.simulation.result import Trajectory as Trajectory
 from eomgen.sweeps.runs_of_a_plan import Sweep as Sweep
 from eomgen.sweeps.runs_of_a_plan import sweep as sweep
-from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
-from eomgen.symbolic.numeric.work import patience as patience
 from eomgen.verbs.reactions import FoundReactions as FoundReactions
 from eomgen.verbs.reactions import reactions as reactions
 from eomgen.version import __version__ as __version__

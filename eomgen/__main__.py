@@ -10,7 +10,7 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 from eomgen.cli import main
-from eomgen.symbolic.numeric import seldom_from_now_on
+from eomgen.resources import seldom_from_now_on
 
 
 def run() -> NoReturn:

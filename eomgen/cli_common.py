@@ -22,8 +22,8 @@ from eomgen.cli_errors import INTERRUPTED, Placed, failure, guarded, problems_of
 from eomgen.cli_options import form_requested
 from eomgen.errors import DerivationError, EomgenError, ModelError, OpenConstraints, RunFailed, UsageError
 from eomgen.frozen import dataclass
+from eomgen.resources import doing, growing, patience, seldom
 from eomgen.symbolic.expression import other_words
-from eomgen.symbolic.numeric import doing, growing, patience, seldom
 from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:

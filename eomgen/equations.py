@@ -45,6 +45,7 @@ from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
 from eomgen.mechanics.start import Start
 from eomgen.model import Model, nearest
 from eomgen.proof import Certificate, Printed, certify
+from eomgen.resources import doing
 from eomgen.study import Study
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (
@@ -57,7 +58,7 @@ from eomgen.symbolic.expression import (
     jacobian,
     operations,
 )
-from eomgen.symbolic.numeric import FLOAT, Work, doing, evaluate
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate
 from eomgen.symbolic.print import text_size
 
 if TYPE_CHECKING:

@@ -34,8 +34,9 @@ from eomgen.proof import (
     unwritten,
 )
 from eomgen.questions import pulling
+from eomgen.resources import doing
 from eomgen.simulation import paths_of
-from eomgen.symbolic.numeric import doing, tolerances
+from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
 
 NOT_SINGLE = (

@@ -15,8 +15,9 @@ from eomgen.mechanics.constraints import limits_passed
 from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, model_at, with_inputs
+from eomgen.resources import doing, growing
 from eomgen.study import Study, study_of, study_of_modes
-from eomgen.symbolic.numeric import doing, growing, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
     from eomgen.model import Model

@@ -18,7 +18,7 @@ import pytest
 from hypothesis import settings
 from quick_set import is_slow, model_of
 
-from eomgen.symbolic.numeric.work import SELDOM
+from eomgen.resources import SELDOM
 
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
 if shutil.which("cc"):  # a third of all tests' time went into optimizing what runs for milliseconds

@@ -10,7 +10,7 @@ import pytest
 from derivations import model_called
 
 import eomgen
-from eomgen.symbolic.numeric.work import growing
+from eomgen.resources import growing
 
 
 class Ring:

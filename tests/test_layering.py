@@ -20,7 +20,7 @@ CHAIN = (
     ("version", "frozen", "doors"),
     ("errors",),
     ("files",),
-    ("disk_cache",),
+    ("disk_cache", "resources"),
     ("symbolic",),
     ("model",),
     ("robots",),

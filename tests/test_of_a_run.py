@@ -18,7 +18,7 @@ from eomgen.errors import UsageError
 from eomgen.model import requested_of
 from eomgen.model.fields import Table
 from eomgen.proof import SamplesOfRun
-from eomgen.symbolic.numeric.isolation import ChebyshevPieces, resolved_curve
+from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow
 

@@ -26,9 +26,11 @@ from scipy import stats
 from slow_run import beside, in_slow_run
 
 import eomgen
+from eomgen import resources
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.proof.drawn_values import drawn_otherwise, reported_of_all
+from eomgen.resources import check_patience
 from eomgen.simulation import WholeRun
 from eomgen.sweeps import workers
 from eomgen.sweeps import workers as kernel
@@ -36,8 +38,6 @@ from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
 from eomgen.sweeps.documents import _answers_proven
 from eomgen.sweeps.runs_of_a_plan import sweep_at
 from eomgen.sweeps.workers import SweepKernel
-from eomgen.symbolic.numeric import work
-from eomgen.symbolic.numeric.work import check_patience
 
 ROOT = Path(__file__).parents[1]
 MODELS = ROOT / "models"
@@ -319,7 +319,7 @@ def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
     waits = iter([0, 0, 0, 60])
 
     def slow(self, first, last):
-        work._CLOCK.get().end -= next(waits) + 20  # as if so long had gone by
+        resources._CLOCK.get().end -= next(waits) + 20  # as if so long had gone by
         check_patience()
         return whole(self, first, last)
 

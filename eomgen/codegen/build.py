@@ -25,7 +25,7 @@ from eomgen import disk_cache
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.files import beside
 from eomgen.frozen import dataclass
-from eomgen.symbolic.numeric import time_left
+from eomgen.resources import time_left
 
 LONG_TEXT = 150_000  # characters, some 8 000 operations: there -O2 takes several seconds
 PATIENCE = 20  # seconds of work: under what a verb has in all, so that numpy still has its time

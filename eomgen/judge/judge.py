@@ -65,6 +65,7 @@ from eomgen.judge.verdict import (
 from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.model import AtRest, ModelOrPath, equation_in, model_at
 from eomgen.proof import JudgedEquation
+from eomgen.resources import doing
 from eomgen.simulation import paths_of
 from eomgen.symbolic.expression import (
     SLOPE,
@@ -78,7 +79,6 @@ from eomgen.symbolic.expression import (
     over,
     substituted,
 )
-from eomgen.symbolic.numeric import doing
 
 
 def verify(

@@ -29,11 +29,11 @@ from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Scope
 from eomgen.mechanics.start import start_speeds
 from eomgen.model import Coordinate, Model, in_order
+from eomgen.resources import growing
 from eomgen.scene import Scene
 from eomgen.simulation import PhaseModel, breakpoints_of
 from eomgen.study import Study
 from eomgen.symbolic.expression import Node, Scalar, is_zero, jacobian, substituted, symbols_of
-from eomgen.symbolic.numeric import growing
 
 Slopes = list[tuple[int, int]]
 

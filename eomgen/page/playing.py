@@ -23,7 +23,7 @@ from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import run_of_a_page
-from eomgen.symbolic.numeric import doing
+from eomgen.resources import doing
 
 SAMPLES = 401  # of a run in a page
 LIKE = "write --slider m=0.1:5"

@@ -45,10 +45,10 @@ from eomgen.page.player import (
 from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
 from eomgen.questions import PAGE_TIME, run_of_a_page, solve
+from eomgen.resources import doing
 from eomgen.results import Statics, inertia, kinematics, linearize, statics
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
-from eomgen.symbolic.numeric import doing
 
 SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
 MOST_RELEASED = 8  # reactions whose virtual displacement a page plays

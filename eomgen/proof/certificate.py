@@ -17,7 +17,7 @@ from eomgen.proof.identities import identity_checks
 from eomgen.proof.masses import other_data
 from eomgen.proof.printed import Printed
 from eomgen.proof.trials import Trials
-from eomgen.symbolic.numeric import doing, growing
+from eomgen.resources import doing, growing
 
 if TYPE_CHECKING:
     from eomgen.codegen import RightHandSide

@@ -33,6 +33,7 @@ from eomgen.model import (
 )
 from eomgen.proof import Promise
 from eomgen.questions.simulator import SAMPLES, KnownEquations, Runs, Simulator
+from eomgen.resources import check_patience, doing
 from eomgen.simulation import (
     FoundRuns,
     ManyRuns,
@@ -44,7 +45,6 @@ from eomgen.simulation import (
     refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression
-from eomgen.symbolic.numeric import check_patience, doing
 
 OfRuns = Mapping[str, Any]
 """Values by name: arrays, one number a run, or what all runs share."""

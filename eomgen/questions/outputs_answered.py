@@ -38,21 +38,13 @@ from eomgen.model import (
     model_at,
 )
 from eomgen.proof import AnswerSolver, Certificate, certify_answers
+from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.results import Linearization, linearize, why_not_at_rest
 from eomgen.simulation import is_of_a_run
 from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, study_at_rest
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
-from eomgen.symbolic.numeric import (
-    FLOAT,
-    PatienceEnded,
-    Work,
-    doing,
-    evaluate,
-    keep_what_there_is,
-    number_of,
-    transplanted,
-)
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate, number_of, transplanted
 from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
 
 Answer = Quantity  # of an output

@@ -20,6 +20,7 @@ from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
 from eomgen.mechanics.free_bodies import with_friction
 from eomgen.model import Output, Typed, WrittenEquation
 from eomgen.proof import Certificate, Check, SamplesOfRun, certify, run_checks, watched_checks
+from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.simulation import (
     SAMPLES,
     Accuracy,
@@ -38,7 +39,7 @@ from eomgen.simulation import (
     refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression
-from eomgen.symbolic.numeric import NoValue, PatienceEnded, doing, keep_what_there_is, tolerances
+from eomgen.symbolic.numeric import NoValue, tolerances
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 

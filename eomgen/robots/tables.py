@@ -16,8 +16,9 @@ import mpmath
 from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
 from eomgen.model import rotation_of
+from eomgen.resources import check_patience
 from eomgen.symbolic.expression import IDENTITY, Fraction, apply, plus, product, rotation, transposed
-from eomgen.symbolic.numeric import check_patience, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 # -------- numbers ---------------------------------------------------------------------------------------------
 # Decimals of robot files: places, turns and inertias by 40 digits, written with 17; angles that are parts of pi.

@@ -40,13 +40,14 @@ from eomgen.model import (
     seconds,
 )
 from eomgen.proof import Certificate, Check, Tally, checked, differing
+from eomgen.resources import doing
 from eomgen.results import Linearization, linearize
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation import instants_of
 from eomgen.study import Study, study_of
 from eomgen.symbolic.exact import book_form, legible
 from eomgen.symbolic.expression import Call, Expression, Fraction, Node, Scalar, jacobian, parse, substituted, tangent
-from eomgen.symbolic.numeric import NoValue, Work, doing, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
 
 RHS, STATE, FREQUENCIES, REST = "rhs", "state", "frequencies", "equilibrium"

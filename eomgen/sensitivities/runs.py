@@ -20,10 +20,11 @@ from eomgen.model import Model, Output, Table, model_at, requested_of
 from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import solve
+from eomgen.resources import check_patience
 from eomgen.simulation import breakpoints_of, changing, has_phases, solver_of, step
 from eomgen.study import Study
 from eomgen.symbolic.expression import Expression, Node, Scalar, depends_on, order, substituted, tangent
-from eomgen.symbolic.numeric import check_patience, evaluate, fifty_digits, floats_of, tolerances
+from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, tolerances
 
 # -------- along a run -----------------------------------------------------------------------------------------
 # Equations, changes of parameters and start -> change along a motion: the variational equations, integrated with it.

@@ -20,6 +20,7 @@ import numpy as np
 from eomgen.codegen import Batch, Requested, in_c, in_threads, order_for, pieces_of
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.frozen import dataclass
+from eomgen.resources import check_patience
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.integration import drift_of
@@ -29,7 +30,7 @@ from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import DerivedAt
 from eomgen.simulation.singular import NEARNESS, vanishing_after
 from eomgen.simulation.solvers import SEEN, TAYLOR
-from eomgen.symbolic.numeric import check_patience, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 AT_ONCE = 20_000  # steps in a call, a few hundredths of a second: between two calls somebody may have lost patience
 _SIZE, _AT = ctypes.c_size_t, ctypes.c_void_p

@@ -16,12 +16,13 @@ import numpy as np
 
 from eomgen.codegen import QuaternionPlaces, RateFunction, in_c
 from eomgen.frozen import dataclass, with_fields
+from eomgen.resources import PatienceEnded, check_patience, keep_what_there_is
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, HeyokaSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.result import RunStatus
 from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate, finer
-from eomgen.symbolic.numeric import PatienceEnded, check_patience, keep_what_there_is, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 MOST = 20_000  # states
 

@@ -15,6 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import PLACE, singular_blocks
 from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
 from eomgen.simulation.contacts import Configuration
+from eomgen.simulation.curves import nodes_between, transform
 from eomgen.simulation.departure import RestDeparture
 from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrator import Run, Stepping, march
@@ -26,7 +27,7 @@ from eomgen.simulation.singular import Flow, ended_where_singular, march_across
 from eomgen.simulation.solvers import AUTO
 from eomgen.symbolic.exact import roots
 from eomgen.symbolic.expression import Node, Scalar, State, depends_on
-from eomgen.symbolic.numeric import FLOAT, evaluate, nodes_between, tolerances, transform
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import to_text
 
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next

@@ -18,12 +18,13 @@ from eomgen.mechanics.constraints import (
     singular_blocks,
 )
 from eomgen.mechanics.dynamics import EquationsOfMotion, PullBack, System, assembled_by_recursion, stabilized, system_of
-from eomgen.mechanics.free_bodies import equations_of_motion, released, stays_straight, with_friction
+from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.model import Contact, Model
 from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, has_phases, on_pieces, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
+from eomgen.simulation.release import released, stays_straight
 from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression import Node, Scalar, symbols_of
 from eomgen.symbolic.numeric import tolerances

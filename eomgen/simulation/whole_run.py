@@ -18,10 +18,11 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
 from eomgen.model import EVERY, Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
 from eomgen.simulation.columns import OutputColumns
+from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
 from eomgen.simulation.motion import DenseMotion, Plan
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression import Call, Expression
-from eomgen.symbolic.numeric import ChebyshevPieces, resolved_curve, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 
 @dataclass(frozen=True)

@@ -41,6 +41,7 @@ from eomgen.mechanics.kinematics import ContactModes
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import Model, OutputSource, WrittenEquation
+from eomgen.resources import growing
 from eomgen.symbolic.exact import LinearSystem, legible, readable_all
 from eomgen.symbolic.expression import (
     Call,
@@ -54,7 +55,7 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import FLOAT, Work, evaluate, growing, number_of, numbers_of, tolerances
+from eomgen.symbolic.numeric import FLOAT, Work, evaluate, number_of, numbers_of, tolerances
 from eomgen.symbolic.print import text_size
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code

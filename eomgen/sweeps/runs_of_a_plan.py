@@ -31,6 +31,7 @@ from eomgen.model import (
     seconds,
     typed_values,
 )
+from eomgen.resources import another_stretch
 from eomgen.sensitivities import unit_of_slope
 from eomgen.simulation import Stepping, Trajectory, refuse_bad_run
 from eomgen.sweeps.design import FIXED, Stepped, SweepPlan, plan_of, refuse_bad_design, spread_of, texts
@@ -49,7 +50,7 @@ from eomgen.sweeps.workers import (
     rows_here,
     value_of_run,
 )
-from eomgen.symbolic.numeric import another_stretch, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 PLAN, LEDGER, TABLE, PARQUET, CRITICAL = "plan.json", "ledger.sqlite", "table.csv", "table.parquet", "critical.csv"
 BLOCK = 100_000  # runs whose rows are looked for at once

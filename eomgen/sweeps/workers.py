@@ -32,10 +32,10 @@ from eomgen.mechanics.instant import requests_of
 from eomgen.model import AtRest, Model, Output, OutputSource, Table, requested_of, with_values
 from eomgen.pipeline import simulator
 from eomgen.questions import Simulator, solve
+from eomgen.resources import PatienceEnded
 from eomgen.sensitivities import slope_in_si
 from eomgen.simulation import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of
-from eomgen.symbolic.numeric import PatienceEnded
 
 A_CHUNK = 0.5  # s of work in one: long compared with the cost of giving it out, short compared with the loss by a kill
 MOST_IN_ONE = 2000  # runs

@@ -52,11 +52,12 @@ from eomgen.model import (
 from eomgen.proof import Certificate, Check, NumericState, reaction_numbers, reaction_texts
 from eomgen.proof import certify as certificate_of_equations
 from eomgen.questions import Answers, solve
+from eomgen.resources import doing
 from eomgen.results import why_not_at_rest
 from eomgen.simulation import ReactionColumns
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Fraction, parse
-from eomgen.symbolic.numeric import doing, tolerances
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
 

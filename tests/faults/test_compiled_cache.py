@@ -18,8 +18,8 @@ from eomgen.codegen import build, rhs
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
+from eomgen.resources import patience
 from eomgen.simulation import many_runs as march
-from eomgen.symbolic.numeric.work import patience
 
 MODELS = Path(__file__).parent.parent.parent / "models"
 

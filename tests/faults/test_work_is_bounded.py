@@ -13,6 +13,7 @@ import pytest
 from click.testing import CliRunner
 
 import eomgen
+from eomgen import resources
 from eomgen.cli import main
 from eomgen.errors import EomgenError
 from eomgen.mechanics.constraints import closure
@@ -21,6 +22,7 @@ from eomgen.mechanics.kinematics import places
 from eomgen.mechanics.start.exact import ExactStart
 from eomgen.questions import outputs_answered as answers
 from eomgen.questions.single_run import run
+from eomgen.resources import OutOfPatience, PatienceEnded, check_patience, doing, keep_what_there_is, patience
 from eomgen.simulation import integrator as pace
 from eomgen.simulation import motion as simulation_motion
 from eomgen.simulation.integrator import Stepping, march
@@ -28,17 +30,8 @@ from eomgen.symbolic.exact.expansion import expanded
 from eomgen.symbolic.exact.linear import LinearSystem
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.roots import Newton
-from eomgen.symbolic.numeric.work import (
-    OutOfPatience,
-    PatienceEnded,
-    check_patience,
-    doing,
-    keep_what_there_is,
-    patience,
-)
 from eomgen.symbolic.print.text import text_size
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -124,7 +117,7 @@ def test_nobody_is_stopped_in_the_middle_of_an_import(tmp_path, monkeypatch):
     """Half a module would stay behind: it comes to its end, and then what imports it is stopped."""
     (tmp_path / "slow_to_import.py").write_text("import time\nfor _ in range(50): time.sleep(0.01)\nwhole = True\n")
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(work, "LATE", 0.05)
+    monkeypatch.setattr(resources, "LATE", 0.05)
     with pytest.raises(OutOfPatience), patience(0.05):
         import slow_to_import
 
@@ -178,7 +171,7 @@ def symbols() -> tuple[Node, Node]:
 @pytest.mark.parametrize("loop", [integration, expansion, elimination, evaluation, iteration])
 def test_hot_loops_ask(loop, monkeypatch):
     """Without the thread that stops what does not; and outside of patience they come to their end."""
-    monkeypatch.setattr(work, "LATE", 1e6)
+    monkeypatch.setattr(resources, "LATE", 1e6)
     with pytest.raises(OutOfPatience), patience(1e-9):
         loop()
     loop()

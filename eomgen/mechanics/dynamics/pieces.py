@@ -12,6 +12,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Closure
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations
 from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.resources import check_patience
 from eomgen.symbolic.exact import readable, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
@@ -34,7 +35,6 @@ from eomgen.symbolic.numeric import (
     Switch,
     Work,
     as_chosen,
-    check_patience,
     choices_at,
     compared_sides,
     evaluate,

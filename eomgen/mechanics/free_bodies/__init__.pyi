@@ -51,12 +51,6 @@ from eomgen.mechanics.free_bodies.reactions import Reactions as Reactions
 # Sums of indeterminate reactions that have a single value: sum of k_i r_i with sum of k_i s_i = 0
 from eomgen.mechanics.free_bodies.reactions import determinate_sums as determinate_sums
 
-# The model and the modes of the phase after the constraint has ended; the coordinates keep their names
-from eomgen.mechanics.free_bodies.release import released as released
-
-# True if each displacement that releases the constraint is along its own push, whatever else is released
-from eomgen.mechanics.free_bodies.release import stays_straight as stays_straight
-
 # A reaction that the equations of the rigid bodies do not determine
 from eomgen.mechanics.free_bodies.solution import Indeterminate as Indeterminate
 

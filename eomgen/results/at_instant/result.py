@@ -12,6 +12,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, body_motions
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, certify, instant_checks
+from eomgen.resources import doing
 from eomgen.results.at_instant.steps import (
     cell,
     field_payload,
@@ -26,7 +27,6 @@ from eomgen.results.at_instant.steps import (
 )
 from eomgen.study import kinematic_state
 from eomgen.symbolic.expression import Node, Scalar, Vector
-from eomgen.symbolic.numeric import doing
 from eomgen.symbolic.print import readable_text, text_size
 
 LINE = 80  # characters of a formula among the fields

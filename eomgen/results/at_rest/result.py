@@ -23,6 +23,7 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import Certificate, Check, DrawnPanel, ReportedWork, certify_structure, diagrams_drawn
+from eomgen.resources import doing
 from eomgen.results.at_rest.section_steps import (
     Sections,
     influence_payload,
@@ -35,7 +36,7 @@ from eomgen.results.at_rest.section_steps import (
 from eomgen.results.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
 from eomgen.study import study_at_rest
 from eomgen.symbolic.expression import Scalar
-from eomgen.symbolic.numeric import doing, tolerances
+from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
 MOST_REPORTED = 8  # reactions whose virtual work is read again

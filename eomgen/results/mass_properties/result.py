@@ -38,6 +38,7 @@ from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.mechanics.start import Start
 from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest
 from eomgen.proof import Certificate, Stated, mass_checks
+from eomgen.resources import doing
 from eomgen.results.mass_properties.steps import (
     LONGEST,
     InertiaEntry,
@@ -72,7 +73,6 @@ from eomgen.symbolic.expression import (
     symbols_of,
     vector_of,
 )
-from eomgen.symbolic.numeric import doing
 from eomgen.symbolic.print import readable_text, text_size
 
 TENSOR = Law(

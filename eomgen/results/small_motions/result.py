@@ -48,11 +48,12 @@ from eomgen.model import (
     range_of,
 )
 from eomgen.proof import Certificate, Check, DrawnPanel, certify_small_motions, small_motions_drawn
+from eomgen.resources import doing
 from eomgen.results.small_motions.steps import linearization_steps, printed_modes
 from eomgen.study import study_at_rest, study_of
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Call, Expression, Fraction, Scalar
-from eomgen.symbolic.numeric import doing, numbers_of
+from eomgen.symbolic.numeric import numbers_of
 from eomgen.symbolic.print import to_text
 
 METHOD = "linearization"

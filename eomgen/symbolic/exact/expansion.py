@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 
 from eomgen.errors import DerivationError
+from eomgen.resources import check_patience
 from eomgen.symbolic.exact.polynomials import square_root
 from eomgen.symbolic.exact.terms import (
     HALF,
@@ -33,7 +34,7 @@ from eomgen.symbolic.exact.terms import (
 )
 from eomgen.symbolic.exact.unit_quaternions import reduced_on
 from eomgen.symbolic.expression import Fraction, Node, Number, Owner, Scalar, order, tidy, united
-from eomgen.symbolic.numeric import NoValue, check_patience, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 LARGEST_EXPONENT = 64
 MOST_TERMS = 2_000  # of a sum: nobody reads a longer one

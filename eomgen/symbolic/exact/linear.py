@@ -24,6 +24,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
+from eomgen.resources import check_patience
 from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.exact.equality import equal_at_real_states
 from eomgen.symbolic.expression import (
@@ -38,7 +39,7 @@ from eomgen.symbolic.expression import (
     over,
     symbols_of,
 )
-from eomgen.symbolic.numeric import PIECEWISE, check_patience, lengths_of, tolerances
+from eomgen.symbolic.numeric import PIECEWISE, lengths_of, tolerances
 
 TOGETHER = 4  # unknowns of one set of normal equations
 PIECES_TRIED = 8  # states at which something vanishes in every piece: it may stand in any of them

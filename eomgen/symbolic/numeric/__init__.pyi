@@ -86,20 +86,8 @@ from eomgen.symbolic.numeric.evaluation import sums_of_products as sums_of_produ
 from eomgen.symbolic.numeric.evaluation import transplanted as transplanted
 from eomgen.symbolic.numeric.isolation import JUMPS as JUMPS
 
-# A function, resolved
-from eomgen.symbolic.numeric.isolation import ChebyshevPieces as ChebyshevPieces
-
 # The roots of as many equations as unknowns in the box from `low` to `high`; None where they have jumps
 from eomgen.symbolic.numeric.isolation import isolated as isolated
-
-# The extremes of T_n in each piece, both ends among them: pieces x (n + 1), ascending
-from eomgen.symbolic.numeric.isolation import nodes_between as nodes_between
-
-# A function between the edges, halved until polynomials are it; nan where it has no value in a piece
-from eomgen.symbolic.numeric.isolation import resolved_curve as resolved_curve
-
-# Values at the nodes -> coefficients
-from eomgen.symbolic.numeric.isolation import transform as transform
 from eomgen.symbolic.numeric.pieces import PIECEWISE as PIECEWISE
 from eomgen.symbolic.numeric.pieces import Choices as Choices
 
@@ -142,35 +130,5 @@ from eomgen.symbolic.numeric.sure_numbers import numbers_of as numbers_of
 # commands, numbers and letters of the formulas of one page that are read back
 from eomgen.symbolic.numeric.work import READ_BACK as READ_BACK
 
-# Ends all work inside `patience`
-from eomgen.symbolic.numeric.work import PatienceEnded as PatienceEnded
-
 # Products of terms that may be formed for one expression; one that needs more stays as it came
 from eomgen.symbolic.numeric.work import Work as Work
-
-# Restarts the time limit, for work whose finished steps remain: the next step may take the whole time again
-from eomgen.symbolic.numeric.work import another_stretch as another_stretch
-
-# Does nothing while there is time left
-from eomgen.symbolic.numeric.work import check_patience as check_patience
-
-# Names the activity inside, for the message that it was given up
-from eomgen.symbolic.numeric.work import doing as doing
-
-# Pauses the cycle collector while expressions are made that all stay: the search for cycles would take longer
-from eomgen.symbolic.numeric.work import growing as growing
-
-# Ends the time limit, so that what was found can be reported in full: nothing more is sought
-from eomgen.symbolic.numeric.work import keep_what_there_is as keep_what_there_is
-
-# Limits the time of what is done inside; None: no limit
-from eomgen.symbolic.numeric.work import patience as patience
-
-# Makes the cycle collector run rarely during one command; afterwards it runs as before
-from eomgen.symbolic.numeric.work import seldom as seldom
-
-# Makes the cycle collector run rarely, for one command in a process of its own
-from eomgen.symbolic.numeric.work import seldom_from_now_on as seldom_from_now_on
-
-# Seconds that are left; None without a time limit
-from eomgen.symbolic.numeric.work import time_left as time_left

@@ -14,6 +14,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
+from eomgen.resources import check_patience
 from eomgen.symbolic.expression import (
     LARGEST_POWER,
     NAMES,
@@ -28,7 +29,7 @@ from eomgen.symbolic.expression import (
     sampled_of,
     symbols_of,
 )
-from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS, check_patience
+from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS
 
 WAYS_KEPT = 16  # of evaluations that may come again
 NUMBERS_KEPT = 4096  # exact numbers cached with 50 digits

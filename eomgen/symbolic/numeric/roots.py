@@ -16,12 +16,12 @@ from typing import Any, Generic, Protocol, TypeVar
 import numpy as np
 
 from eomgen.frozen import dataclass
+from eomgen.resources import check_patience
 from eomgen.symbolic.expression import Node, Scalar, State, jacobian
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.arithmetic import balls
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import Layers, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.work import check_patience
 
 # -------- newton ----------------------------------------------------------------------------------------------
 # Equations -> a root nearby, by steps of least change, in any number of digits.
