@@ -8,7 +8,7 @@ import eomgen
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.rows import rows_of_constraint
 from eomgen.mechanics.dynamics.system import System, system_of
-from eomgen.simulation.release import released, stays_straight
+from eomgen.simulation.phase_models import released, stays_straight
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HEAD = """

@@ -16,12 +16,13 @@ so nothing is divided by what vanishes only in between.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import islice, product
 from typing import TYPE_CHECKING, Any
 
-from eomgen.errors import MissingValues
+from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import RECALLED, dataclass, recalled
 from eomgen.mechanics.constraints import Rank, holds_identically
 from eomgen.mechanics.dynamics import (
@@ -37,10 +38,10 @@ from eomgen.mechanics.dynamics import (
 from eomgen.mechanics.free_bodies import SystemFriction, equations_of_motion, values_at_a_state
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
-from eomgen.mechanics.kinematics import ContactModes
+from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import Model, OutputSource, WrittenEquation
+from eomgen.model import Model, OutputSource, Table, WrittenEquation
 from eomgen.resources import growing
 from eomgen.symbolic.exact import LinearSystem, legible, readable_all
 from eomgen.symbolic.expression import (
@@ -55,13 +56,13 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
 )
-from eomgen.symbolic.numeric import FLOAT, Work, evaluate, number_of, numbers_of, tolerances
+from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, number_of, numbers_of, tolerances
 from eomgen.symbolic.print import text_size
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
     from eomgen.codegen import Matrices, Program, RequestedOutputs
     from eomgen.mechanics.dynamics import Extent
-    from eomgen.mechanics.equilibrium import Equilibria, StaticEquations
+    from eomgen.mechanics.equilibrium import Equilibria, Equilibrium, StaticEquations
     from eomgen.mechanics.free_bodies import Reactions
     from eomgen.mechanics.linearization import FirstOrder
 
@@ -528,10 +529,9 @@ def study_of(model: Model) -> Study:
 
 def study_at_rest(model: Model) -> Study:
     """The study of a model with its contacts as they are where it rests; of one frozen model it is made once."""
-    from eomgen.mechanics.equilibrium import contacts_at_rest
 
     def made() -> Study:
-        modes, assumptions = contacts_at_rest(model)
+        modes, assumptions = _contacts_at_rest(model)
         return Study(system_of(model, modes), assumptions)
 
     return recalled(model, study_at_rest, made)
@@ -546,3 +546,65 @@ def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:
     """Exact rational values of doubles; nan is left out."""
     found = {node: Fraction(x) if isinstance(x, float) and math.isfinite(x) else x for node, x in values.items()}
     return {node: x for node, x in found.items() if not isinstance(x, float)}
+
+
+# -------- contacts at rest ------------------------------------------------------------------------------------
+# Model -> the states of its contacts where it rests: one choice for every verb that asks for rest.
+
+
+ROUNDS = 6  # of contacts that a place of rest contradicts
+MOST_TRIED = 16  # choices of contacts
+
+
+def _contacts_at_rest(model: Model) -> tuple[ContactModes, tuple[str, ...]]:
+    """(the contacts that are open at the equilibrium nearest to the start, or stick there; what was assumed).
+
+    As at the start let go, where every choice contradicts something. Without coordinates nothing is open.
+    """
+    ending = [contact.name for contact in model.contacts if contact.unilateral]
+    if not model.coordinates or not ending or model.rough_contacts:
+        return ContactsAtStart.at_rest(model), ()
+    begun = ContactsAtStart.of(_let_go(model))
+    tried: list[frozenset[str]] = []
+    wanted: frozenset[str] | None = frozenset(name for name, mode in begun.modes.items() if not mode.closed)
+    while wanted is not None and wanted not in tried and len(tried) < ROUNDS:
+        tried.append(wanted)
+        place = _place(model, _opened(wanted))
+        if place is not None and not place.contradicted:
+            return _opened(wanted), begun.assumptions
+        wanted = None if place is None else wanted.symmetric_difference(place.contradicted)
+    for open_ in islice(_choices(ending), MOST_TRIED):
+        place = None if open_ in tried else _place(model, _opened(open_))
+        if place is not None and not place.contradicted:
+            return _opened(open_), begun.assumptions
+    return begun.modes, begun.assumptions
+
+
+def _choices(names: list[str]) -> Iterator[frozenset[str]]:
+    """The contacts that are open, in every choice of them."""
+    for closed in product(*((True, False) for _ in names)):
+        yield frozenset(name for name, holds in zip(names, closed, strict=True) if not holds)
+
+
+def _opened(names: frozenset[str]) -> ContactModes:
+    return dict.fromkeys(sorted(names), ContactMode(closed=False))
+
+
+def _place(model: Model, modes: ContactModes) -> Equilibrium | None:
+    """The equilibrium nearest to the start with these contacts; None where there is none, or it cannot be sought."""
+    from eomgen.mechanics.equilibrium import nearest_equilibrium, static_equations
+
+    try:
+        return nearest_equilibrium(static_equations(system_of(model, modes)))
+    except (DerivationError, MissingValues, ModelError, UsageError, NoValue, ZeroDivisionError):
+        return None
+
+
+def _let_go(model: Model) -> Model:
+    """The model with no speed at its start."""
+    coordinates = {
+        name: part if part.driven or part.speed is None else part.altered(speed=None)
+        for name, part in model.coordinates.items()
+    }
+    speeds = {name: part if part.start is None else part.altered(start=None) for name, part in model.speeds.items()}
+    return model.altered(coordinates=Table(coordinates), speeds=Table(speeds))

@@ -18,9 +18,6 @@ from eomgen.mechanics.equilibrium.equations import static_equations as static_eq
 # (the system with its driven coordinates at rest where they start, the names of those that the model moves)
 from eomgen.mechanics.equilibrium.equations import with_drives_held as with_drives_held
 
-# (the contacts that are open at the equilibrium nearest to the start, or stick there; what was assumed)
-from eomgen.mechanics.equilibrium.one_sided_contacts import contacts_at_rest as contacts_at_rest
-
 # Every equilibrium that is found
 from eomgen.mechanics.equilibrium.places import places_of_rest as places_of_rest
 from eomgen.mechanics.equilibrium.reactions import ReactionsOrWhy as ReactionsOrWhy
