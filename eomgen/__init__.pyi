@@ -60,6 +60,8 @@ from eomgen.questions.outputs_answered import Answer as Answer
 from eomgen.questions.outputs_answered import solve as solve
 from eomgen.questions.simulator import Runs as Runs
 from eomgen.questions.simulator import Simulator as Simulator
+from eomgen.resources import OutOfPatience as OutOfPatience
+from eomgen.resources import patience as patience
 from eomgen.results.at_instant.result import Kinematics as Kinematics
 from eomgen.results.at_instant.result import kinematics as kinematics
 from eomgen.results.at_rest.result import Statics as Statics
