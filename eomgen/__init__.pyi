@@ -58,8 +58,6 @@ from eomgen.proof.check import Certificate as Certificate
 from eomgen.proof.check import Check as Check
 from eomgen.questions.outputs_answered import Answer as Answer
 from eomgen.questions.outputs_answered import solve as solve
-from eomgen.questions.simulator import Runs as Runs
-from eomgen.questions.simulator import Simulator as Simulator
 from eomgen.resources import OutOfPatience as OutOfPatience
 from eomgen.resources import patience as patience
 from eomgen.results.at_instant.result import Kinematics as Kinematics
@@ -72,6 +70,8 @@ from eomgen.results.small_motions.result import Linearization as Linearization
 from eomgen.results.small_motions.result import linearize as linearize
 from eomgen.robots.importing import import_robot as import_robot
 from eomgen.robots.sympy_mechanics import from_sympy as from_sympy
+from eomgen.runs.simulator import Runs as Runs
+from eomgen.runs.simulator import Simulator as Simulator
 from eomgen.scene.making import scene_of as scene_of
 from eomgen.scene.scene import Scene as Scene
 from eomgen.sensitivities.derivatives import Sensitivity as Sensitivity

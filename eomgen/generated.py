@@ -33,7 +33,6 @@ from eomgen.proof import (
     unchecked,
     unwritten,
 )
-from eomgen.questions import pulling
 from eomgen.resources import doing
 from eomgen.simulation import paths_of
 from eomgen.symbolic.numeric import tolerances
@@ -352,7 +351,7 @@ def generate(
         some = ", ".join(target.name for target in targets_named() if target.single is not None)
         raise UsageError(f"no single precision in {', '.join(doubles)}: its numbers are doubles", fix=f"take {some}")
     equations = pipeline.derive(model)
-    equations = equations if baumgarte is None else pulling(equations, baumgarte)
+    equations = equations if baumgarte is None else replace(equations, study=equations.study.pulled(baumgarte))
     if float32 and equations.graph.J:
         closing = ", ".join(
             f"'{name}'" for name in dict.fromkeys(row.constraint for row in equations.graph.system.constraints.closing)

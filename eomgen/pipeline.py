@@ -21,7 +21,7 @@ from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
     from eomgen.model import Model
-    from eomgen.questions import Runs, Simulator
+    from eomgen.runs import Runs, Simulator
     from eomgen.simulation import Trajectory
 
 
@@ -90,7 +90,7 @@ def simulator(
     Args:
         rtol, atol, target, method, stabilization: as of `simulate`.
     """
-    from eomgen.questions import Simulator
+    from eomgen.runs import Simulator
     from eomgen.simulation import Stepping
 
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
@@ -123,7 +123,7 @@ def simulate_many(
         samples, rtol, atol, method, target: as of `simulate`.
         threads: among which the runs are divided.
     """
-    from eomgen.questions import many_runs
+    from eomgen.runs import many_runs
 
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method)
     requested = {"parameters": parameters, "start": start, "inputs": inputs}
@@ -164,7 +164,7 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    from eomgen.questions import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
+    from eomgen.runs import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
     from eomgen.simulation import SAMPLES
 
     model = with_nodes_balanced(model_at(model, parameters, start))

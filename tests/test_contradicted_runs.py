@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.frozen import with_fields
-from eomgen.questions import batch_of_runs as many_runs
+from eomgen.runs import batch_of_runs as many_runs
 from eomgen.simulation.solvers import Accuracy
 
 pytestmark = pytest.mark.slow

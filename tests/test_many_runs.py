@@ -13,7 +13,7 @@ import eomgen
 from eomgen.codegen.build import compiler
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, UsageError
-from eomgen.questions import batch_of_runs as many_runs
+from eomgen.runs import batch_of_runs as many_runs
 
 MODELS = Path(__file__).parent.parent / "models"
 needs_compiler = pytest.mark.skipif(compiler() is None, reason="no C compiler")

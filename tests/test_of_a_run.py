@@ -17,7 +17,7 @@ from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.model import requested_of
 from eomgen.model.fields import Table
-from eomgen.proof import SamplesOfRun
+from eomgen.proof.runs import SamplesOfRun
 from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow

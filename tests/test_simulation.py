@@ -21,8 +21,8 @@ from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.accelerations import stabilized
 from eomgen.model.quantities import Unit
 from eomgen.page.animation import Showing, animate_document
-from eomgen.questions.single_run import page_time, run_of_a_page
-from eomgen.questions.single_run import run as run_equations
+from eomgen.runs.single_run import page_time, run_of_a_page
+from eomgen.runs.single_run import run as run_equations
 from eomgen.simulation.integration import drift_of, integrate
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_model import slope_of

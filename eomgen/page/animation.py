@@ -39,9 +39,9 @@ from eomgen.mechanics.statics import ContactsAtStart, released_in
 from eomgen.model import Model, ModelOrPath, Typed, Values, model_at
 from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof import Check, pictures_reported, states_shown
-from eomgen.questions import PAGE_TIME, page_stepping, page_time
-from eomgen.questions import run as simulated
 from eomgen.results import virtual_work_step
+from eomgen.runs import PAGE_TIME, page_stepping, page_time
+from eomgen.runs import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation import Stepping, Trajectory
 from eomgen.symbolic.numeric import tolerances

@@ -22,8 +22,8 @@ from eomgen.model import Model, ModelOrPath, Taken, Typed, TypedNumbers, Values,
 from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof import Certificate, Check, checked, unchecked
-from eomgen.questions import run_of_a_page
 from eomgen.resources import doing
+from eomgen.runs import run_of_a_page
 
 SAMPLES = 401  # of a run in a page
 LIKE = "write --slider m=0.1:5"

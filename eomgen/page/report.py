@@ -44,9 +44,10 @@ from eomgen.page.player import (
 )
 from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
-from eomgen.questions import PAGE_TIME, run_of_a_page, solve
+from eomgen.questions import solve
 from eomgen.resources import doing
 from eomgen.results import Statics, inertia, kinematics, linearize, statics
+from eomgen.runs import PAGE_TIME, run_of_a_page
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
 

@@ -131,14 +131,8 @@ from eomgen.proof.reported_pictures import states_shown as states_shown
 # Reported texts of a run
 from eomgen.proof.reported_run import ReportedRun as ReportedRun
 
-# Checks of a run; an unmade one where a Python function sets an input
-from eomgen.proof.reported_run import run_checks as run_checks
-
 # Checks of all reported texts of a run against its states
 from eomgen.proof.reported_run import run_reported as run_reported
-
-# Checks of energy against power, of constraints and of norms, which a run makes in any case
-from eomgen.proof.reported_run import watched_checks as watched_checks
 
 # A block that moves
 from eomgen.proof.reported_sections import ReportedBlock as ReportedBlock
@@ -160,6 +154,12 @@ from eomgen.proof.reported_small_motions import small_motions_drawn as small_mot
 
 # Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there
 from eomgen.proof.resting import certify_equilibria as certify_equilibria
+
+# Proof of a run: a trajectory -> its certificate
+from eomgen.proof.runs import RunProof as RunProof
+
+# Difference in words between a reported value of an output and the samples of the run; "" without one
+from eomgen.proof.runs import answered_otherwise as answered_otherwise
 
 # Check the equations of motion, the small motions against differences of these, and what is reported of them
 from eomgen.proof.small_motions import certify_small_motions as certify_small_motions
@@ -184,6 +184,3 @@ from eomgen.proof.verdicts import JudgedEquation as JudgedEquation
 
 # Checks of all verdicts; those that numbers cannot decide are unchecked
 from eomgen.proof.verdicts import verdicts_again as verdicts_again
-
-# The samples of a run as a witness of its outputs
-from eomgen.proof.whole_run import SamplesOfRun as SamplesOfRun

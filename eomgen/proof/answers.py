@@ -29,7 +29,7 @@ from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.instant import instant_checks, second_definition, values_of
 from eomgen.proof.masses import other_data
-from eomgen.proof.reported_run import run_checks
+from eomgen.proof.runs import run_checks
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.simulation import PhaseRun, Trajectory, joined
 from eomgen.study import MotionFromStart, StateAtInstant, Study, kinematic_state

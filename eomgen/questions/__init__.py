@@ -1,4 +1,4 @@
-"""Answers to the outputs of a model; runs of a model."""
+"""Answers to the outputs of a model."""
 
 from eomgen.doors import door
 

@@ -30,12 +30,14 @@ from eomgen.mechanics.dynamics import (
     Explicit,
     System,
     WellPosed,
+    assembled_by_recursion,
     refuse_jump,
     signs_of_rates,
+    stabilized,
     system_of,
     with_accelerations,
 )
-from eomgen.mechanics.free_bodies import SystemFriction, equations_of_motion, values_at_a_state
+from eomgen.mechanics.free_bodies import SystemFriction, equations_of_motion, values_at_a_state, with_friction
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
@@ -108,6 +110,16 @@ class Study:
         self.model.refuse_motion()
         WellPosed(self.derived).refuse_massless()
         return self.derived
+
+    def pulled(self, rates: tuple[float, float]) -> Study:
+        """The same with stabilized constraints after Baumgarte: accelerations that close open constraints.
+
+        Args:
+            rates: alpha, beta [1/s].
+        Raises:
+            UsageError: see `stabilized`.
+        """
+        return replace(self, replaced=with_friction(stabilized(assembled_by_recursion(self.system), rates)))
 
     @cached_property
     def explicit(self) -> EquationsOfMotion:

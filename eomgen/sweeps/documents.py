@@ -13,8 +13,8 @@ from eomgen.documents import Document, Grid, plain_document, prose, proven
 from eomgen.errors import EomgenError, RunFailed, UsageError
 from eomgen.model import Model, Output, Table, requested_of
 from eomgen.pipeline import simulate
-from eomgen.proof import Certificate, Check, Tally, differing, drawn_otherwise, reported_of_all
-from eomgen.questions import answered_otherwise, solve
+from eomgen.proof import Certificate, Check, Tally, answered_otherwise, differing, drawn_otherwise, reported_of_all
+from eomgen.questions import solve
 from eomgen.sensitivities import checks_of_slope, slope_in_si
 from eomgen.simulation import Trajectory
 from eomgen.sweeps.design import Stepped, SweepPlan

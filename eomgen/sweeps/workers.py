@@ -31,8 +31,9 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
 from eomgen.model import AtRest, Model, Output, OutputSource, Table, requested_of, with_values
 from eomgen.pipeline import simulator
-from eomgen.questions import Simulator, solve
+from eomgen.questions import solve
 from eomgen.resources import PatienceEnded
+from eomgen.runs import Simulator
 from eomgen.sensitivities import slope_in_si
 from eomgen.simulation import Trajectory
 from eomgen.sweeps.design import FIXED, SweepPlan, plan_of

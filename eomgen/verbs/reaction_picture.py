@@ -8,7 +8,7 @@ from eomgen import pipeline
 from eomgen.documents import Picture, run_picture
 from eomgen.mechanics.dynamics import System
 from eomgen.model import Model
-from eomgen.questions import run_of_a_page
+from eomgen.runs import run_of_a_page
 from eomgen.symbolic.expression import is_zero, symbols_of
 from eomgen.symbolic.numeric import number_of
 

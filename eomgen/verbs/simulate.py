@@ -20,7 +20,7 @@ from eomgen.files import is_stream
 from eomgen.mechanics.constraints import limits_passed
 from eomgen.model import Model, Unit, WrittenEquation
 from eomgen.proof import ReportedRun, run_reported
-from eomgen.questions import run as simulated
+from eomgen.runs import run as simulated
 from eomgen.simulation import Accuracy, Stepping, Trajectory
 
 MOST_REPORTED = 20  # phases in the text

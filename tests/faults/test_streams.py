@@ -257,7 +257,7 @@ def test_an_interrupted_derivation_says_so(monkeypatch):
 def test_a_page_of_an_interrupted_run_is_not_written(verb, monkeypatch, tmp_path):
     """Who stops the motion stops the page too: exit 130, and no file"""
     from eomgen.frozen import with_fields
-    from eomgen.questions import single_run as runs
+    from eomgen.runs import single_run as runs
 
     whole = runs.run
     monkeypatch.setattr(runs, "run", lambda *given, **how: with_fields(whole(*given, **how), ended="interrupted"))

@@ -21,8 +21,8 @@ from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.kinematics import places
 from eomgen.mechanics.start.exact import ExactStart
 from eomgen.questions import outputs_answered as answers
-from eomgen.questions.single_run import run
 from eomgen.resources import OutOfPatience, PatienceEnded, check_patience, doing, keep_what_there_is, patience
+from eomgen.runs.single_run import run
 from eomgen.simulation import integrator as pace
 from eomgen.simulation import motion as simulation_motion
 from eomgen.simulation.integrator import Stepping, march

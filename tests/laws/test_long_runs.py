@@ -14,7 +14,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
-from eomgen.questions.single_run import run
+from eomgen.runs.single_run import run
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.integrator import Stepping
 

@@ -36,7 +36,7 @@ from eomgen.model import (
     with_values,
 )
 from eomgen.proof import Certificate, checked, rows_that_stay
-from eomgen.questions.single_run import finished_run, phase_models, run
+from eomgen.runs.single_run import finished_run, phase_models, run
 from eomgen.simulation import (
     DerivedAt,
     PhaseModels,

@@ -1,20 +1,144 @@
-"""WholeRun -> checks: what is said of a whole run, held against the samples of its motion alone."""
+"""A run in time -> checks of all of it: equations, steps, columns, contacts, and its outputs against its samples."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from eomgen.frozen import dataclass
+from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.instant import requests_of
 from eomgen.model import EVERY, Output, OutputSource, WrittenEquation, formula_at
-from eomgen.proof.check import Check, Tally, differing
-from eomgen.simulation import WholeRun, is_of_a_run
+from eomgen.proof.certificate import certify
+from eomgen.proof.check import Certificate, Check, Tally, differing, unchecked
+from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_assumed
+from eomgen.proof.motion import Leg, Promise, code_and_steps, energy_and_constraints
+from eomgen.proof.reported_run import output_columns_hold, reaction_columns_hold, rows_left_out
+from eomgen.resources import doing
+from eomgen.simulation import Phase, PhaseModels, Stepping, Trajectory, WholeRun, formulas_of, is_of_a_run
 from eomgen.symbolic.expression import Call, Expression
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.numeric import NoValue, tolerances
+
+
+@dataclass(frozen=True)
+class RunProof:
+    """Proof of a run: a trajectory -> its certificate.
+
+    Args:
+        equations: as they were derived.
+        how: the tolerances of the run.
+        models: its phases.
+        whole: the whole run, for outputs such as extremes and means.
+    """
+
+    equations: EquationsOfMotion
+    how: Stepping
+    models: PhaseModels
+    whole: WholeRun
+
+    @doing("the proof of the run")
+    def __call__(self, found: Trajectory) -> Certificate:
+        """The proof of the equations, then that of the run."""
+        return certify(self.equations) + run_checks(found, self.models, self.how, self.whole)
+
+    def watch(self, found: Trajectory) -> tuple[Check, ...]:
+        """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
+        return watched_checks(found, self.how)
+
+
+def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:
+    """Difference in words between a reported value of an output and the samples of the run; "" without one.
+
+    It is that of `SamplesOfRun.answered_otherwise`.
+
+    Raises:
+        NoValue: the states of the run are not known.
+    """
+    if not isinstance(found.proof, RunProof):
+        raise NoValue("the states of the run are not known")
+    return SamplesOfRun(found.proof.whole).answered_otherwise(output, reported)
+
+
+def run_checks(
+    found: Trajectory,
+    models: PhaseModels,
+    how: Stepping,
+    whole: WholeRun | None = None,
+) -> tuple[Check, ...]:
+    """Checks of a run; an unmade one where a Python function sets an input.
+
+    Args:
+        models: its phases.
+        how: the tolerances of the run.
+        whole: the outputs of the whole run, and the instants at which it must have a row; None: those that it has.
+    """
+    if _is_fed(found):
+        what = "a Python function sets an input: its values between the states are not known"
+        return (unchecked("the run follows its equations", what, "the run's right-hand side"),)
+    return (
+        *code_and_steps(_legs(found, how), _promise(found, how)),
+        *(watched_checks(found, how) if found.watch is None else found.watched),
+        *(() if whole is None else (*SamplesOfRun(whole).checks(), *rows_left_out(found, whole.plan.instants))),
+        *reaction_columns_hold(found),
+        *output_columns_hold(found, formulas_of(models.model)),
+        *_contacts(found, models),
+    )
+
+
+def watched_checks(found: Trajectory, how: Stepping) -> tuple[Check, ...]:
+    """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
+    return () if _is_fed(found) else energy_and_constraints(_legs(found, how), _promise(found, how))
+
+
+def _is_fed(found: Trajectory) -> bool:
+    """True if a Python function sets an input."""
+    return any(phase.model.fed is not None for phase in found.phases)
+
+
+def _promise(found: Trajectory, how: Stepping) -> Promise:
+    """Accuracy that the tolerances of a run promise."""
+    projected = how.stabilization in ("projection", "energy") and how.every is None
+    levelled = projected and how.stabilization == "energy"
+    return Promise(how.rtol, how.atol, found.steps, projected, levelled)
+
+
+def _legs(found: Trajectory, how: Stepping) -> Sequence[Leg]:
+    """Leg of the states of each phase, without those after the instant at which the run was cut."""
+    return [leg for phase in found.phases for leg in _leg(phase, found, how)]
+
+
+def _leg(phase: Phase, found: Trajectory, how: Stepping) -> Iterator[Leg]:
+    track, phased = _until(phase, found.t).track, phase.model
+    if track is not None:
+        t, x = track
+        pulled = how.stabilization == "baumgarte"
+        rhs, inner = phased.functions.rhs, phased.functions.inner(x)
+        yield Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
+
+
+def _until(phase: Phase, t: np.ndarray) -> Phase:
+    """A phase without the states after the run was cut."""
+    if phase.track is None or not len(t):
+        return replace(phase, tracked=None)
+    times, states = phase.track
+    here = times <= max(t[-1], phase.start)
+    return replace(phase, tracked=lambda: (times[here], states[here]))
+
+
+def _contacts(found: Trajectory, models: PhaseModels) -> Iterator[Check]:
+    """Checks of contacts in the phases of a run, and between them."""
+    seen = [cut for phase in found.phases if (cut := _until(phase, found.t)).track is not None]
+    yield from contacts_do_as_assumed(seen)
+    if len(seen) > 1:
+        yield from bodies_stand_as_reported(seen, models.without_contacts.system)
+        yield from changes_follow_impulses(seen, models.without_contacts.system, models.ends)
+
+
+# -- outputs of the whole run, by its samples ----------------------------------------------------------
 
 
 @dataclass(frozen=True)

@@ -15,11 +15,9 @@ import numpy as np
 from eomgen.codegen import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.frozen import dataclass, with_fields
-from eomgen.mechanics.dynamics import assembled_by_recursion, stabilized
-from eomgen.mechanics.free_bodies import with_friction
-from eomgen.model import Output, Typed, WrittenEquation
-from eomgen.proof import Certificate, Check, SamplesOfRun, certify, run_checks, watched_checks
+from eomgen.frozen import with_fields
+from eomgen.model import Typed, WrittenEquation
+from eomgen.proof import RunProof
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.simulation import (
     SAMPLES,
@@ -39,48 +37,9 @@ from eomgen.simulation import (
     refuse_bad_run,
 )
 from eomgen.symbolic.expression import Expression
-from eomgen.symbolic.numeric import NoValue, tolerances
+from eomgen.symbolic.numeric import tolerances
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
-
-
-@dataclass(frozen=True)
-class RunProof:
-    """Proof of a run: a trajectory -> its certificate.
-
-    Args:
-        equations: as they were derived.
-        how: the tolerances of the run.
-        models: its phases.
-        whole: the whole run, for outputs such as extremes and means.
-    """
-
-    equations: Equations
-    how: Stepping
-    models: PhaseModels
-    whole: WholeRun
-
-    @doing("the proof of the run")
-    def __call__(self, found: Trajectory) -> Certificate:
-        """The proof of the equations, then that of the run."""
-        return certify(self.equations.graph) + run_checks(found, self.models, self.how, self.whole)
-
-    def watch(self, found: Trajectory) -> tuple[Check, ...]:
-        """Checks of energy against power, of constraints and of norms, which a run makes in any case."""
-        return watched_checks(found, self.how)
-
-
-def answered_otherwise(found: Trajectory, output: Output, reported: float | None) -> str:
-    """Difference in words between a reported value of an output and the samples of the run; "" without one.
-
-    It is that of `SamplesOfRun.answered_otherwise`.
-
-    Raises:
-        NoValue: the states of the run are not known.
-    """
-    if not isinstance(found.proof, RunProof):
-        raise NoValue("the states of the run are not known")
-    return SamplesOfRun(found.proof.whole).answered_otherwise(output, reported)
 
 
 @doing("the motion in time")
@@ -229,7 +188,7 @@ def finished_run(
     columns = formulas_of(model) if outputs is None else outputs
     found = joined(models, runs, until=until, reactions=reactions, outputs=columns)
     begun = runs[0].here.begun
-    proof = RunProof(equations, how, models, whole)
+    proof = RunProof(equations.graph, how, models, whole)
     more = {
         "assembled": "" if begun is None else begun.words,
         "whole": whole.value,
@@ -289,15 +248,3 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
         raise DerivationError(
             what, f"constraints.{fork.constraints[0]}", "give it start speeds, or start near that position"
         )
-
-
-def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
-    """Equations with stabilized constraints after Baumgarte: accelerations that close open constraints.
-
-    Args:
-        rates: alpha, beta [1/s].
-    Raises:
-        UsageError: see `stabilized`.
-    """
-    pulled = stabilized(assembled_by_recursion(equations.graph.system), rates)
-    return replace(equations, study=replace(equations.study, replaced=with_friction(pulled)))

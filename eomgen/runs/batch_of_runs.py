@@ -32,8 +32,8 @@ from eomgen.model import (
     with_values,
 )
 from eomgen.proof import Promise
-from eomgen.questions.simulator import SAMPLES, KnownEquations, Runs, Simulator
 from eomgen.resources import check_patience, doing
+from eomgen.runs.simulator import SAMPLES, KnownEquations, Runs, Simulator
 from eomgen.simulation import (
     FoundRuns,
     ManyRuns,
