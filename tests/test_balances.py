@@ -10,8 +10,8 @@ from slow_run import usual
 import eomgen
 from eomgen.judge.balances import Balances
 from eomgen.judge.case import Case
-from eomgen.judge.cut_bodies import cut_beam, what_acts
 from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.diagnosis import Samples
 from eomgen.symbolic.expression.derivatives import substituted
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -148,8 +148,8 @@ def test_a_section_cuts_line_loads():
     """Both parts of a beam together bear what the beam bears: F_1 + F_2 = F, and the moments about the section."""
     case = Case(eomgen.load(MISTAKES / "13_beamM.toml"))
     (call,) = case.reading.read("bending_moment(beam, l/6) = 0").calls
-    beam = cut_beam(case.quantities, call, what_acts(case.system), 1)
-    (load,) = (each for each in beam.acting if each.force == "load")
+    free = case.quantities.free_bodies([call], Samples({}, 1).flat)
+    (load,) = (each for each in free.acting if each.force == "load")
     whole, before, after = load.pushes
     assert (whole.part, before.part, after.part) == (0, 1, 2)
     apart = whole.force[1] - before.force[1] - after.force[1], whole.moment - before.moment - after.moment

@@ -10,7 +10,7 @@ component of it is taken, or its full size; its lever arm is another one; it is 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
@@ -22,15 +22,6 @@ from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import EXTRA, remainder
-from eomgen.judge.cut_bodies import (
-    ActingForce,
-    CutBalance,
-    FreeBodies,
-    PlacedPush,
-    cut_beam,
-    symbols_of_reactions,
-    what_acts,
-)
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import (
     FAR_FETCHED,
@@ -51,12 +42,12 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.judge.fixes import Authored
 from eomgen.judge.reading import MULTIPLIER, HandEquation
-from eomgen.judge.terms import short_text, term_text, terms_of
+from eomgen.judge.terms import angles_in, short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.instant import Quantities
-from eomgen.mechanics.statics import KINDS
+from eomgen.mechanics.statics import KINDS, ActingForce, CutBalance, FreeBodies, PlacedPush
 from eomgen.symbolic.expression import (
     Call,
     Fraction,
@@ -180,23 +171,27 @@ class Balances:
     @cached_property
     def _free(self) -> FreeBodies | None:
         """The loads, beams cut where section forces are requested; None: in space, or something acts at no place."""
-        system, quantities = self.case.system, self.case.quantities
-        samples = Authored(self.case, self.written, "reaction").samples
-        if samples is None or not quantities.is_plane or any(call.name == MULTIPLIER for call in self.written.calls):
+        quantities, calls = self.case.quantities, self.written.calls
+        if self._states is None or not quantities.is_plane or any(call.name == MULTIPLIER for call in calls):
             return None
-        samples = samples.with_values(_at(samples, self.place))
-        acting, cuts = what_acts(system), list[CutBalance]()
-        for call in self.written.calls:
-            if call.name in KINDS:
-                beam = cut_beam(quantities, call, acting, len(system.motion.links) + len(cuts))
-                acting, cuts = beam.acting, [*cuts, *beam.cuts]
-                self._sections.update(beam.true)
-        return FreeBodies(system, acting, tuple(cuts), samples)
+        return quantities.free_bodies([call for call in calls if call.name in KINDS], self._states.flat)
 
     @cached_property
-    def _sections(self) -> dict[Node, Scalar]:
+    def _states(self) -> Samples | None:
+        """States at which the reactions can be compared; None: there are none."""
+        samples = Authored(self.case, self.written, "reaction").samples
+        return None if samples is None else samples.with_values(_at(samples, self.place))
+
+    @cached_property
+    def _angles(self) -> list[Node]:
+        """The angles under whose sines and cosines forces stand."""
+        acting = () if self._free is None else self._free.acting
+        return angles_in([x for each in acting for push in each.pushes for x in push.force])
+
+    @property
+    def _sections(self) -> Mapping[Node, Scalar]:
         """The section forces that are requested."""
-        return {}
+        return {} if self._free is None else self._free.sections
 
     @cached_property
     def _reactions(self) -> Reactions:
@@ -206,15 +201,14 @@ class Balances:
     def _values(self) -> dict[Node, Scalar]:
         """Values of all reactions that have one, and of the unknowns of loads."""
         reactions = self._reactions
-        mine = (*symbols_of_reactions(reactions.balance), *reactions.balance.unknowns)
         determined, values = reactions.solution.determined, reactions.solution.constants
-        return {x: values[j] for j, x in enumerate(mine) if determined(j)} | self._sections
+        own = {x: values[j] for j, x in enumerate(reactions.balance.symbols) if determined(j)}
+        return {**own, **self._sections}
 
     @cached_property
     def _mine(self) -> tuple[Node, ...]:
         """The reactions, and the unknowns of loads."""
-        balance = self._reactions.by_components[0].balance
-        return (*symbols_of_reactions(balance), *balance.unknowns)
+        return self._reactions.by_components[0].balance.symbols
 
     @cached_property
     def _scalar(self) -> Scalar:
@@ -250,8 +244,8 @@ class Balances:
     @cached_property
     def _before(self) -> Samples:
         """States with the reactions: those that stand in the equation anything, the others true."""
-        assert self._free is not None
-        samples, random = self._free.samples, np.random.default_rng(7)
+        assert self._states is not None
+        samples, random = self._states, np.random.default_rng(7)
         requested, _, true = self._requested
         if self._is_free:
             a = self.case.system.symbols.a
@@ -337,7 +331,8 @@ class Balances:
         dear = self._dearness(free, cut, items, known - {*requested})
         if self.finely and dear > FINEST:
             return None
-        wrong, left = WrongItems(self.case, free, cut, self._samples, len(requested) == 1), sum(values, start=0)
+        wrong = WrongItems(self.case, free, cut, self._samples, self._angles, len(requested) == 1)
+        left = sum(values, start=0)
         others = sum(item.there and not item.is_requested for item in items)
         apart = wrong.throughout(left) if self.finely else chain(wrong.strangers, self._extra(cut, left))
         found = [(each, InBalance(left, 0, False, others)) for each in apart]
@@ -420,6 +415,7 @@ class WrongItems:
 
     Args:
         samples: states with the reactions, where values are compared.
+        angles: under whose sines and cosines forces stand.
         alone: one reaction is requested alone.
     """
 
@@ -427,6 +423,7 @@ class WrongItems:
     free: FreeBodies
     cut: CutBalance
     samples: Samples = field(repr=False)
+    angles: Sequence[Node] = ()
     alone: bool = False
 
     def changes(self, item: Item) -> Iterator[Mistake]:
@@ -508,7 +505,7 @@ class WrongItems:
         """A component of what acts with all of it, by the angles that there are."""
         if self.cut.along is not None:
             value = self.cut.value(push)
-            for angle in self.free.angles:
+            for angle in self.angles:
                 for wave in (angle.graph.call(op, angle) for op in ("sin", "cos")):
                     reported = f"stands with a factor {term_text(wave)} that does not belong there"
                     yield Otherwise("factor", PIECES, reported, value * wave)

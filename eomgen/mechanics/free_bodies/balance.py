@@ -108,6 +108,11 @@ class Balance:
         symbols = self.system.symbols.unknowns
         return tuple(symbols[name] for name in self.system.scope.model.unknowns_in_loads())
 
+    @cached_property
+    def symbols(self) -> tuple[Node, ...]:
+        """Symbols of the unknowns of the equations: one for each component, by its name, then those of the loads."""
+        return (*(self.system.scope.graph.symbol(c.name) for c in self.components), *self.unknowns)
+
     @property
     def names(self) -> tuple[str, ...]:
         """Names of the unknowns of the equations: reaction_x(B), then the unknowns of the loads."""

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
+
+import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
@@ -20,8 +22,19 @@ from eomgen.mechanics.kinematics import (
     SystemScene,
     VelocityField,
 )
-from eomgen.mechanics.statics import SectionForces
-from eomgen.model import FUNCTIONS, GROUND, Couple, GeneralizedForce, Load, MassProperties, PointForce, UniformField
+from eomgen.mechanics.statics import FreeBodies, RequestedSection, SectionForces
+from eomgen.model import (
+    FUNCTIONS,
+    GROUND,
+    Couple,
+    GeneralizedForce,
+    Load,
+    MassProperties,
+    PointForce,
+    UniformField,
+    distance_of,
+    name_at,
+)
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
     ZERO,
@@ -322,6 +335,20 @@ class Quantities:
         if body not in self._sections:
             self._sections[body] = SectionForces.of(self.reactions, body)
         return self._sections[body]
+
+    def free_bodies(self, calls: Iterable[Call], numbers: Callable[[Sequence[Scalar]], np.ndarray]) -> FreeBodies:
+        """The bodies cut free, beams cut where these calls request section forces.
+
+        Args:
+            numbers: values of scalars at states, (k, n).
+        Raises:
+            DerivationError: a body without section forces; something acts off a beam's axis, or at no place.
+        """
+        sections = [
+            RequestedSection(call, self.section(name_at(call, 0)), distance_of(call).evaluate(self.names))
+            for call in calls
+        ]
+        return FreeBodies.of(self.system, numbers, sections)
 
     @cached_property
     def _sections(self) -> dict[str, SectionForces]:

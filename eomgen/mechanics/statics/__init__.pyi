@@ -8,6 +8,21 @@ from eomgen.mechanics.statics.contacts import RestCondition as RestCondition
 
 # Conditions of the contacts that can end or slide, where their reactions are determinate
 from eomgen.mechanics.statics.contacts import conditions_of as conditions_of
+
+# One thing that acts
+from eomgen.mechanics.statics.cut_bodies import ActingForce as ActingForce
+
+# One equation: the balance of forces along e, or of moments about p, of parts that are cut free
+from eomgen.mechanics.statics.cut_bodies import CutBalance as CutBalance
+
+# The parts that can be cut free, and their balances
+from eomgen.mechanics.statics.cut_bodies import FreeBodies as FreeBodies
+
+# Force and couple on one body, ground axes
+from eomgen.mechanics.statics.cut_bodies import PlacedPush as PlacedPush
+
+# A section force that is requested
+from eomgen.mechanics.statics.cut_bodies import RequestedSection as RequestedSection
 from eomgen.mechanics.statics.forces_in_sections import KINDS as KINDS
 
 # Extreme of the bending moment within a piece, where V = 0

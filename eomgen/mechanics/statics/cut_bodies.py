@@ -1,8 +1,8 @@
-"""The forces and couples on bodies and beams that are cut free."""
+"""The forces and couples on bodies and beams that are cut free, inertia forces among them, and their balances."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from itertools import combinations
@@ -11,14 +11,12 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.judge.diagnosis import Samples
-from eomgen.judge.terms import angles_in
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, efforts_of
-from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import BodyLink
-from eomgen.mechanics.statics import KINDS, MemberAxis
-from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, distance_of, is_node, name_at
+from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
+from eomgen.mechanics.statics.member_axis import MemberAxis
+from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, is_node, name_at
 from eomgen.symbolic.exact import readable
 from eomgen.symbolic.expression import (
     ZERO,
@@ -101,11 +99,6 @@ class ActingForce:
         return () if self.kind == "reaction" and len({push.part for push in mine}) > 1 else mine
 
 
-def symbols_of_reactions(balance: Balance) -> tuple[Node, ...]:
-    """A symbol for each component, by its name."""
-    return tuple(balance.system.scope.graph.symbol(c.name) for c in balance.components)
-
-
 def what_acts(system: System) -> tuple[ActingForce, ...]:
     """All of it."""
     return (*_reactions(system), *_loads(system), *_inertia(system))
@@ -113,7 +106,7 @@ def what_acts(system: System) -> tuple[ActingForce, ...]:
 
 def _reactions(system: System) -> Iterator[ActingForce]:
     balance = Balance.of(system)
-    for symbol, c in zip(symbols_of_reactions(balance), balance.components, strict=True):
+    for symbol, c in zip(balance.symbols, balance.components, strict=False):
         yield ActingForce(_in_words(c), _pushes(system, c.effects, symbol), c.owner, symbol, kind="reaction")
         if c.friction_effects:
             pushes = _pushes(system, c.friction_effects, symbol)
@@ -234,13 +227,31 @@ class FreeBodies:
     Args:
         acting: what acts on it.
         beams: the balances of parts of beams.
-        samples: states at which directions and places are compared.
+        sections: what the section forces are.
+        numbers: values of scalars at states at which directions and places are compared, (k, n).
     """
 
     system: System
     acting: tuple[ActingForce, ...]
     beams: tuple[CutBalance, ...]
-    samples: Samples = field(repr=False)
+    sections: Mapping[Node, Scalar]
+    numbers: Callable[[Sequence[Scalar]], np.ndarray] = field(repr=False)
+
+    @staticmethod
+    def of(
+        system: System, numbers: Callable[[Sequence[Scalar]], np.ndarray], requested: Sequence[RequestedSection] = ()
+    ) -> FreeBodies:
+        """The bodies of a system, and beams cut where section forces are requested.
+
+        Raises:
+            DerivationError: as of `cut_beam`.
+        """
+        acting, cuts, sections = what_acts(system), list[CutBalance](), dict[Node, Scalar]()
+        for each in requested:
+            beam = cut_beam(system, each, acting, len(system.motion.links) + len(cuts))
+            acting, cuts = beam.acting, [*cuts, *beam.cuts]
+            sections |= beam.true
+        return FreeBodies(system, acting, tuple(cuts), sections, numbers)
 
     def cuts(self, requested: Sequence[Node]) -> Iterator[CutBalance]:
         """The balances in which something that is requested may stand."""
@@ -262,11 +273,6 @@ class FreeBodies:
         return {
             push.body for each in self.acting if each.kind == "reaction" and each.on(bodies) for push in each.pushes
         }
-
-    @cached_property
-    def angles(self) -> list[Node]:
-        """Under whose sines and cosines forces stand."""
-        return angles_in([x for each in self.acting for push in each.pushes for x in push.force])
 
     @cached_property
     def spots(self) -> tuple[Spot, ...]:
@@ -294,7 +300,7 @@ class FreeBodies:
 
     def _numbers(self, vector: Vector) -> np.ndarray:
         """The first two components at all samples, (2, n)."""
-        return self.samples.flat(vector[:2])
+        return self.numbers(vector[:2])
 
     # -- what is cut free --------------------------------------------------------------------------------
 
@@ -374,6 +380,21 @@ SIXTH = Fraction(1, 6)
 
 
 @dataclass(frozen=True)
+class RequestedSection:
+    """A section force that is requested.
+
+    Args:
+        call: its function, shear_force(beam, x, before).
+        forces: the section forces along the body.
+        x: the distance of the section.
+    """
+
+    call: Call
+    forces: SectionForces
+    x: Scalar
+
+
+@dataclass(frozen=True)
 class CutBeam:
     """A beam, cut.
 
@@ -388,7 +409,7 @@ class CutBeam:
     true: dict[Node, Scalar]
 
 
-def cut_beam(quantities: Quantities, call: Call, acting: Sequence[ActingForce], part: int) -> CutBeam:
+def cut_beam(system: System, requested: RequestedSection, acting: Sequence[ActingForce], part: int) -> CutBeam:
     """The beam cut where a section force is requested.
 
     Args:
@@ -396,16 +417,16 @@ def cut_beam(quantities: Quantities, call: Call, acting: Sequence[ActingForce], 
     Raises:
         DerivationError: something acts off its axis or at no place, or what it weighs is spread along it.
     """
+    call, section, x = requested.call, requested.forces, requested.x
     body, side = name_at(call, 0), name_at(call, 2) if len(call.args) > 2 else ""
-    section, x = quantities.section(body), distance_of(call).evaluate(quantities.names)
-    axis, motion = section.axis, quantities.system.motion
+    axis, motion = section.axis, system.motion
     i, link = motion.index[body], motion.link(body)
     leg = [leg for leg in axis.legs if leg.x == 0 or axis.sizes.sign(x - leg.x) >= 0][-1]
     place, t, n = link.pose.point(leg.place(x)), apply(link.pose.R, leg.along), apply(link.pose.R, leg.left)
     found, true = list[ActingForce](), dict[Node, Scalar]()
     for kind, e in zip(KINDS, (t, times(-1, n), ZERO), strict=True):
         name = str(replace(call, name=kind))
-        symbol = quantities.system.scope.graph.symbol(name)
+        symbol = system.scope.graph.symbol(name)
         true[symbol] = section.value(kind, x, side or ("before" if kind != "bending_moment" else ""))
         couple = symbol if kind == "bending_moment" else 0
         pushes = (
