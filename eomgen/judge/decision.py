@@ -8,8 +8,9 @@ What vanishes with 50 digits is looked at once more in balls: a kinetic energy o
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 from random import Random
 from typing import Any
 
@@ -19,7 +20,7 @@ from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, System, division_of
 from eomgen.mechanics.free_bodies import equations_of_motion
-from eomgen.symbolic.exact import exact_state
+from eomgen.symbolic.exact import combined_at_states, combined_in_field, combines
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -29,25 +30,18 @@ from eomgen.symbolic.expression import (
     holds_op,
     linear_terms,
     symbols_of,
-    united,
 )
 from eomgen.symbolic.numeric import (
     FLOAT,
     PIECEWISE,
-    PRIME,
-    PRIME_FIELD,
-    Ball,
     Choices,
-    NoMeaning,
     NoValue,
     as_chosen,
-    balls,
     evaluate,
     fifty_digits,
     tolerances,
 )
 
-STATES = 3
 REAL_STATES = 6  # where roots and sizes may hold on one side only: signs are shared out among so many
 TRIES = 40
 STEPS = 30  # of Newton's method to the constraints
@@ -71,64 +65,6 @@ class Follows:
     way: str = ""
     on_constraints: bool = False
     held: Extent = Extent(False)
-
-
-@dataclass(frozen=True)
-class NumberKind:
-    """Calculating with exact numbers of one kind, as far as linear equations need it."""
-
-    name: str
-    inverse: Callable[[Any], Any]
-    tidy: Callable[[Any], Any]
-    is_zero: Callable[[Any, Any], bool]  # of a number, beside the size of what it was made of
-    number: Callable[[Any], Any] = lambda x: x  # of a whole number
-    states: int = STATES  # at how many it is looked at
-
-
-@dataclass(frozen=True)
-class SureNumber:
-    """A number as far as it is sure: its ball."""
-
-    ball: Ball
-
-    def __sub__(self, other: SureNumber) -> SureNumber:
-        return SureNumber(BALLS.functions["sub"](self.ball, other.ball))
-
-    def __mul__(self, other: SureNumber) -> SureNumber:
-        return SureNumber(BALLS.functions["mul"](self.ball, other.ball))
-
-    def __neg__(self) -> SureNumber:
-        return SureNumber(BALLS.functions["neg"](self.ball))
-
-    def __abs__(self) -> Any:
-        return abs(self.ball[0])
-
-    @property
-    def inverse(self) -> SureNumber:
-        return SureNumber(BALLS.functions["div"](BALLS.number(1), self.ball))
-
-    @property
-    def may_vanish(self) -> bool:
-        return not abs(self.ball[0]) > self.ball[1]
-
-
-BALLS = balls(50, last=True)
-IN_FIELD = NumberKind("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
-IN_DIGITS = NumberKind(
-    "50 digits",
-    lambda x: 1 / x,
-    lambda x: x,
-    lambda x, size: abs(x) <= max(tolerances.ELIMINATED_AT_50 * size, tolerances.ZERO_AT_50),
-    states=REAL_STATES,
-)
-IN_BALLS = NumberKind(
-    "balls of 50 digits",
-    lambda x: x.inverse,
-    lambda x: x,
-    lambda x, size: x.may_vanish,
-    lambda x: SureNumber(BALLS.number(x)),
-    states=1,
-)
 
 
 def combination(
@@ -195,7 +131,7 @@ def _in_pieces(
         except (NoValue, ZeroDivisionError):
             return True
         numbers = [values[k : k + width] for k in range(0, len(values), width)]
-        return factors_in(numbers[1:], numbers[0], IN_DIGITS) is not None
+        return combines(numbers[0], numbers[1:])
 
     return division.where(holds)
 
@@ -213,7 +149,8 @@ def _at_random(
     if not row:
         return Follows(True)
     flat = [x for each in (row, *rows) for x in each]
-    found = _combined(row, rows, _exact_states(flat), IN_FIELD)
+    exact = combined_in_field(row, rows)
+    found = Follows(exact.holds, exact.rows, exact.way)
     if found.holds is None:
         found = _combined_in_digits(system, row, rows, flat, on_constraints=False)
     closes = bool(system.constraints.J or _gaps(system, flat))
@@ -288,101 +225,14 @@ def _combined_in_digits(
     *,
     on_constraints: bool,
 ) -> Follows:
-    """The same at real states; what 50 digits take for 0 must be able to vanish in balls."""
-    found = _combined(row, rows, _real_states(system, flat, on_constraints=on_constraints), IN_DIGITS)
-    if (
-        found.holds
-        and _combined(row, rows, _sure_states(system, flat, on_constraints=on_constraints), IN_BALLS).holds is False
-    ):
-        return Follows(False, (), IN_BALLS.name)
-    return found
-
-
-def _combined(
-    row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[NumberRow], numbers: NumberKind
-) -> Follows:
-    """The same at given states; undecided where there are none."""
-    width, used = len(row), set[int]()
-    for seen, values in enumerate(states, start=1):
-        table = [values[k : k + width] for k in range(0, len(values), width)]
-        factors = factors_in(table[1:], table[0], numbers)
-        if factors is None:
-            return Follows(False, (), numbers.name)
-        used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
-        if seen == numbers.states:
-            return Follows(True, tuple(sorted(used)), numbers.name)
-    return Follows(None)
-
-
-def factors_in(rows: Sequence[NumberRow], row: NumberRow, numbers: NumberKind) -> NumberRow | None:
-    """The factors by which the rows make a row; None where none do."""
-    pivots: list[tuple[int, NumberRow, NumberRow]] = []
-    for k, each in enumerate((*rows, row)):
-        size = max(map(abs, each), default=0)
-        left, made = list(each), [numbers.number(int(j == k)) for j in range(len(rows) + 1)]
-        for column, pivot, share in pivots:
-            factor = left[column]
-            if factor:
-                left = [numbers.tidy(x - factor * y) for x, y in zip(left, pivot, strict=True)]
-                made = [numbers.tidy(x - factor * y) for x, y in zip(made, share, strict=True)]
-        free = [j for j, x in enumerate(left) if not numbers.is_zero(x, size)]
-        if k == len(rows):
-            return None if free else [numbers.tidy(-x) for x in made[:-1]]
-        if free:
-            column = max(free, key=lambda j: abs(left[j]))
-            inverse = numbers.inverse(left[column])
-            scaled = [numbers.tidy(x * inverse) for x in left]
-            pivots.append((column, scaled, [numbers.tidy(x * inverse) for x in made]))
-    return None
+    """The same at real states."""
+    moved = {*system.symbols.q, *system.symbols.u} if on_constraints else set[Node]()
+    states = partial(states_of, system, flat, on_constraints=on_constraints)
+    found = combined_at_states(row, rows, states, moved)
+    return Follows(found.holds, found.rows, found.way)
 
 
 # -- states --------------------------------------------------------------------------------------
-
-
-def _exact_states(flat: Sequence[Scalar]) -> Iterator[NumberRow]:
-    """NumberRow at states of the prime field; none where it cannot tell a difference from none."""
-    _, flat = united(list(flat))
-    rng, found = Random(7), 0
-    for _ in range(TRIES):
-        try:
-            state = exact_state(flat, rng)
-            if not state.independent:
-                return
-            yield evaluate(flat, state.values, PRIME_FIELD)
-            found += 1
-        except NoMeaning:
-            return
-        except (NoValue, ValueError):
-            continue
-        if found == STATES:
-            return
-
-
-def _real_states(system: System, flat: Sequence[Scalar], *, on_constraints: bool) -> Iterator[NumberRow]:
-    """NumberRow at real states with 50 digits."""
-    _, flat = united(list(flat))
-    arithmetic, found = fifty_digits(), 0
-    for state in states_of(system, flat, on_constraints=on_constraints):
-        try:
-            yield evaluate(flat, state, arithmetic)
-            found += 1
-        except (NoValue, ZeroDivisionError):
-            continue
-        if found == REAL_STATES:
-            return
-
-
-def _sure_states(system: System, flat: Sequence[Scalar], *, on_constraints: bool) -> Iterator[NumberRow]:
-    """NumberRow in balls at the first such state where all have values; on the constraints as far as these are
-    closed."""
-    _, flat = united(list(flat))
-    for state in states_of(system, flat, on_constraints=on_constraints):
-        moved = {*system.symbols.q, *system.symbols.u} if on_constraints else set()
-        values = evaluate(
-            flat, {x: (v, v * 0 + (tolerances.ZERO_AT_50 if x in moved else 0)) for x, v in state.items()}, BALLS
-        )
-        if not any(x != x for x, _ in values):
-            yield [SureNumber(each) for each in values]
 
 
 def states_of(

@@ -16,7 +16,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.judge.diagnosis import EXCHANGED, MINUS, ODD, PLAINEST, TERMS, UNUSUAL, USUAL, WELL_KNOWN, simple_factor
-from eomgen.symbolic.exact import Expansion, TooLarge, Writer, legible, readable
+from eomgen.symbolic.exact import TooLarge, legible, readable, written_terms
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -37,15 +37,11 @@ MOST_TERMS = 60  # of an equation that is looked at term by term
 
 def terms_of(x: Scalar, positive: frozenset[Node]) -> tuple[Scalar, ...]:
     """The terms of a sum multiplied out, as they are written; () where they are too many."""
-    if type(x) is not Node:
-        return () if x == 0 else (x,)
-    expansion = Expansion(x.graph, Work.FORMULA, positive)
-    writer = Writer(expansion)
     try:
-        written = writer.written(expansion.of(x))
+        written = written_terms(x, Work.FORMULA, positive)
     except TooLarge:
         return ()
-    return tuple(writer.term(*each) for each in written) if len(written) <= MOST_TERMS else ()
+    return written if len(written) <= MOST_TERMS else ()
 
 
 LONG = 400  # characters of a term or a difference that is shown

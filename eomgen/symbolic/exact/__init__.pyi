@@ -30,6 +30,15 @@ from eomgen.symbolic.exact.cramer import determinant as determinant
 # Result of a comparison of pairs of expressions
 from eomgen.symbolic.exact.equality import Equality as Equality
 
+# Whether a row is a combination of others at real states; undecided where too few of these give values
+from eomgen.symbolic.exact.equality import combined_at_states as combined_at_states
+
+# Whether a row is a combination of others at states of the prime field; undecided where functions have none
+from eomgen.symbolic.exact.equality import combined_in_field as combined_in_field
+
+# True if a row of numbers of 50 digits is a combination of others
+from eomgen.symbolic.exact.equality import combines as combines
+
 # Decides if the two of each pair are the same function of the symbols
 from eomgen.symbolic.exact.equality import equal_at_random_states as equal_at_random_states
 
@@ -113,6 +122,9 @@ from eomgen.symbolic.exact.normal_forms import simple_constants as simple_consta
 # The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside
 from eomgen.symbolic.exact.normal_forms import simplest as simplest
 
+# The terms of x multiplied out, each as it is written
+from eomgen.symbolic.exact.normal_forms import written_terms as written_terms
+
 # Conditions of stability: expressions that must be positive
 from eomgen.symbolic.exact.one_variable import Conditions as Conditions
 
@@ -142,6 +154,3 @@ from eomgen.symbolic.exact.sums import with_squares as with_squares
 
 # The work or size needed is beyond its limit
 from eomgen.symbolic.exact.terms import TooLarge as TooLarge
-
-# Writes the terms of one expansion as nodes of its graph
-from eomgen.symbolic.exact.writing import Writer as Writer

@@ -7,7 +7,7 @@ theorems. Modulo a prime of 61 bits two different expressions agree there with a
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
 from math import lcm
 from random import Random
@@ -20,8 +20,10 @@ from eomgen.symbolic.numeric import (
     PRIME,
     PRIME_FIELD,
     Arithmetic,
+    Ball,
     NoMeaning,
     NoValue,
+    balls,
     evaluate,
     evaluate_once,
     fifty_digits,
@@ -350,3 +352,212 @@ def _real(symbol: Node, rng: Random, attempt: int) -> Fraction:
     any_size = attempt > len(RANGES) and attempt % 2 == 1
     size = 10 ** rng.uniform(*EXPONENTS) if any_size else rng.uniform(low, high)
     return Fraction(rng.choice((-1, 1)) * size if either else size)
+
+
+# -------- combinations ----------------------------------------------------------------------------------------
+# A row of scalars -> the rows of which it is a combination at random exact states, or at given ones.
+#
+#     row = sum of f_k row_k,   f_k any functions of the state
+#
+# In a prime field by whole numbers; at real states with 50 digits, and what these take for 0 once more in balls: a
+# kinetic energy of 1e-293 J is small, and is not 0.
+
+
+STATES = 3  # of the prime field at which a row is looked at
+REAL_STATES = 6  # where roots and sizes may hold on one side only: signs are shared out among so many
+FIELD_TRIES = 40  # states of the prime field to be tried for those with values
+NumberRow = list[Any]
+
+
+@dataclass(frozen=True)
+class Combined:
+    """Whether a row is a combination of others.
+
+    Args:
+        holds: yes, no, or None: no state decided it.
+        rows: which of the others stand in the combination, by their places.
+        way: by which numbers, "prime field" or "50 digits".
+    """
+
+    holds: bool | None
+    rows: tuple[int, ...] = ()
+    way: str = ""
+
+
+def combined_in_field(row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> Combined:
+    """Whether a row is a combination of others at states of the prime field; undecided where functions have none."""
+    return _combined(row, rows, _exact_states(row, rows), IN_FIELD)
+
+
+def combined_at_states(
+    row: Sequence[Scalar],
+    rows: Sequence[Sequence[Scalar]],
+    states: Callable[[], Iterable[Mapping[Node, Any]]],
+    rounded: Collection[Node] = (),
+) -> Combined:
+    """Whether a row is a combination of others at real states; undecided where too few of these give values.
+
+    Args:
+        states: values of all symbols with 50 digits, as many as are needed.
+        rounded: symbols whose values satisfy equations only as far as these digits go.
+    """
+    found = _combined(row, rows, _real_states(row, rows, states()), IN_DIGITS)
+    if found.holds and _combined(row, rows, _sure_states(row, rows, states(), rounded), IN_BALLS).holds is False:
+        return Combined(False, (), IN_BALLS.name)
+    return found
+
+
+def combines(row: NumberRow, rows: Sequence[NumberRow]) -> bool:
+    """True if a row of numbers of 50 digits is a combination of others."""
+    return _factors_in(rows, row, IN_DIGITS) is not None
+
+
+@dataclass(frozen=True)
+class NumberKind:
+    """Calculating with exact numbers of one kind, as far as linear equations need it."""
+
+    name: str
+    inverse: Callable[[Any], Any]
+    tidy: Callable[[Any], Any]
+    is_zero: Callable[[Any, Any], bool]  # of a number, beside the size of what it was made of
+    number: Callable[[Any], Any] = lambda x: x  # of a whole number
+    states: int = STATES  # at how many it is looked at
+
+
+@dataclass(frozen=True)
+class SureNumber:
+    """A number as far as it is sure: its ball."""
+
+    ball: Ball
+
+    def __sub__(self, other: SureNumber) -> SureNumber:
+        return SureNumber(BALLS.functions["sub"](self.ball, other.ball))
+
+    def __mul__(self, other: SureNumber) -> SureNumber:
+        return SureNumber(BALLS.functions["mul"](self.ball, other.ball))
+
+    def __neg__(self) -> SureNumber:
+        return SureNumber(BALLS.functions["neg"](self.ball))
+
+    def __abs__(self) -> Any:
+        return abs(self.ball[0])
+
+    @property
+    def inverse(self) -> SureNumber:
+        return SureNumber(BALLS.functions["div"](BALLS.number(1), self.ball))
+
+    @property
+    def may_vanish(self) -> bool:
+        return not abs(self.ball[0]) > self.ball[1]
+
+
+BALLS = balls(50, last=True)
+IN_FIELD = NumberKind("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
+IN_DIGITS = NumberKind(
+    "50 digits",
+    lambda x: 1 / x,
+    lambda x: x,
+    lambda x, size: abs(x) <= max(tolerances.ELIMINATED_AT_50 * size, tolerances.ZERO_AT_50),
+    states=REAL_STATES,
+)
+IN_BALLS = NumberKind(
+    "balls of 50 digits",
+    lambda x: x.inverse,
+    lambda x: x,
+    lambda x, size: x.may_vanish,
+    lambda x: SureNumber(BALLS.number(x)),
+    states=1,
+)
+
+
+def _combined(
+    row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[NumberRow], numbers: NumberKind
+) -> Combined:
+    """Whether it is one at given states; undecided where there are none."""
+    width, used = len(row), set[int]()
+    for seen, values in enumerate(states, start=1):
+        table = [values[k : k + width] for k in range(0, len(values), width)]
+        factors = _factors_in(table[1:], table[0], numbers)
+        if factors is None:
+            return Combined(False, (), numbers.name)
+        used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
+        if seen == numbers.states:
+            return Combined(True, tuple(sorted(used)), numbers.name)
+    return Combined(None)
+
+
+def _factors_in(rows: Sequence[NumberRow], row: NumberRow, numbers: NumberKind) -> NumberRow | None:
+    """The factors by which the rows make a row; None where none do."""
+    pivots: list[tuple[int, NumberRow, NumberRow]] = []
+    for k, each in enumerate((*rows, row)):
+        size = max(map(abs, each), default=0)
+        left, made = list(each), [numbers.number(int(j == k)) for j in range(len(rows) + 1)]
+        for column, pivot, share in pivots:
+            factor = left[column]
+            if factor:
+                left = [numbers.tidy(x - factor * y) for x, y in zip(left, pivot, strict=True)]
+                made = [numbers.tidy(x - factor * y) for x, y in zip(made, share, strict=True)]
+        free = [j for j, x in enumerate(left) if not numbers.is_zero(x, size)]
+        if k == len(rows):
+            return None if free else [numbers.tidy(-x) for x in made[:-1]]
+        if free:
+            column = max(free, key=lambda j: abs(left[j]))
+            inverse = numbers.inverse(left[column])
+            scaled = [numbers.tidy(x * inverse) for x in left]
+            pivots.append((column, scaled, [numbers.tidy(x * inverse) for x in made]))
+    return None
+
+
+def _exact_states(row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> Iterator[NumberRow]:
+    """All entries at states of the prime field; none where it cannot tell a difference from none."""
+    flat = _entries(row, rows)
+    rng, found = Random(7), 0
+    for _ in range(FIELD_TRIES):
+        try:
+            state = exact_state(flat, rng)
+            if not state.independent:
+                return
+            yield evaluate(flat, state.values, PRIME_FIELD)
+            found += 1
+        except NoMeaning:
+            return
+        except (NoValue, ValueError):
+            continue
+        if found == STATES:
+            return
+
+
+def _real_states(
+    row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[Mapping[Node, Any]]
+) -> Iterator[NumberRow]:
+    """All entries at real states with 50 digits."""
+    flat, arithmetic, found = _entries(row, rows), fifty_digits(), 0
+    for state in states:
+        try:
+            yield evaluate(flat, state, arithmetic)
+            found += 1
+        except (NoValue, ZeroDivisionError):
+            continue
+        if found == REAL_STATES:
+            return
+
+
+def _sure_states(
+    row: Sequence[Scalar],
+    rows: Sequence[Sequence[Scalar]],
+    states: Iterable[Mapping[Node, Any]],
+    rounded: Collection[Node],
+) -> Iterator[NumberRow]:
+    """All entries in balls at the states where all have values."""
+    flat = _entries(row, rows)
+    for state in states:
+        values = evaluate(
+            flat, {x: (v, v * 0 + (tolerances.ZERO_AT_50 if x in rounded else 0)) for x, v in state.items()}, BALLS
+        )
+        if not any(x != x for x, _ in values):
+            yield [SureNumber(each) for each in values]
+
+
+def _entries(row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> tuple[Scalar, ...]:
+    """All entries, of one graph."""
+    return tuple(united([x for each in (row, *rows) for x in each])[1])
