@@ -182,12 +182,6 @@ class Balances:
         samples = Authored(self.case, self.written, "reaction").samples
         return None if samples is None else samples.with_values(_at(samples, self.place))
 
-    @cached_property
-    def _angles(self) -> list[Node]:
-        """The angles under whose sines and cosines forces stand."""
-        acting = () if self._free is None else self._free.acting
-        return angles_in([x for each in acting for push in each.pushes for x in push.force])
-
     @property
     def _sections(self) -> Mapping[Node, Scalar]:
         """The section forces that are requested."""
@@ -268,7 +262,8 @@ class Balances:
             return ()
         found = [self._of_whole(*self._requested[0])] if not self.finely and len(self._requested[0]) == 1 else []
         found += [self._at_limit(self._free)] if not self.finely else []
-        found += [self._search(self._free, cut) for cut in self._free.cuts(self._requested[0])]
+        angles = angles_in([x for each in self._free.acting for push in each.pushes for x in push.force])
+        found += [self._search(self._free, cut, angles) for cut in self._free.cuts(self._requested[0])]
         return tuple(search for search in found if search is not None)
 
     def _of_whole(self, requested: Node) -> Search | None:
@@ -315,7 +310,7 @@ class Balances:
                 text = f"the term {term_text(term)} does not belong in {cut.name}"
                 yield Mistake(text, "extra_term", (over(term * ours, slope),), EXTRA, open=False, text=text)
 
-    def _search(self, free: FreeBodies, cut: CutBalance) -> Search | None:
+    def _search(self, free: FreeBodies, cut: CutBalance, angles: Sequence[Node]) -> Search | None:
         """One balance in numbers; None: nothing that is requested stands in it, or more than is known."""
         requested, seen = self._requested[0], [(each, pushes) for each in free.acting if (pushes := each.on(cut.parts))]
         values = [sum(map(cut.value, pushes), start=0) for _, pushes in seen]
@@ -331,7 +326,7 @@ class Balances:
         dear = self._dearness(free, cut, items, known - {*requested})
         if self.finely and dear > FINEST:
             return None
-        wrong = WrongItems(self.case, free, cut, self._samples, self._angles, len(requested) == 1)
+        wrong = WrongItems(self.case, free, cut, self._samples, angles, len(requested) == 1)
         left = sum(values, start=0)
         others = sum(item.there and not item.is_requested for item in items)
         apart = wrong.throughout(left) if self.finely else chain(wrong.strangers, self._extra(cut, left))

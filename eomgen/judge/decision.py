@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import Extent, System, division_of
 from eomgen.mechanics.free_bodies import equations_of_motion
-from eomgen.symbolic.exact import combined_at_states, combined_in_field, combines
+from eomgen.symbolic.exact import combined, combines
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -149,7 +149,7 @@ def _at_random(
     if not row:
         return Follows(True)
     flat = [x for each in (row, *rows) for x in each]
-    exact = combined_in_field(row, rows)
+    exact = combined(row, rows)
     found = Follows(exact.holds, exact.rows, exact.way)
     if found.holds is None:
         found = _combined_in_digits(system, row, rows, flat, on_constraints=False)
@@ -228,7 +228,7 @@ def _combined_in_digits(
     """The same at real states."""
     moved = {*system.symbols.q, *system.symbols.u} if on_constraints else set[Node]()
     states = partial(states_of, system, flat, on_constraints=on_constraints)
-    found = combined_at_states(row, rows, states, moved)
+    found = combined(row, rows, states, moved)
     return Follows(found.holds, found.rows, found.way)
 
 

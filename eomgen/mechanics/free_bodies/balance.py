@@ -108,7 +108,7 @@ class Balance:
         symbols = self.system.symbols.unknowns
         return tuple(symbols[name] for name in self.system.scope.model.unknowns_in_loads())
 
-    @cached_property
+    @property
     def symbols(self) -> tuple[Node, ...]:
         """Symbols of the unknowns of the equations: one for each component, by its name, then those of the loads."""
         return (*(self.system.scope.graph.symbol(c.name) for c in self.components), *self.unknowns)

@@ -30,11 +30,8 @@ from eomgen.symbolic.exact.cramer import determinant as determinant
 # Result of a comparison of pairs of expressions
 from eomgen.symbolic.exact.equality import Equality as Equality
 
-# Whether a row is a combination of others at real states; undecided where too few of these give values
-from eomgen.symbolic.exact.equality import combined_at_states as combined_at_states
-
-# Whether a row is a combination of others at states of the prime field; undecided where functions have none
-from eomgen.symbolic.exact.equality import combined_in_field as combined_in_field
+# Combination of rows that a row is; undecided where too few states give values
+from eomgen.symbolic.exact.equality import combined as combined
 
 # True if a row of numbers of 50 digits is a combination of others
 from eomgen.symbolic.exact.equality import combines as combines

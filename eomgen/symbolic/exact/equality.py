@@ -371,7 +371,7 @@ NumberRow = list[Any]
 
 @dataclass(frozen=True)
 class Combined:
-    """Whether a row is a combination of others.
+    """Combination of rows that a row is, or is not.
 
     Args:
         holds: yes, no, or None: no state decided it.
@@ -384,23 +384,20 @@ class Combined:
     way: str = ""
 
 
-def combined_in_field(row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> Combined:
-    """Whether a row is a combination of others at states of the prime field; undecided where functions have none."""
-    return _combined(row, rows, _exact_states(row, rows), IN_FIELD)
-
-
-def combined_at_states(
+def combined(
     row: Sequence[Scalar],
     rows: Sequence[Sequence[Scalar]],
-    states: Callable[[], Iterable[Mapping[Node, Any]]],
+    states: Callable[[], Iterable[Mapping[Node, Any]]] | None = None,
     rounded: Collection[Node] = (),
 ) -> Combined:
-    """Whether a row is a combination of others at real states; undecided where too few of these give values.
+    """Combination of rows that a row is; undecided where too few states give values.
 
     Args:
-        states: values of all symbols with 50 digits, as many as are needed.
+        states: values of all symbols with 50 digits, as many as are needed; None: states of the prime field.
         rounded: symbols whose values satisfy equations only as far as these digits go.
     """
+    if states is None:
+        return _combined(row, rows, _exact_states(row, rows), IN_FIELD)
     found = _combined(row, rows, _real_states(row, rows, states()), IN_DIGITS)
     if found.holds and _combined(row, rows, _sure_states(row, rows, states(), rounded), IN_BALLS).holds is False:
         return Combined(False, (), IN_BALLS.name)
@@ -473,7 +470,7 @@ IN_BALLS = NumberKind(
 def _combined(
     row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[NumberRow], numbers: NumberKind
 ) -> Combined:
-    """Whether it is one at given states; undecided where there are none."""
+    """The same at given states; undecided where there are none."""
     width, used = len(row), set[int]()
     for seen, values in enumerate(states, start=1):
         table = [values[k : k + width] for k in range(0, len(values), width)]
