@@ -23,7 +23,6 @@ from typing import Any
 import sympy
 
 import eomgen
-from eomgen.codegen.programs import determinate
 from eomgen.symbolic.expression.traversal import operations
 
 HERE = Path(__file__).parent
@@ -142,7 +141,7 @@ def every_reaction(text: str, runs: int = 3) -> EveryReaction:
 
     def derive_reactions():
         equations = eomgen.derive(model)
-        return equations, determinate(equations.reactions)
+        return equations, equations.reactions.determinate()
 
     seconds, (equations, values) = best(derive_reactions, runs)
     _, program = equations.reactions_program

@@ -1,6 +1,5 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
-from eomgen.codegen.programs import InverseDynamics as InverseDynamics
 from eomgen.documents.figures import run_picture as run_picture
 from eomgen.documents.moving_picture import rest_picture as rest_picture
 from eomgen.equations import Equations as Equations
@@ -77,6 +76,7 @@ from eomgen.scene.scene import Scene as Scene
 from eomgen.sensitivities.derivatives import Sensitivity as Sensitivity
 from eomgen.sensitivities.derivatives import sensitivity as sensitivity
 from eomgen.simulation.result import Trajectory as Trajectory
+from eomgen.study.programs import InverseDynamics as InverseDynamics
 from eomgen.sweeps.runs_of_a_plan import Sweep as Sweep
 from eomgen.sweeps.runs_of_a_plan import sweep as sweep
 from eomgen.verbs.reactions import FoundReactions as FoundReactions

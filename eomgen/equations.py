@@ -9,16 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eomgen.codegen import (
-    InverseDynamics,
-    Matrices,
-    Program,
-    ReactionFunction,
-    RequestedOutputs,
-    RightHandSide,
-    compiled,
-    parameter_vector,
-)
+from eomgen.codegen import Program, RightHandSide, compiled, parameter_vector
 from eomgen.documents import (
     Document,
     Result,
@@ -46,7 +37,7 @@ from eomgen.mechanics.start import Start
 from eomgen.model import Model, nearest
 from eomgen.proof import Certificate, Printed, certify
 from eomgen.resources import doing
-from eomgen.study import Study
+from eomgen.study import InverseDynamics, Matrices, ReactionFunction, RequestedOutputs, Study
 from eomgen.symbolic.exact import equal_at_random_states, readable_all
 from eomgen.symbolic.expression import (
     Fraction,

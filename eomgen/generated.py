@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from eomgen import files, pipeline
-from eomgen.codegen import Emitted, Emitter, Files, Matrices, RightHandSide, Role, TestVector, Written, targets_named
+from eomgen.codegen import Emitted, Emitter, Files, RightHandSide, Role, TestVector, Written, targets_named
 from eomgen.documents import Document, Lines, lines_document, plain_document, proven, with_constraints_closed
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
@@ -35,6 +35,7 @@ from eomgen.proof import (
 )
 from eomgen.resources import doing
 from eomgen.simulation import paths_of
+from eomgen.study import Matrices
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
 
@@ -183,7 +184,7 @@ class Generated:
         columns = {"Y": found.parameters, "Y_base": tuple(group.formula for group in found.base.groups)}
         named = tuple(columns.get(name, ()) for name in matrices.blocks)
         program = matrices.program(graph, accelerations=graph.symbols.a)
-        return self._emitter.matrices(Role.REGRESSOR, program, matrices, named)
+        return self._emitter.matrices(Role.REGRESSOR, program, matrices.blocks, named)
 
     @cached_property
     def _regressor(self) -> Regressor:
@@ -197,7 +198,7 @@ class Generated:
         return all(np.isfinite(block).all() for block in found)
 
     def _written(self, role: Role, matrices: Matrices) -> Emitted:
-        return self._emitter.matrices(role, matrices.program(self.equations.graph), matrices)
+        return self._emitter.matrices(role, matrices.program(self.equations.graph), matrices.blocks)
 
     @property
     def texts(self) -> dict[str, str | bytes]:

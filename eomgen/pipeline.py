@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from eomgen.codegen import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import recalled
@@ -16,7 +15,7 @@ from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, model_at, with_inputs
 from eomgen.resources import doing, growing
-from eomgen.study import Study, study_of, study_of_modes
+from eomgen.study import InverseDynamics, Study, study_of, study_of_modes
 from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:  # what moves is loaded where something moves

@@ -448,7 +448,6 @@ DERIVATIONS = {
     "accelerations_and_multipliers",
     "all_equilibria",
     "assembled_by_recursion",
-    "determinate",
     "equations_of_motion",
     "outputs_of_state",
     "rates_and_extent",

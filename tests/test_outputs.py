@@ -9,10 +9,10 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.codegen.programs import accelerations_and_multipliers
 from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.study.programs import accelerations_and_multipliers
 from eomgen.symbolic.expression.derivatives import derivative
 from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, transposed
 from eomgen.symbolic.expression.text import parse

@@ -17,11 +17,11 @@ from eomgen.codegen import kernels
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import statements
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
-from eomgen.codegen.programs import slopes_of
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.right_answers import vectors
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.study.programs import slopes_of
 from eomgen.symbolic.exact.factorization import zeros_of, zeros_with_constraints
 from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.node import is_zero

@@ -39,6 +39,9 @@ from eomgen.codegen.program import bordered as bordered
 # The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'
 from eomgen.codegen.program import identifier as identifier
 
+# True if M is factored by operations that are written out
+from eomgen.codegen.program import is_short as is_short
+
 # q' = N u + nu
 from eomgen.codegen.program import kinematic_rates as kinematic_rates
 
@@ -53,33 +56,6 @@ from eomgen.codegen.program import right_hand_side as right_hand_side
 
 # Places of the four numbers of every quaternion among the states
 from eomgen.codegen.program import unit_quaternions_of as unit_quaternions_of
-
-# Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q
-from eomgen.codegen.programs import InverseDynamics as InverseDynamics
-
-# Matrices as functions of the state, by name, one after the other, each row after row
-from eomgen.codegen.programs import Matrices as Matrices
-
-# `reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`
-from eomgen.codegen.programs import ReactionFunction as ReactionFunction
-
-# Outputs in q, u, a, t, parameters and inputs [SI], and why the others are none
-from eomgen.codegen.programs import RequestedOutputs as RequestedOutputs
-
-# a and lam of M a = forcing + J^T lam, J a + gamma = 0, as expressions; redundant rows are left out, their lam 0
-from eomgen.codegen.programs import accelerations_and_multipliers as accelerations_and_multipliers
-
-# {name as in an output: value in q, u and the accelerations}; a reaction without a single value is left out
-from eomgen.codegen.programs import determinate as determinate
-
-# The outputs of the model
-from eomgen.codegen.programs import outputs_of_state as outputs_of_state
-
-# (names, the program of their values), the accelerations from the same equations as in the right-hand side
-from eomgen.codegen.programs import reactions_program as reactions_program
-
-# The slopes of x' = (N u + nu, a) in x and inputs
-from eomgen.codegen.programs import slopes_of as slopes_of
 
 # (t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others
 from eomgen.codegen.rhs import RateFunction as RateFunction

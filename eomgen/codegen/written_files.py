@@ -8,7 +8,6 @@ from functools import cached_property
 from types import MappingProxyType
 
 from eomgen.codegen.program import Program, stem_of
-from eomgen.codegen.programs import Matrices
 from eomgen.codegen.rhs import target_named, targets_named
 from eomgen.codegen.right_answers import single_error, single_vectors, vectors
 from eomgen.codegen.targets.base import Called, Description, Emitted, FileContent, Role, Target, TestVector, header
@@ -16,6 +15,7 @@ from eomgen.codegen.targets.c_lanes import RUN_USE, integrator_files
 from eomgen.errors import visible
 from eomgen.files import json_text
 from eomgen.frozen import dataclass
+from eomgen.symbolic.expression import ScalarRows
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import SCHEMA_VERSION
 
@@ -58,7 +58,7 @@ class Emitter:
         return program, replace(described, vectors=self._answers(program), role=role, outputs=outputs)
 
     def matrices(
-        self, role: Role, program: Program, found: Matrices, columns: tuple[tuple[str, ...], ...] = ()
+        self, role: Role, program: Program, blocks: Mapping[str, ScalarRows], columns: tuple[tuple[str, ...], ...] = ()
     ) -> Emitted:
         """A further function whose outputs are the entries of matrices, described.
 
@@ -66,7 +66,7 @@ class Emitter:
             columns: of each the names of its columns.
         """
         _, described = self.function(role, program)
-        sizes = tuple((name, len(rows), len(rows[0])) for name, rows in found.blocks.items())
+        sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
         return program, replace(described, blocks=sizes, columns=columns)
 
     def _answers(self, program: Program) -> tuple[TestVector, ...]:

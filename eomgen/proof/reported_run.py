@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import determinate
 from eomgen.frozen import dataclass
 from eomgen.model import FUNCTIONS, OUTPUT, Model, Unit
 from eomgen.proof.at_a_state import NumericState, off_by
@@ -294,7 +293,7 @@ def reaction_columns_hold(run: Trajectory) -> Iterator[Check]:
     if not run.reactions:
         return iter(())
     for phase, row in _middles(run):
-        formulas = determinate(phase.model.reactions)
+        formulas = phase.model.reactions.determinate()
         work += len(order(tuple(formulas.values())))
         if work > WORK:
             tally.left[f"from {phase.start:.6g} s"] = "its formulas are too long to be evaluated with 50 digits"

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-from eomgen.codegen import determinate
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
@@ -50,7 +49,7 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
     """Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved."""
     tally = Tally("formulas, read back, give the numbers at the start", "50 digits against doubles")
     unreported = Tally("numbers without a printed formula are those of the free bodies", "50 digits against doubles")
-    solved = {} if values.keys() <= texts.keys() else determinate(Reactions.of(start.equations.system))
+    solved = {} if values.keys() <= texts.keys() else Reactions.of(start.equations.system).determinate()
     size = max(map(abs, values.values()), default=0.0)
 
     def compared(name: str) -> str:

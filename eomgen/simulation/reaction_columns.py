@@ -14,7 +14,7 @@ from functools import cached_property
 
 import numpy as np
 
-from eomgen.codegen import RightHandSide, compiled, determinate, program_of
+from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import STILL
 from eomgen.mechanics.free_bodies import BodyEquation, NamedReaction, Reactions, named_reactions
@@ -52,7 +52,7 @@ class ReactionColumns:
         """Names of those that have no single value at any state."""
         if self.given is not None:
             return ()
-        known = determinate(self.reactions)
+        known = self.reactions.determinate()
         return tuple(name for name in self.names if name not in known)
 
     def along(self, t: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:

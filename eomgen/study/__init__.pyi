@@ -9,6 +9,18 @@ from eomgen.study.kinematics import kinematic_state as kinematic_state
 # The motion of a model from its start
 from eomgen.study.motion import MotionFromStart as MotionFromStart
 
+# Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q
+from eomgen.study.programs import InverseDynamics as InverseDynamics
+
+# Matrices as functions of the state, by name, one after the other, each row after row
+from eomgen.study.programs import Matrices as Matrices
+
+# `reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`
+from eomgen.study.programs import ReactionFunction as ReactionFunction
+
+# Outputs in q, u, a, t, parameters and inputs [SI], and why the others are none
+from eomgen.study.programs import RequestedOutputs as RequestedOutputs
+
 # Lazy value of a model in one configuration of its contacts
 from eomgen.study.study import Study as Study
 

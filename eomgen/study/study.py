@@ -62,11 +62,12 @@ from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, number_of, n
 from eomgen.symbolic.print import text_size
 
 if TYPE_CHECKING:  # loaded where they are asked for: `check` writes no code
-    from eomgen.codegen import Matrices, Program, RequestedOutputs
+    from eomgen.codegen import Program
     from eomgen.mechanics.dynamics import Extent
     from eomgen.mechanics.equilibrium import Equilibria, Equilibrium, StaticEquations
     from eomgen.mechanics.free_bodies import Reactions
     from eomgen.mechanics.linearization import FirstOrder
+    from eomgen.study.programs import Matrices, RequestedOutputs
 
 LONG = 400  # characters from which a formula is no easier to read than it came
 NO_FORMULA = 10 * LONG  # characters of an unreadable formula: rows are shortened before they are eliminated
@@ -154,7 +155,7 @@ class Study:
         Raises:
             DerivationError: the mass matrix is singular whatever the state.
         """
-        from eomgen.codegen import slopes_of
+        from eomgen.study.programs import slopes_of
 
         WellPosed(self.derived).refuse_massless()
         return slopes_of(self.explicit)
@@ -183,15 +184,14 @@ class Study:
     @cached_property
     def reaction_values(self) -> dict[str, Scalar]:
         """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
-        from eomgen.codegen import determinate
 
-        values = determinate(self.reactions)
+        values = self.reactions.determinate()
         return dict(zip(values, SystemFriction(self.system).with_rest(tuple(values.values())), strict=True))
 
     @cached_property
     def reactions_program(self) -> tuple[tuple[str, ...], Program]:
         """(names, program) of the reactions that have a single value; accelerations as in the right-hand side."""
-        from eomgen.codegen import reactions_program
+        from eomgen.study.programs import reactions_program
 
         WellPosed(self.derived).refuse_massless()
         return reactions_program(self.reaction_values, self.explicit)
@@ -199,7 +199,7 @@ class Study:
     @cached_property
     def requested_outputs(self) -> RequestedOutputs:
         """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
-        from eomgen.codegen import outputs_of_state
+        from eomgen.study.programs import outputs_of_state
 
         found = outputs_of_state(self.system)
         values = dict(
@@ -210,7 +210,7 @@ class Study:
     @cached_property
     def outputs_program(self) -> Program:
         """The outputs that are functions of the state; accelerations as in the right-hand side."""
-        from eomgen.codegen import reactions_program
+        from eomgen.study.programs import reactions_program
 
         WellPosed(self.derived).refuse_massless()
         return reactions_program(self.requested_outputs.values, self.explicit)[1]
@@ -266,7 +266,7 @@ class Study:
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
         """Accelerations and multipliers as functions of q, u, t and inputs."""
-        from eomgen.codegen import accelerations_and_multipliers
+        from eomgen.study.programs import accelerations_and_multipliers
 
         found = accelerations_and_multipliers(self.equations)
         size = max(map(text_size, found.values()), default=0)

@@ -27,7 +27,13 @@ from eomgen.mechanics.free_bodies.balance import (
 )
 from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
-from eomgen.mechanics.free_bodies.solution import SURE, Combination, combined_reaction, solution_of_balance
+from eomgen.mechanics.free_bodies.solution import (
+    SURE,
+    Combination,
+    Indeterminate,
+    combined_reaction,
+    solution_of_balance,
+)
 from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.free_bodies.wrenches import Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import Motion
@@ -354,6 +360,16 @@ class Reactions:
             alike = other is not None and other.solution.worst is not None and other.solution.worst <= SURE
             system.found[key] = other if alike else _found(system, {}, short, work)
         found: Reactions = system.found[key]
+        return found
+
+    def determinate(self) -> dict[str, Scalar]:
+        """{name as in an output: value in q, u and the accelerations}; without those that have no single value."""
+        found: dict[str, Scalar] = {}
+        for named in named_reactions(self.balance):
+            try:
+                found[named.name] = self.combined(named.combination, named.name) + named.given
+            except Indeterminate:
+                continue
         return found
 
 

@@ -9,18 +9,40 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
-from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic_rates, program_in_motion, program_of
-from eomgen.codegen.rhs import GivenMotion, RightHandSide, compiled, parameter_vector
-from eomgen.errors import DerivationError, ExpressionError, MissingValues
+from eomgen.codegen import (
+    Program,
+    RightHandSide,
+    Solve,
+    bordered,
+    compiled,
+    is_short,
+    kinematic_rates,
+    parameter_vector,
+    program_in_motion,
+    program_of,
+)
+from eomgen.errors import DerivationError, ExpressionError, MissingValues, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
-from eomgen.mechanics.free_bodies import FEW, Indeterminate, Inverse, Reactions, by_independent, named_reactions
+from eomgen.mechanics.free_bodies import FEW, Inverse, by_independent
 from eomgen.mechanics.instant import Quantities, requests_of
-from eomgen.model import Output, OutputSource
+from eomgen.model import Output, OutputSource, TypedNumbers, are_several, nearest, time_law, typed_values
 from eomgen.symbolic.exact import cramer, factor_solution
-from eomgen.symbolic.expression import Node, Scalar, ScalarRow, ScalarRows, depends_on, is_zero, jacobian, substituted
+from eomgen.symbolic.expression import (
+    Node,
+    Scalar,
+    ScalarRow,
+    ScalarRows,
+    depends_on,
+    is_zero,
+    jacobian,
+    substituted,
+    tangent,
+)
+from eomgen.symbolic.numeric import tolerances
 
 # -------- requested outputs -----------------------------------------------------------------------------------
 # System -> the [outputs] of its model as functions of the state, for emitted code.
@@ -314,17 +336,6 @@ class ReactionFunction:
         return self.function.many(t, x, p, inputs)
 
 
-def determinate(reactions: Reactions) -> dict[str, Scalar]:
-    """{name as in an output: value in q, u and the accelerations}; a reaction without a single value is left out."""
-    found: dict[str, Scalar] = {}
-    for named in named_reactions(reactions.balance):
-        try:
-            found[named.name] = reactions.combined(named.combination, named.name) + named.given
-        except Indeterminate:
-            continue
-    return found
-
-
 def reactions_program(values: Mapping[str, Scalar], equations: EquationsOfMotion) -> tuple[tuple[str, ...], Program]:
     """(names, the program of their values), the accelerations from the same equations as in the right-hand side.
 
@@ -382,3 +393,91 @@ def _multipliers(equations: EquationsOfMotion, a: Mapping[Node, Scalar]) -> dict
     ((_, lam),) = Explicit(equations).by_factors(kept)
     found = {system.symbols.lam[m]: value for m, value in zip(kept, lam, strict=True)}
     return {x: found.get(x, 0) for x in system.symbols.lam}
+
+
+@dataclass(frozen=True)
+class GivenMotion:
+    """Coordinates as functions of time -> (q, u) and accelerations at instants."""
+
+    system: System
+    t: np.ndarray
+    motion: Mapping[str, Any]
+    p: np.ndarray
+
+    @cached_property
+    def _columns(self) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """{coordinate: (q, q', q'')}"""
+        model = self.system.scope.model
+        for name in self.motion:
+            if name not in model.coordinates:
+                raise UsageError(f"there is no coordinate '{name}'", fix=nearest(name, model.coordinates))
+        found = {}
+        for name, part in model.coordinates.items():
+            law = self.motion.get(name, part.motion)
+            if law is None:
+                raise UsageError(f"'{name}' has no motion", fix=f'give an expression of t: {{"{name}": "sin(t)"}}')
+            found[name] = self._of(name, law)
+        return found
+
+    def _of(self, name: str, law: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """One coordinate with its rates, n each."""
+        model = self.system.scope.model
+        if are_several(law):
+            typed = TypedNumbers(model, name, declared=False)
+            try:
+                values = np.array([typed.number(x) for x in typed_values(law)])
+            except (ValueError, TypeError, ExpressionError) as error:
+                what = error.what if isinstance(error, ExpressionError) else "they are no numbers"
+                raise UsageError(f"the values of '{name}': {what}", fix=getattr(error, "fix", "")) from error
+            return self._through(name, values)
+        scope, symbols = self.system.scope, self.system.symbols
+        scalar = scope.value(time_law(model, name, law, "motion").named(name))
+        rate = tangent((scalar,), {symbols.t: 1})
+        scalars = (scalar, *rate, *tangent(rate, {symbols.t: 1}))
+        strangers = [x.name for x in (*symbols.q, *symbols.u) if depends_on(scalar, (x,))]
+        if strangers:
+            raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", fix="give it as a function of t")
+        program = program_of(scalars, symbols, inputs=self.system.inputs)
+        states = np.zeros((len(self.t), len(symbols.q) + len(symbols.u)))
+        values = compiled(program, "numpy").many(self.t, states, self.p)
+        return values[:, 0], values[:, 1], values[:, 2]
+
+    def _through(self, name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+
+        if values.shape != self.t.shape or len(values) < 2:
+            raise UsageError(
+                f"'{name}' has {values.size} values at {len(self.t)} instants",
+                fix="give one value for each instant of t",
+            )
+        spline = CubicSpline(self.t, values)
+        return spline(self.t), spline(self.t, 1), spline(self.t, 2)
+
+    @cached_property
+    def x(self) -> np.ndarray:
+        """(q, u), n x states.
+
+        Raises:
+            UsageError: a speed that is no rate; constraints that are open.
+        """
+        symbols, columns = self.system.symbols, self._columns
+        strange = [u.name for u in symbols.u if u.name.removesuffix("'") not in columns]
+        if strange:
+            raise UsageError(
+                f"'{strange[0]}' is a speed of its own: the motion gives coordinates", fix="take .function()"
+            )
+        places = [columns[q.name][0] for q in symbols.q]
+        found = np.column_stack([*places, *(columns[u.name[:-1]][1] for u in symbols.u)])
+        gaps = tuple(row.gap for row in self.system.constraints.closing if row.gap is not None)
+        if gaps:
+            program = program_of(gaps, symbols, inputs=self.system.inputs)
+            open_ = np.abs(compiled(program, "numpy").many(self.t, found, self.p))
+            if not np.max(open_, initial=0.0) <= tolerances.OPEN_GAP:
+                raise UsageError(
+                    f"the motion opens the constraints by {np.max(open_):.3g}", fix="give one that they allow"
+                )
+        return found
+
+    @property
+    def a(self) -> np.ndarray:
+        """The accelerations, n x speeds."""
+        return np.column_stack([self._columns[u.name[:-1]][2] for u in self.system.symbols.u])
