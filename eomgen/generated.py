@@ -34,7 +34,6 @@ from eomgen.proof import (
     unwritten,
 )
 from eomgen.resources import doing
-from eomgen.simulation import paths_of
 from eomgen.study import Matrices
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
@@ -375,7 +374,7 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
     """
     if "c" not in targets:
         raise UsageError("an integrator is written in C", fix="ask for --target c too")
-    changing = [*(contact.name for contact in model.contacts), *paths_of(model)]
+    changing = model.changing
     if changing:
         names = ", ".join(f"'{name}'" for name in changing)
         raise UsageError(f"no integrator for what changes its equations: {names}", fix="take eomgen simulate")

@@ -246,7 +246,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "simulation": 35,
     "documents": 139,
     "results": 10,
-    "study": 8,
+    "study": 12,
     "proof": 63,
     "model": 128,
     "mechanics.kinematics": 21,

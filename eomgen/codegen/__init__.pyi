@@ -54,9 +54,6 @@ from eomgen.codegen.program import program_of as program_of
 # The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations
 from eomgen.codegen.program import right_hand_side as right_hand_side
 
-# Places of the four numbers of every quaternion among the states
-from eomgen.codegen.program import unit_quaternions_of as unit_quaternions_of
-
 # (t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others
 from eomgen.codegen.rhs import RateFunction as RateFunction
 

@@ -153,6 +153,15 @@ class Program:
         """Arguments that change at every call in addition to t and inputs: x, and a where it is an argument."""
         return self.states + self.accelerations
 
+    @property
+    def unit_quaternions(self) -> tuple[QuaternionPlaces, ...]:
+        """Places of the four numbers of every quaternion among the states."""
+        place = {node: k for k, node in enumerate(self.states)}
+        unit_quaternions = self.symbols.graph.unit_quaternions
+        return tuple(
+            tuple(place[x] for x in symbols) for symbols in unit_quaternions if all(x in place for x in symbols)
+        )
+
 
 def right_hand_side(equations: EquationsOfMotion) -> Program:
     """The right-hand side dx = (N u + nu, a), by the way that takes the fewest operations.
@@ -526,13 +535,6 @@ def _plain(letter: str) -> str:
 
 
 QuaternionPlaces = tuple[int, ...]
-
-
-def unit_quaternions_of(program: Program) -> tuple[QuaternionPlaces, ...]:
-    """Places of the four numbers of every quaternion among the states."""
-    place = {node: k for k, node in enumerate(program.states)}
-    unit_quaternions = program.symbols.graph.unit_quaternions
-    return tuple(tuple(place[x] for x in symbols) for symbols in unit_quaternions if all(x in place for x in symbols))
 
 
 def at_unit_norms(x: Any, unit_quaternions: Sequence[QuaternionPlaces]) -> Any:

@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from eomgen.codegen.batching import ProgramInLanes
-from eomgen.codegen.program import Program, bordered, program_of, unit_quaternions_of
+from eomgen.codegen.program import Program, bordered, program_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import Address, Functions, Role, Target
 from eomgen.codegen.targets.c import c_together
@@ -53,7 +53,7 @@ class RightHandSide:
         self.x0 = None if x0 is None else np.array(x0, dtype=float)
         self.p0 = None if p0 is None else np.array(p0, dtype=float)
         self._functions, self._one = functions, functions.one
-        self.unit_quaternions = unit_quaternions_of(program)
+        self.unit_quaternions = program.unit_quaternions
         self._states = len(program.moving)
         self._known: tuple[bytes, Any] = (b"none yet", None)
         self._series: dict[int, Series | None] = {}

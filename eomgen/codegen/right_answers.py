@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.program import Program, Solve, at_unit_norms, unit_quaternions_of
+from eomgen.codegen.program import Program, Solve, at_unit_norms
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.targets.base import Called, TestVector
 from eomgen.errors import DerivationError
@@ -145,7 +145,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
     """A state without its answer; short decimals, for the reader."""
     symbols = program.symbols
     start = [0.0] * len(program.states) if x0 is None else [float(v) for v in x0]
-    x = tuple(at_unit_norms([round(v + rng.uniform(-1, 1), 3) for v in start], unit_quaternions_of(program)).tolist())
+    x = tuple(at_unit_norms([round(v + rng.uniform(-1, 1), 3) for v in start], program.unit_quaternions).tolist())
     p = tuple(round(rng.uniform(0.5, 2), 3) for _ in symbols.parameters) if p0 is None else tuple(map(float, p0))
     inputs = tuple(round(rng.uniform(-1, 1), 3) for _ in symbols.inputs)
     t, a = round(rng.uniform(0, 2), 3), tuple(round(rng.uniform(-2, 2), 3) for _ in program.accelerations)

@@ -22,7 +22,6 @@ from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import AtRest, Model, Output, Table, WrittenEquation
 from eomgen.questions import Answer, solve
-from eomgen.simulation import has_phases
 from eomgen.study import MotionFromStart, Study, study_of
 from eomgen.symbolic.expression import (
     SLOPE,
@@ -68,7 +67,7 @@ class Case:
     @property
     def _as_at_start(self) -> bool:
         """True if contacts, which may change, are taken as they are before anything moves."""
-        return not self.begun and bool(self.model.coordinates) and has_phases(self.model)
+        return not self.begun and bool(self.model.coordinates) and self.model.has_phases
 
     @property
     def system(self) -> System:

@@ -66,7 +66,6 @@ from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.model import AtRest, ModelOrPath, equation_in, model_at
 from eomgen.proof import JudgedEquation
 from eomgen.resources import doing
-from eomgen.simulation import paths_of
 from eomgen.symbolic.expression import (
     SLOPE,
     Node,
@@ -256,7 +255,7 @@ class Judge:
             with suppress(EomgenError):
                 so = truth_of(begun, begun.value(written.difference), kind)
                 if so.holds:
-                    reported = BEGUN[0] if paths_of(case.model) else BEGUN[1]
+                    reported = BEGUN[0] if case.model.on_paths else BEGUN[1]
                     found = Decided(True, f"{reported} and {so.up_to}" if so.up_to else reported)
         if found.holds:
             return Verdict(written.given, kind, RIGHT, found.up_to)

@@ -194,6 +194,12 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         return trusses_of(self.constraints)
 
     @property
+    def truss_members(self) -> list[tuple[str, str, tuple[str, str]]]:
+        """(truss, member, its two nodes) of every truss of a model in parts."""
+        trusses = self.trusses_in_parts
+        return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
+
+    @property
     def in_parts(self) -> "Model":
         """The model with its trusses replaced by bodies and constraints; itself where it has none."""
         found: Model = in_parts(self)
@@ -297,6 +303,56 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     def place(self, at: tuple[Expression, ...] | str) -> tuple[Expression, ...]:
         """Coordinates of a place on the ground that may be given by a point's name [m]."""
         return self.points[at] if isinstance(at, str) else at
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """The times of the samples of every motion and input, ascending [s]."""
+        laws = (
+            leaf.value
+            for table in (self.coordinates, self.inputs, self.constraints)
+            for name, part in table.items()
+            for leaf in part.leaves((name,))
+        )
+        sampled = (law.sampled for law in laws if isinstance(law, Expression))
+        return tuple(sorted({float(t) for each in sampled if each is not None for t in each.spline.bounds}))
+
+    @property
+    def on_paths(self) -> tuple[str, ...]:
+        """The bodies on a path of several pieces."""
+        return tuple(name for name, body in self.bodies.items() if len(body.path_pieces) > 1)
+
+    @property
+    def changing(self) -> tuple[str, ...]:
+        """Names of the contacts, and of the bodies on a path of several pieces, that can change as the model moves."""
+        return tuple(dict.fromkeys((*(contact.name for contact in self.contacts), *self.on_paths)))
+
+    @property
+    def has_phases(self) -> bool:
+        """True if the model has contacts, or bodies on a path of several pieces, that can change as it moves."""
+        return bool(self.changing)
+
+    def _given_at_start(self, name: str) -> list[Expression]:
+        """Expressions of the start of a coordinate or speed; for a declared speed without one, those of its rates."""
+        if name in self.coordinates:
+            part = self.coordinates[name]
+            found = [part.start if part.near is None else None]
+        elif name in self.speeds and self.speeds[name].start is None:
+            rate = self.speeds[name].rate
+            rates = [] if rate is None else [x[:-1] for x in rate.names if x[:-1] in self.coordinates]
+            found = [self.coordinates[q].speed for q in rates]
+        elif name in self.speeds:
+            found = [self.speeds[name].start]
+        else:
+            found = [self.coordinates[name[:-1]].speed if name[:-1] in self.coordinates else None]
+        return [value for value in found if value is not None]
+
+    def is_guess(self, name: str) -> bool:
+        """True if the start of a coordinate or speed is not given, or is only a guess by `near`."""
+        return not self._given_at_start(name)
+
+    def is_typed(self, name: str) -> bool:
+        """True if a person typed the start of a coordinate or speed, in place of what the model declares."""
+        return any(value.typed for value in self._given_at_start(name))
 
 
 def _is_load(path: DocumentPath) -> bool:

@@ -14,24 +14,16 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen import (
-    Program,
-    kinematic_rates,
-    program_in_motion,
-    program_of,
-    right_hand_side,
-    unit_quaternions_of,
-)
+from eomgen.codegen import Program, kinematic_rates, program_in_motion, program_of, right_hand_side
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import is_guess, is_typed
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Scope
 from eomgen.mechanics.start import start_speeds
 from eomgen.model import Coordinate, Model, in_order
 from eomgen.resources import growing
 from eomgen.scene import Scene
-from eomgen.simulation import PhaseModel, breakpoints_of
+from eomgen.simulation import PhaseModel
 from eomgen.study import Study
 from eomgen.symbolic.expression import Node, Scalar, is_zero, jacobian, substituted, symbols_of
 
@@ -73,7 +65,7 @@ class ConstraintRows:
             "positionSlopes": _places(self._positions),
             "speedSlopes": _places(self.speeds),
             "fixed": [k for k, q in enumerate(symbols.q) if model.coordinates[q.name].driven],
-            "spheres": unit_quaternions_of(self.program),
+            "spheres": self.program.unit_quaternions,
         }
 
 
@@ -199,9 +191,9 @@ class Live:
             ],
             "near": [k for k, x in enumerate(q) if x in sought and parts[x.name].near is not None],
             "own": [k for k, x in enumerate(q) if x in standing and x not in sought and not parts[x.name].driven],
-            "guesses": [x.name for x in (*q, *u) if is_guess(model, x.name)],
-            "typed": [x.name for x in (*q, *u) if is_typed(model, x.name)],
-            "breaks": breakpoints_of(model),
+            "guesses": [x.name for x in (*q, *u) if model.is_guess(x.name)],
+            "typed": [x.name for x in (*q, *u) if model.is_typed(x.name)],
+            "breaks": model.breakpoints,
             "edges": [edge.words for edge in self.phase.edges],
             "columns": self.columns,
             "slots": len(self.scene.values),

@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes, members_of
+from eomgen.mechanics.free_bodies import Axes
 from eomgen.mechanics.kinematics import SystemScene
 from eomgen.mechanics.statics import SectionForces, StaticReaction, StaticReactions
 from eomgen.proof.at_a_state import balanced_least
@@ -337,7 +337,7 @@ class _Field:
     def motions(self) -> dict[str, np.ndarray]:
         """body or node -> (w, v_x, v_y) of the point at the ground's origin; one that is not reported is at rest."""
         found: dict[str, np.ndarray] = {}
-        ends = {f"{truss} {member}": pair for truss, member, pair in members_of(self.proof.found.system)}
+        ends = {f"{truss} {member}": pair for truss, member, pair in self.proof.found.system.scope.model.truss_members}
         for block in self.reported.blocks:
             own = np.array([self.proof.value_of(x) for x in (block.spin, *block.shift[:2])])
             for part in block.parts:

@@ -25,7 +25,6 @@ from eomgen.mechanics.free_bodies import (
     RigidBlock,
     VelocityPlan,
     imbalance,
-    members_of,
     named_reactions,
 )
 from eomgen.mechanics.statics import (
@@ -337,7 +336,7 @@ class _Proof:
         return "" if plans else None
 
     def _ends(self, plan: VelocityPlan, block: RigidBlock) -> Iterator[tuple[str, list[tuple[str, Vector]]]]:
-        ends = {(truss, member): pair for truss, member, pair in members_of(plan.system)}
+        ends = {(truss, member): pair for truss, member, pair in plan.system.scope.model.truss_members}
         yield from ((body, [(body, ZERO), (body, (1, 2, 0))]) for body in block.bodies)
         yield from ((member[1], [(node, ZERO) for node in ends[member]]) for member in block.members)
 

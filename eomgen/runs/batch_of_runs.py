@@ -34,16 +34,7 @@ from eomgen.model import (
 from eomgen.proof import Promise
 from eomgen.resources import check_patience, doing
 from eomgen.runs.simulator import SAMPLES, KnownEquations, Runs, Simulator
-from eomgen.simulation import (
-    FoundRuns,
-    ManyRuns,
-    PhaseModel,
-    breakpoints_of,
-    has_phases,
-    instants_of,
-    one_phase,
-    refuse_bad_run,
-)
+from eomgen.simulation import FoundRuns, ManyRuns, PhaseModel, instants_of, one_phase, refuse_bad_run
 from eomgen.symbolic.expression import Expression
 
 OfRuns = Mapping[str, Any]
@@ -103,13 +94,13 @@ def many_runs(
     names, status, message, x, steps = found
     x[status != "finished"] = np.nan
     equations, phase = _known(plan.simulator)
-    if not has_phases(plan.model) and names == (*phase.coordinates, *phase.speeds):
+    if not plan.model.has_phases and names == (*phase.coordinates, *phase.speeds):
         why = _contradictions(plan, phase, x, steps)
         status = np.where(why != "", "contradicted", status)
         message = np.where(why != "", why, message)
         x[why != ""] = np.nan
     given = {**plan.parameters, **plan.start}
-    drifts = _runs_of(plan, phase, threads).drifts if phase.conservative and not has_phases(plan.model) else None
+    drifts = _runs_of(plan, phase, threads).drifts if phase.conservative and not plan.model.has_phases else None
     return Runs(plan.instants, x, names, status, message, steps, given, equations.certify, drifts)
 
 
@@ -195,7 +186,7 @@ def _in_lanes(plan: _Plan, threads: int) -> Reported | None:
 
 
 def _runs_of(plan: _Plan, phase: PhaseModel, threads: int) -> ManyRuns:
-    how = with_fields(plan.simulator.how.of_one_step(), breakpoints=breakpoints_of(plan.model))
+    how = with_fields(plan.simulator.how.of_one_step(), breakpoints=plan.model.breakpoints)
     return ManyRuns(phase, how, plan.instants, plan.time, partial(_parameters, plan), threads)
 
 
@@ -214,7 +205,7 @@ def _completed(plan: _Plan, found: FoundRuns, threads: int) -> Reported:
 def _in_marches(plan: _Plan, threads: int) -> Reported | None:
     """All runs in marches, those that are not finished so one by one; None where model or method does not allow it."""
     simulator = plan.simulator
-    if not simulator.how.is_in_marches or has_phases(plan.model) or simulator.target == "numpy":
+    if not simulator.how.is_in_marches or plan.model.has_phases or simulator.target == "numpy":
         return None
     base = _base(plan)
     if base is None:

@@ -46,9 +46,7 @@ from eomgen.simulation import (
     Stepping,
     Trajectory,
     WholeRun,
-    breakpoints_of,
     formulas_of,
-    has_phases,
     instants_of,
     refuse_bad_run,
 )
@@ -187,12 +185,12 @@ class Simulator:
     @property
     def is_constrained(self) -> bool:
         """True if the derivation may depend on the values of parameters: the model has constraints or contacts."""
-        return has_phases(self.model) or bool(self.equations.graph.system.constraints.rows)
+        return self.model.has_phases or bool(self.equations.graph.system.constraints.rows)
 
     @property
     def keeps_start(self) -> bool:
         """True if the derivation depends on the start: contacts, constraints and springs that keep a length."""
-        return has_phases(self.model) or self._follows_start
+        return self.model.has_phases or self._follows_start
 
 
 @dataclass(frozen=True)
@@ -236,7 +234,7 @@ class KnownEquations:
 
     @cached_property
     def derived(self) -> DerivedAt:
-        return DerivedAt(self.equations.graph.system, self.models.p, has_phases(self.equations.model))
+        return DerivedAt(self.equations.graph.system, self.models.p, self.equations.model.has_phases)
 
 
 def given_parameters(model: Model) -> dict[str, Expression]:
@@ -432,14 +430,14 @@ def controlled_run(
     time = seconds(time)
     refuse_bad_run(0.0, time, how)
     functions = [name for name, each in controllers.items() if each.every is None]
-    if functions and has_phases(model):
+    if functions and model.has_phases:
         raise NotYet(
             f"'{functions[0]}' is set by a Python function, and contacts change", fix="an expression, or `every`"
         )
     models = phase_models(equations, parameter_vector(model), how, target)
     here = PhaseStart.of(models, 0.0, None, None)
     instants = instants_of(samples, 0.0, time)
-    plan = Plan(time, replace(how.of_one_step(), breakpoints=breakpoints_of(model), keeps=True), instants)
+    plan = Plan(time, replace(how.of_one_step(), breakpoints=model.breakpoints, keeps=True), instants)
     phases = list(_phases(_control(models, here, controllers), models, here, plan))
     values = dict(zip(model.parameters, models.p.tolist(), strict=True))
     whole = WholeRun(model, [run for run, _, _ in phases], plan, values, [end for _, end, _ in phases])

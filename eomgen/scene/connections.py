@@ -12,7 +12,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of, members_of
+from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of
 from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene
 from eomgen.model import (
     ArcForm,
@@ -238,7 +238,7 @@ def _members(system: System) -> list[Mark]:
     at = system.motion.position
     return [
         Mark(RodForm(at((first, ZERO)), at((second, ZERO))), 0, "member", f"{truss}.{member}")
-        for truss, member, (first, second) in members_of(system)
+        for truss, member, (first, second) in system.scope.model.truss_members
     ]
 
 

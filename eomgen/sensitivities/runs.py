@@ -21,7 +21,7 @@ from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import solve
 from eomgen.resources import check_patience
-from eomgen.simulation import breakpoints_of, changing, has_phases, solver_of, step
+from eomgen.simulation import solver_of, step
 from eomgen.study import Study
 from eomgen.symbolic.expression import Expression, Node, Scalar, depends_on, order, substituted, tangent
 from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, tolerances
@@ -81,7 +81,7 @@ def changing_run(
     rows = [*rates, *(d for seeds in along.values() for d in tangent(rates, seeds))]
     f, p = compiled(program_of(rows, extended)), parameter_vector(system.scope.model)
     x0 = np.concatenate([start[0], *(start[1][name] for name in changes)])
-    states = _integrated(f.at(p), x0, instants, breakpoints_of(system.scope.model))
+    states = _integrated(f.at(p), x0, instants, system.scope.model.breakpoints)
     inputs = _own_inputs(system)
     closed = substituted([phase.of_state(formula) for formula in formulas.values()], inputs)
     requested = [*closed, *(d for seeds in along.values() for d in tangent(closed, seeds))]
@@ -104,8 +104,8 @@ def _own_inputs(system: System) -> dict[Node, Scalar]:
 
 
 def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
-    if has_phases(system.scope.model):
-        names = ", ".join(f"'{x}'" for x in changing(system.scope.model))
+    if system.scope.model.has_phases:
+        names = ", ".join(f"'{x}'" for x in system.scope.model.changing)
         what = f"{names} may change along the way (open, stick, slide): a motion in phases has no derivative here"
         raise NotYet(what, fix="differences of two runs, or a stretch of one phase as a model of its own")
     moving = (*system.symbols.q, *system.symbols.u, *system.symbols.parameters.values())

@@ -15,15 +15,6 @@ from eomgen.simulation.constraint_drift import nearness_of as nearness_of
 # Projection of states onto the constraints of a system; None where none closes
 from eomgen.simulation.constraint_drift import projection_of as projection_of
 
-# Names of the contacts, and of the bodies on a path of several pieces, that can change as the model moves
-from eomgen.simulation.contacts import changing as changing
-
-# True if the model has contacts, or bodies on a path of several pieces, that can change as it moves
-from eomgen.simulation.contacts import has_phases as has_phases
-
-# The bodies on a path of several pieces
-from eomgen.simulation.contacts import paths_of as paths_of
-
 # Sliding velocity of a closed contact with friction, along its tangent [m/s]
 from eomgen.simulation.contacts import sliding_velocity as sliding_velocity
 from eomgen.simulation.integration import SAMPLES as SAMPLES
@@ -87,9 +78,6 @@ from eomgen.simulation.solvers import AUTO as AUTO
 
 # Accuracy of the states of a run
 from eomgen.simulation.solvers import Accuracy as Accuracy
-
-# The times of the samples of every motion and input, ascending [s]
-from eomgen.simulation.solvers import breakpoints_of as breakpoints_of
 
 # An integrator at its start
 from eomgen.simulation.solvers import solver_of as solver_of

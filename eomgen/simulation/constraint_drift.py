@@ -23,9 +23,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compiled, program_of, unit_quaternions_of
+from eomgen.codegen import QuaternionPlaces, RightHandSide, at_unit_norms, compiled, program_of
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE, Rank, singular_blocks
+from eomgen.mechanics.constraints import PLACE, Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, mass
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression import Scalar
@@ -200,7 +200,7 @@ def projection_of(system: System, p: np.ndarray, target: str | None = None) -> P
         len(symbols.q),
         len(symbols.q) + len(symbols.u),
         len(gaps),
-        unit_quaternions_of(function.program),
+        function.program.unit_quaternions,
         function,
         _positions(free, target) if gaps else None,
         _rows(system, system.constraints.J, _identity(len(symbols.u)), target) if closing and symbols.u else None,
@@ -585,7 +585,7 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
         determinants = tuple(part.determinant for part in parts)
         return [Undetermined(measure(system, determinants, p), words, place, is_watched)] if parts else []
 
-    found = of(singular_blocks(system.elimination, system.scope), PLACE, is_watched=True)
+    found = of(system.singular_blocks, PLACE, is_watched=True)
     found += of(system.declared, "declare other speeds")
     found += of(system.motion.locks, "gimbal lock: choose another `orientation`, or a quaternion")
     rows = independence_of(equations, p, declared)
@@ -595,7 +595,7 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
 def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> Nearness | None:
     """Nearness of a motion to positions in which the constraints do not determine it; None without constraints."""
     system = equations.system
-    blocks = singular_blocks(system.elimination, system.scope)
+    blocks = system.singular_blocks
     determinants = measure(system, tuple(block.determinant for block in blocks), p) if blocks else None
     rows = independence_of(equations, p, declared)
     what = tuple(map(str, blocks))

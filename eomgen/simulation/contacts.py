@@ -435,21 +435,6 @@ class Configuration:
         return replace(self, modes=Table(modes))
 
 
-def has_phases(model: Model) -> bool:
-    """True if the model has contacts, or bodies on a path of several pieces, that can change as it moves."""
-    return bool(changing(model))
-
-
-def changing(model: Model) -> tuple[str, ...]:
-    """Names of the contacts, and of the bodies on a path of several pieces, that can change as the model moves."""
-    return tuple(dict.fromkeys((*(contact.name for contact in model.contacts), *paths_of(model))))
-
-
-def paths_of(model: Model) -> tuple[str, ...]:
-    """The bodies on a path of several pieces."""
-    return tuple(name for name, body in model.bodies.items() if len(body.path_pieces) > 1)
-
-
 def bounds_of(model: Model, body: str) -> tuple[tuple[Expression, Expression], ...]:
     """The arc lengths at the beginning and the end of every piece of a body's path."""
     joint: Any = model.bodies[body].joint

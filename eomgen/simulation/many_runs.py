@@ -21,7 +21,6 @@ from eomgen.codegen import (
     library,
     of_this_machine,
     program_of,
-    unit_quaternions_of,
 )
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import CLOSING
@@ -206,7 +205,7 @@ class ManyStarts:
         columns = {names.index(name): values for name, values in given.items()}
         for k in (k for k in columns if k < places):
             x[:, k] = columns[k]
-        x = at_unit_norms(x, unit_quaternions_of(self._places.program))
+        x = at_unit_norms(x, self._places.program.unit_quaternions)
         x[:, places:] = self._speeds.many(0.0, x, p)
         for k in (k for k in columns if k >= places):
             x[:, k] = columns[k]

@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.codegen import compiled, program_of
 from eomgen.errors import DerivationError, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import PLACE, singular_blocks
+from eomgen.mechanics.constraints import PLACE
 from eomgen.mechanics.dynamics import SMOOTH, EquationsOfMotion, signs_of_rates
 from eomgen.simulation.contacts import Configuration
 from eomgen.simulation.curves import nodes_between, transform
@@ -416,7 +416,7 @@ class FirstTime:
         Raises:
             RunFailed: they are named.
         """
-        for block in singular_blocks(self.equations.system.elimination, self.equations.system.scope):
+        for block in self.equations.system.singular_blocks:
             t, x = np.array([self.t0, run.end]), np.vstack([self._phase.state(self._here.values), run.last])
             before, there = self._phase.functions.evaluated(t, x, (block.determinant,))[:, 0]
             if abs(there) < tolerances.DEGENERATE * abs(before):

@@ -19,7 +19,7 @@ from eomgen.mechanics.free_bodies import Indeterminate
 from eomgen.mechanics.kinematics import ContactMode
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Model, Table
-from eomgen.simulation.contacts import Configuration, bounds_of, has_phases, on_pieces, paths_of, stopped_below
+from eomgen.simulation.contacts import Configuration, bounds_of, on_pieces, stopped_below
 from eomgen.simulation.event_location import Crossing
 from eomgen.simulation.phase_model import PhaseModel, Values, smallest_speed
 from eomgen.simulation.phase_models import OPEN, PhaseModels
@@ -64,7 +64,7 @@ class PhaseStart:
 
     def after_jump(self, models: PhaseModels) -> PhaseStart:
         """The same state where forces have jumped, with the contact modes from here on."""
-        if not has_phases(models.model):
+        if not models.model.has_phases:
             return self
         pieces = self.configuration.pieces
         found = _decided(models, self.t, self.values, pieces, before=self.configuration, ended=frozenset())
@@ -129,9 +129,9 @@ MOST_STARTS = 16  # that are cached
 def _at_start(
     models: PhaseModels, t: float, parameters: Mapping[str, Any] | None, start: Mapping[str, float] | None
 ) -> PhaseStart:
-    pieces = {body: 0 for body in paths_of(models.model)}
+    pieces = {body: 0 for body in models.model.on_paths}
     (begun, values), away = _closed_or_open(models, t, pieces, parameters, start)
-    if not has_phases(models.model):
+    if not models.model.has_phases:
         return PhaseStart(t, values, Configuration(), begun=begun)
     pieces = {body: _piece_at(models, body, t, values) for body in pieces}
     here = _decided(models, t, values, pieces, before=plain(models.model, pieces, away), ended=frozenset())
@@ -189,7 +189,7 @@ def _refuse_overlap(models: PhaseModels, t: float, values: Values) -> None:
 
 def _piece_at(models: PhaseModels, body: str, t: float, values: Values) -> int:
     """The piece on which a body is; between two of them the one into which it moves."""
-    phase = models.of(plain(models.model, {b: 0 for b in paths_of(models.model)}, ()))
+    phase = models.of(plain(models.model, {b: 0 for b in models.model.on_paths}, ()))
     link, value = phase.system.motion.link(body), phase.system.scope.value
     requested = (link.s[0], link.s_rate[0], *(value(end) for _, end in bounds_of(models.model, body)[:-1]))
     s, rate, *ends = phase.functions.evaluated(np.array([t]), phase.state(values)[None, :], requested)[0]

@@ -12,21 +12,14 @@ import numpy as np
 from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import (
-    Rank,
-    Row,
-    holds_identically,
-    rows_of_constraint,
-    singular_blocks,
-)
+from eomgen.mechanics.constraints import Rank, Row, holds_identically, rows_of_constraint
 from eomgen.mechanics.dynamics import EquationsOfMotion, PullBack, System, assembled_by_recursion, stabilized, system_of
 from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
 from eomgen.model import Contact, Coordinate, Model, PointForce, Table
-from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, has_phases, on_pieces, sliding_velocity
+from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, on_pieces, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
-from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.exact import readable_all
 from eomgen.symbolic.expression import (
     ZERO,
@@ -59,7 +52,7 @@ def integrated_system(system: System) -> System:
     """
     if system.free is None or system.scope.model.speeds:
         return system
-    return system.free if singular_blocks(system.elimination, system.scope) else system
+    return system.free if system.singular_blocks else system
 
 
 def one_phase(declared: System, equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> PhaseModel:
@@ -122,7 +115,7 @@ class PhaseModels:
         origin: tuple[PhaseModels, Fed | None] | None = None,
     ) -> None:
         self.model, self.p, self.target, self.rates = model, p, target, rates
-        self._derived = None if has_phases(model) else derived
+        self._derived = None if model.has_phases else derived
         self._origin = origin
         self._made: dict[Configuration, PhaseModel] = {}
         self._last: tuple[Configuration, PhaseModel] | None = None
@@ -168,7 +161,7 @@ class PhaseModels:
     @cached_property
     def breakpoints(self) -> tuple[float, ...]:
         """The times of the samples of every motion and input [s]."""
-        return breakpoints_of(self.model)
+        return self.model.breakpoints
 
     @cached_property
     def without_contacts(self) -> WithoutContacts:

@@ -16,22 +16,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.model import Model
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression import Expression
 from eomgen.symbolic.numeric import tolerances
-
-
-def breakpoints_of(model: Model) -> tuple[float, ...]:
-    """The times of the samples of every motion and input, ascending [s]."""
-    laws = (
-        leaf.value
-        for table in (model.coordinates, model.inputs, model.constraints)
-        for name, part in table.items()
-        for leaf in part.leaves((name,))
-    )
-    sampled = (law.sampled for law in laws if isinstance(law, Expression))
-    return tuple(sorted({float(t) for each in sampled if each is not None for t in each.spline.bounds}))
 
 
 def step(solver: Any, breakpoints: Sequence[float], end: float) -> None:

@@ -11,7 +11,7 @@ from dataclasses import replace
 from math import isfinite
 
 from eomgen.errors import DerivationError, ModelError, UsageError
-from eomgen.mechanics.constraints import Rank, refuse_undetermined
+from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.instant import InstantKinematics, KinematicState
 from eomgen.mechanics.start import refuse_lost
 from eomgen.model import Given, Model, WrittenEquation, equation_in
@@ -137,7 +137,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
             "give the parameters values",
         )
     moving = {**{symbols.t: 0}, **moving}
-    refuse_undetermined(phase.system.elimination, phase.system.scope, moving, when)
+    phase.system.refuse_undetermined(moving, when)
     free = Rank(phase.system.constraints).degrees_of_freedom()
     count = Rank((phase.system.free or phase.system).constraints).counted()
     found = KinematicState(phase.system, moving, {}, free, count, when, exact=whole)

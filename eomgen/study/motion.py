@@ -22,15 +22,7 @@ from eomgen.mechanics.dynamics import Extent, system_of
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import Model, WrittenEquation
-from eomgen.simulation import (
-    AUTO,
-    PhaseRun,
-    Trajectory,
-    has_phases,
-    integrate,
-    nearness_of,
-    projection_of,
-)
+from eomgen.simulation import AUTO, PhaseRun, Trajectory, integrate, nearness_of, projection_of
 from eomgen.study.instants import StateAtInstant, carried, closed_form, placed, reached
 from eomgen.study.study import Study, study_at_rest, study_of
 from eomgen.symbolic.expression import Node, Scalar, depends_on, substituted
@@ -65,7 +57,7 @@ class MotionFromStart:
     @cached_property
     def models(self) -> PhaseModels | None:
         """The phases of a model that has any, and values for its parameters; else None."""
-        if not has_phases(self.model):
+        if not self.model.has_phases:
             return None
         from eomgen.codegen import parameter_vector
         from eomgen.simulation import PhaseModels

@@ -16,7 +16,7 @@ from functools import cache
 from eomgen.codegen import build
 from eomgen.codegen.expressions import ATOM, RankedText, ranked_number
 from eomgen.codegen.lowering import statements
-from eomgen.codegen.program import Program, unit_quaternions_of
+from eomgen.codegen.program import Program
 from eomgen.codegen.statements import CHANGED, READ, REAL, ROOM, Language
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.symbolic.expression import NAMES, Number
@@ -161,7 +161,7 @@ def _named(text: str, stem: str) -> str:
 def _hold(stem: str, program: Program) -> str:
     """Quaternions back to norm 1; whether there are any."""
     lines = [f"static int {stem}_hold(double *x)", "{"]
-    unit_quaternions = unit_quaternions_of(program)
+    unit_quaternions = program.unit_quaternions
     for places in unit_quaternions:
         squares = " + ".join(f"x[{k}]*x[{k}]" for k in places)
         lines += ["    {", f"        double norm = sqrt({squares});", "        if (norm > 0)"]

@@ -22,24 +22,15 @@ from eomgen.mechanics.constraints.closure import CLOSING as CLOSING
 # States in which constraints hold, phi = 0 and J u + sigma = 0, with 50 digits
 from eomgen.mechanics.constraints.closure import Closure as Closure
 
-# True if the start of a coordinate or speed is not given, or is only a guess by `near`
-from eomgen.mechanics.constraints.closure import is_guess as is_guess
-
-# True if a person typed the start of a coordinate or speed, in place of what the model declares
-from eomgen.mechanics.constraints.closure import is_typed as is_typed
-
 # The nearest state at which the scalars vanish, as `closed`
 from eomgen.mechanics.constraints.closure import nearest_root as nearest_root
 from eomgen.mechanics.constraints.elimination import PLACE as PLACE
 
+# Dependent coordinates that some rows determine together
+from eomgen.mechanics.constraints.elimination import DependentBlock as DependentBlock
+
 # Result of the elimination of dependent coordinates
 from eomgen.mechanics.constraints.elimination import Elimination as Elimination
-
-# Refuse a place at which rates of dependent coordinates are divided by zero
-from eomgen.mechanics.constraints.elimination import refuse_undetermined as refuse_undetermined
-
-# The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good
-from eomgen.mechanics.constraints.elimination import singular_blocks as singular_blocks
 
 # Degrees of freedom of a model
 from eomgen.mechanics.constraints.rank import Freedom as Freedom

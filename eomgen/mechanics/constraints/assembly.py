@@ -14,12 +14,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints.closure import (
-    Closure,
-    bilateral,
-    is_guess,
-    is_typed,
-)
+from eomgen.mechanics.constraints.closure import Closure, bilateral
 from eomgen.mechanics.constraints.rank import Rank
 from eomgen.mechanics.constraints.rows import Constraints, Row
 from eomgen.mechanics.kinematics import Located
@@ -169,7 +164,7 @@ def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int
     sought = constraints.fixed_by_position
     state |= {q: of_50_digits(guesses[q.name]) for q in sought}
     state = (Closure(constraints).closed(state, sought) or state) if sought else state
-    called = frozenset(q.name for q in scope.symbols.q if is_typed(scope.model, q.name))
+    called = frozenset(q.name for q in scope.symbols.q if scope.model.is_typed(q.name))
     return Assembly(constraints).with_gaps_closed(state, called)[0]
 
 
@@ -181,7 +176,7 @@ def _differs(declared: Scalar, q: Node, state: State) -> bool:
 
 def tiers_of(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
     """Coordinates or speeds in the order in which they may change: not given, given by the model, by the caller."""
-    silent = [node for node in own if node.name not in called and is_guess(model, node.name)]
+    silent = [node for node in own if node.name not in called and model.is_guess(node.name)]
     typed = [node for node in own if node.name in called]
     return silent, [node for node in own if node not in silent and node not in typed], typed
 

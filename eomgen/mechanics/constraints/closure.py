@@ -18,8 +18,7 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, OpenConst
 from eomgen.frozen import dataclass, recalled
 from eomgen.mechanics.constraints.rows import Constraints
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model
-from eomgen.symbolic.expression import Expression, Node, Scalar, State, depends_on, jacobian
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian
 from eomgen.symbolic.numeric import (
     Newton,
     NoValue,
@@ -317,32 +316,6 @@ def far(constraints: Constraints, before: State, after: State, given: Sequence[N
     slopes = _slopes(_slope(constraints, after, given))
     moved = [abs(float(after[q] - before[q])) for q in given]
     return bool(np.any(slopes * np.array(moved) > np.max(slopes, initial=0.0)))
-
-
-def is_guess(model: Model, name: str) -> bool:
-    """True if the start of a coordinate or speed is not given, or is only a guess by `near`."""
-    return not _given(model, name)
-
-
-def is_typed(model: Model, name: str) -> bool:
-    """True if a person typed the start of a coordinate or speed, in place of what the model declares."""
-    return any(value.typed for value in _given(model, name))
-
-
-def _given(model: Model, name: str) -> list[Expression]:
-    """Expressions of the start of a coordinate or speed; for a declared speed without one, those of its rates."""
-    if name in model.coordinates:
-        part = model.coordinates[name]
-        found = [part.start if part.near is None else None]
-    elif name in model.speeds and model.speeds[name].start is None:
-        rate = model.speeds[name].rate
-        rates = [] if rate is None else [x[:-1] for x in rate.names if x[:-1] in model.coordinates]
-        found = [model.coordinates[q].speed for q in rates]
-    elif name in model.speeds:
-        found = [model.speeds[name].start]
-    else:
-        found = [model.coordinates[name[:-1]].speed if name[:-1] in model.coordinates else None]
-    return [value for value in found if value is not None]
 
 
 # -- positions ---------------------------------------------------------------------------------------

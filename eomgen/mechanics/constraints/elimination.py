@@ -8,7 +8,7 @@ centre, a change point) the independent coordinates do not determine the depende
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -22,7 +22,7 @@ from eomgen.mechanics.constraints.rows import Constraints, holds_identically
 from eomgen.mechanics.kinematics import Scope, shorter
 from eomgen.mechanics.state import Split
 from eomgen.symbolic.exact import cramer
-from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations, order, substituted
+from eomgen.symbolic.expression import Node, Scalar, depends_on, inner, is_zero, operations
 from eomgen.symbolic.numeric import NoValue, dense, rank, tolerances
 
 Label = tuple[str, int]
@@ -94,33 +94,6 @@ class Elimination:
         found = dict(zip(rows, own, strict=True)) | dict.fromkeys(follow, "")
         used = {(constraints.closing[i].constraint, constraints.closing[i].number): name for i, name in found.items()}
         return Elimination(scope, used, tuple(_named(constraints, names, system.rows, block) for block in blocks))
-
-
-def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[DependentBlock, ...]:
-    """The blocks by whose determinant rates of the scope are still divided; of the others it has cancelled for good."""
-    moving = (*scope.symbols.q, scope.symbols.t)
-    rates = {q.name: rate for q, rate in zip(scope.symbols.q, scope.rates, strict=True)}
-
-    def divided(block: DependentBlock) -> bool:
-        nodes = order([rates[name] for name in block.coordinates])
-        return any(node.op == "div" and depends_on(node.args[1], moving) for node in nodes)
-
-    return () if elimination is None else tuple(filter(divided, elimination.blocks))
-
-
-def refuse_undetermined(elimination: Elimination | None, scope: Scope, place: Mapping[Node, Scalar], when: str) -> None:
-    """Refuse a place at which rates of dependent coordinates are divided by zero.
-
-    Args:
-        place: values of coordinates and t, exact.
-        when: the place, in words.
-    Raises:
-        DerivationError: the constraints and coordinates are named.
-    """
-    for block in singular_blocks(elimination, scope):
-        if is_zero(substituted((block.determinant,), place)[0]):
-            fix = "start near it, or leave out `dependent`: then their rates belong to the state"
-            raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
 
 
 # -- which rows --------------------------------------------------------------------------------------

@@ -60,9 +60,6 @@ from eomgen.mechanics.dynamics.system import System as System
 # Motion, loads and constraints of a model in which dependent coordinates are as free as others
 from eomgen.mechanics.dynamics.system import free_system_of as free_system_of
 
-# The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared
-from eomgen.mechanics.dynamics.system import reduced_system as reduced_system
-
 # Motion, loads and constraints of a model, dependent coordinates eliminated
 from eomgen.mechanics.dynamics.system import system_of as system_of
 

@@ -10,8 +10,10 @@ from typing import Any
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
+    PLACE,
     Assembly,
     Constraints,
+    DependentBlock,
     Elimination,
     Rank,
     holds_identically,
@@ -34,6 +36,7 @@ from eomgen.symbolic.expression import (
     inner,
     is_zero,
     jacobian,
+    order,
     substituted,
     symbols_of,
 )
@@ -105,6 +108,49 @@ class System:
         """Rates and accelerations at rest."""
         return dict.fromkeys((*self.symbols.u, *self.symbols.a), 0)
 
+    def reduced(self) -> System:
+        """The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared.
+
+        Raises:
+            DerivationError: a dependent coordinate that no constraint determines.
+            ModelError: declared speeds that do not determine the rates.
+        """
+        elimination = Elimination.of(self.constraints) if self.scope.dependent else None
+        scope = self.scope if elimination is None else elimination.scope
+        solved: tuple[Solved, ...] = ()
+        if scope.model.speeds:
+            scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
+        motion = Motion.of(scope)
+        constraints = Constraints.of(motion, {} if elimination is None else elimination.used, self.modes)
+        return System(motion, Loads.of(motion, self.loads.begun), constraints, self.modes, elimination, self, solved)
+
+    @property
+    def singular_blocks(self) -> tuple[DependentBlock, ...]:
+        """The blocks by whose determinant rates are still divided; of the others it has cancelled for good."""
+        scope = self.scope
+        moving = (*scope.symbols.q, scope.symbols.t)
+        rates = {q.name: rate for q, rate in zip(scope.symbols.q, scope.rates, strict=True)}
+
+        def divided(block: DependentBlock) -> bool:
+            nodes = order([rates[name] for name in block.coordinates])
+            return any(node.op == "div" and depends_on(node.args[1], moving) for node in nodes)
+
+        return () if self.elimination is None else tuple(filter(divided, self.elimination.blocks))
+
+    def refuse_undetermined(self, place: Mapping[Node, Scalar], when: str) -> None:
+        """Refuse a place at which rates of dependent coordinates are divided by zero.
+
+        Args:
+            place: values of coordinates and t, exact.
+            when: the place, in words.
+        Raises:
+            DerivationError: the constraints and coordinates are named.
+        """
+        for block in self.singular_blocks:
+            if is_zero(substituted((block.determinant,), place)[0]):
+                fix = "start near it, or leave out `dependent`: then their rates belong to the state"
+                raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
+
 
 def system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
@@ -121,7 +167,7 @@ def system_of(
         DerivationError: what the model says cannot be derived.
     """
     free = free_system_of(model, modes, with_laws=with_laws, begun_as=begun_as)
-    return reduced_system(free) if free.scope.dependent or model.speeds else free
+    return free.reduced() if free.scope.dependent or model.speeds else free
 
 
 def free_system_of(
@@ -144,23 +190,6 @@ def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:
     values = transplanted(tuple(places.values()), scope.graph, scope.names)
     own = {q.name: q for q in scope.symbols.q}
     return {own[q.name]: x for q, x in zip(places, values, strict=True) if q.name in own}
-
-
-def reduced_system(free: System) -> System:
-    """The system over its independent speeds: N = [1; A], nu = [0; b] of dependent coordinates, then as declared.
-
-    Raises:
-        DerivationError: a dependent coordinate that no constraint determines.
-        ModelError: declared speeds that do not determine the rates.
-    """
-    elimination = Elimination.of(free.constraints) if free.scope.dependent else None
-    scope = free.scope if elimination is None else elimination.scope
-    solved: tuple[Solved, ...] = ()
-    if scope.model.speeds:
-        scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
-    motion = Motion.of(scope)
-    constraints = Constraints.of(motion, {} if elimination is None else elimination.used, free.modes)
-    return System(motion, Loads.of(motion, free.loads.begun), constraints, free.modes, elimination, free, solved)
 
 
 # -------- equations of motion ---------------------------------------------------------------------------------

@@ -14,7 +14,6 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import is_guess
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.equilibrium.places import place_near
 from eomgen.mechanics.state import Split
@@ -101,4 +100,4 @@ class _Near:
     def _place_in_order(self, k: int) -> tuple[bool, bool, int]:
         """Key of a coordinate in the choice: first those that move away from the guess, then those only guessed."""
         still = abs(self.here[k] - self.guess[k]) <= tolerances.SAME_PLACE * (1 + abs(self.guess[k]))
-        return bool(still), not is_guess(self.statics.system.scope.model, self.statics.q[k].name), -k
+        return bool(still), not self.statics.system.scope.model.is_guess(self.statics.q[k].name), -k

@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Constraints, Rank
-from eomgen.mechanics.dynamics import System, reduced_system, system_of
+from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.kinematics import Loads, Motion, Scope
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
@@ -392,4 +392,4 @@ def _made_of(free: System, scope: Scope) -> System:
     scope = replace(scope, model=scope.model.altered(speeds=Table({})))
     motion = Motion.of(scope)
     made = System(motion, Loads.of(motion, free.loads.begun), Constraints.of(motion, modes=free.modes), free.modes)
-    return reduced_system(made) if scope.dependent else made
+    return made.reduced() if scope.dependent else made

@@ -66,9 +66,6 @@ from eomgen.mechanics.free_bodies.velocity_plan import RigidBlock as RigidBlock
 # A field of velocities of rigid bodies, a velocity plan
 from eomgen.mechanics.free_bodies.velocity_plan import VelocityPlan as VelocityPlan
 
-# (truss, member, its two nodes) of every truss
-from eomgen.mechanics.free_bodies.velocity_plan import members_of as members_of
-
 # Roman numeral by which textbooks name a block: I, II, III, IV,
 from eomgen.mechanics.free_bodies.velocity_plan import numeral as numeral
 from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS as EACH_AXIS

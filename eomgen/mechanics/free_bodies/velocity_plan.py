@@ -321,12 +321,6 @@ def numeral(number: int) -> str:
     return text
 
 
-def members_of(system: System) -> list[Member]:
-    """(truss, member, its two nodes) of every truss."""
-    trusses = system.scope.model.trusses_in_parts
-    return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
-
-
 @dataclass(frozen=True)
 class _Part:
     """A body or a member that moves, by itself.
@@ -385,7 +379,7 @@ def _moving_members(plan: VelocityPlan) -> list[Member]:
     if plan.system.scope.model.space != "plane":
         return []
     moving = {*plan.moving}
-    return [each for each in members_of(plan.system) if not moving.isdisjoint(each[2])]
+    return [each for each in plan.system.scope.model.truss_members if not moving.isdisjoint(each[2])]
 
 
 def _member(plan: VelocityPlan, member: Member, numbers: Sequence[Any]) -> _Part:
@@ -438,7 +432,7 @@ def _joined(plan: VelocityPlan, group: list[_Part]) -> RigidBlock:
 
 def _single_nodes(plan: VelocityPlan, blocks: list[RigidBlock]) -> list[RigidBlock]:
     """Moving nodes at the end of no moving member that keeps its length."""
-    ends = {(truss, member): pair for truss, member, pair in members_of(plan.system)}
+    ends = {(truss, member): pair for truss, member, pair in plan.system.scope.model.truss_members}
     carried = {node for block in blocks for member in block.members for node in ends[member]}
     alone = [name for name in plan.moving if is_node(name) and name not in carried]
     return [RigidBlock((), (), (name,), ZERO, plan.raw_velocity((name, ZERO))) for name in alone]

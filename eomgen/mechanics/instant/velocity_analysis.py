@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
-from eomgen.mechanics.dynamics import System, free_system_of, reduced_system
+from eomgen.mechanics.dynamics import System, free_system_of
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.start import Start, values_where_at_rest
 from eomgen.model import Model, WrittenEquation, freed, is_node
@@ -300,7 +300,7 @@ class InstantKinematics:
 
 def _places(free: System) -> tuple[State, Mapping[str, float]]:
     """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
-    system = reduced_system(free)
+    system = free.reduced()
     sought, found = system.constraints.fixed_by_position, State()
     if not sought:
         return {}, {}

@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Assembly, refuse_undetermined
+from eomgen.mechanics.constraints import Assembly
 from eomgen.mechanics.dynamics import System, Valueless
 from eomgen.mechanics.equilibrium import standing_system, states_beside
 from eomgen.mechanics.free_bodies import SystemFriction
@@ -469,7 +469,7 @@ def reduced_of(reducing: Reducing, reference: ReferenceMotion) -> LinearEquation
         DerivationError: dependent coordinates are not determined there.
     """
     system = reference.system
-    refuse_undetermined(system.elimination, system.scope, reference.exact, "at the place of reference")
+    system.refuse_undetermined(reference.exact, "at the place of reference")
     turns = spinning(reference, reducing.choice)
     return over_turns(reducing.field, reducing.first.system, reducing.equations, turns)
 

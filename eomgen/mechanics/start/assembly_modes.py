@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import is_guess
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
 from eomgen.mechanics.state import Doubles, Split
@@ -209,7 +208,7 @@ def _split(system: System, free: Sequence[Node], J: np.ndarray) -> Split:
     dependent = system.scope.dependent
 
     def place(k: int) -> tuple[bool, bool, int]:
-        return free[k].name not in dependent, not is_guess(system.scope.model, free[k].name), -k
+        return free[k].name not in dependent, not system.scope.model.is_guess(free[k].name), -k
 
     return Split.in_order(J, sorted(range(len(free)), key=place), tolerances.RANK_NEARBY)
 

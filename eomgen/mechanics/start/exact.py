@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import SEEDS, hold_identically, is_guess
+from eomgen.mechanics.constraints import SEEDS, hold_identically
 from eomgen.mechanics.dynamics import System, mass
 from eomgen.mechanics.kinematics import Located, Scope
 from eomgen.mechanics.start.state import Start, following_rates, start_speeds
@@ -261,7 +261,7 @@ class _Sought:
         """(the speeds that change, W): the constraints alone say what they are, then the least change by either
         measure."""
         u, model = self.system.symbols.u, self.system.scope.model
-        silent = [x for x in u if is_guess(model, x.name) and not self.at_rest]
+        silent = [x for x in u if model.is_guess(x.name) and not self.at_rest]
         ways: list[tuple[list[Node], list[list[Scalar]]]] = [(list(moved), [])]
         if {*moved} <= {*silent}:
             columns = [[row[u.index(x)] for row in J] for x in silent]
@@ -344,7 +344,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     gaps = [row.gap for row in rows if row.gap is not None]
     sought = system.constraints.fixed_by_position
     given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
-    silent = [q for q in symbols.q if q in sought or (q.name != own and is_guess(scope.model, q.name))]
+    silent = [q for q in symbols.q if q in sought or (q.name != own and scope.model.is_guess(q.name))]
     silent = [q for q in silent if q not in given]
     what = own or "the parameter"
     dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, what, _moved(begun, symbols.q, numbers))
@@ -352,7 +352,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     du = dict(zip(symbols.u, map(Fraction, at([speeds[u] for u in symbols.u], {**seeds, **dq})), strict=True))
     du |= {u: Fraction(1) for u in symbols.u if u.name == own}
     rates = [row.velocity for row in system.constraints.closing]
-    silent = [u for u in symbols.u if u.name != own and is_guess(scope.model, u.name)]
+    silent = [u for u in symbols.u if u.name != own and scope.model.is_guess(u.name)]
     left = at(rates, {**seeds, **dq, **du})
     du = _kept(rates, left, silent, du, numbers, what, _moved(speeds, symbols.u, numbers))
     return dq | du

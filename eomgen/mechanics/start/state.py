@@ -12,17 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import (
-    Assembly,
-    Closure,
-    Fork,
-    Row,
-    is_guess,
-    is_typed,
-    open_at,
-    open_by,
-    tiers_of,
-)
+from eomgen.mechanics.constraints import Assembly, Closure, Fork, Row, open_at, open_by, tiers_of
 from eomgen.mechanics.dynamics import System, Valueless, mass
 from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model import (
@@ -250,7 +240,7 @@ def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tup
 def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
     """The coordinates and speeds whose start a person typed, or a caller gave: these are changed last."""
     names = (node.name for node in (*system.symbols.q, *system.symbols.u))
-    return frozenset(name for name in names if name in start or is_typed(system.scope.model, name))
+    return frozenset(name for name in names if name in start or system.scope.model.is_typed(name))
 
 
 def _changes(
@@ -269,7 +259,7 @@ def _changes(
 def _change(model: Model, name: str, values: tuple[float, float], called: bool) -> Change:
     """A change from the first of two values to the second."""
     before, after = values
-    given = called or not is_guess(model, name)
+    given = called or not model.is_guess(name)
     was = f" (not {model.in_own_unit(name, before, 6)})" if given else ""
     return Change(name, before, after, given, f"{name} = {model.in_own_unit(name, after)}{was}")
 

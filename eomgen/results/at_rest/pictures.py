@@ -30,7 +30,7 @@ from eomgen.documents import (
 )
 from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.free_bodies import Axes, Component, Effect, members_of
+from eomgen.mechanics.free_bodies import Axes, Component, Effect
 from eomgen.mechanics.statics import (
     KINDS,
     Extreme,
@@ -100,7 +100,7 @@ class StaticScene:
         """Lines of bodies and of members of trusses."""
         system = self.statics.system
         bodies = [line for link in system.motion.links for line in self.sketch.lines(link)]
-        ends = [pair for _, _, pair in members_of(system)]
+        ends = [pair for _, _, pair in system.scope.model.truss_members]
         return [*bodies, *(np.array([self.sketch.position((node, ZERO)) for node in pair]) for pair in ends)]
 
     def length(self, force: PagePoint) -> PagePoint:
@@ -287,7 +287,7 @@ def _spread(panel: Any, scene: StaticScene, load: SpreadLoad, name: str) -> None
 def _members(panel: Any, scene: StaticScene) -> None:
     """The force of every member of a truss, along it, and the meaning of the colours."""
     drawn = False
-    for truss, member, (first, second) in members_of(scene.statics.system):
+    for truss, member, (first, second) in scene.statics.system.scope.model.truss_members:
         reaction = scene.statics.by_name.get(f"tension({truss}, {member})")
         if reaction is None or reaction.value is None:
             continue

@@ -35,7 +35,6 @@ from eomgen.mechanics.free_bodies import (
     RigidBlock,
     Structure,
     VelocityPlan,
-    members_of,
     numeral,
 )
 from eomgen.mechanics.statics import (
@@ -433,7 +432,7 @@ def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) 
     """Its bodies, members and nodes; a truss as one where all of it is in the block."""
     if len(plan.moving) == len(plan.system.motion.links) and len(blocks) == 1:
         return "the whole structure"
-    of_truss = Counter(truss for truss, _, _ in members_of(plan.system))
+    of_truss = Counter(truss for truss, _, _ in plan.system.scope.model.truss_members)
     inside = Counter(truss for truss, _ in block.members)
     whole = [truss for truss, number in inside.items() if number == of_truss[truss]]
     single = [f"{truss} {member}" for truss, member in block.members if truss not in whole]
