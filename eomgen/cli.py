@@ -139,7 +139,7 @@ def check_command(
     By rank and by formula; which constraints close loops and which only give reactions, which are redundant, which
     velocity constraints are integrable; the assembly of the loops at the start, and the other possible ones.
     """
-    from eomgen.verbs import check_document
+    from eomgen.results import check_document
 
     if len(models) == 1:
         options |= {"wants_json": wants_json, "output": output, "format_": format_}
@@ -194,7 +194,7 @@ def _cached_derivation(
     *, model: str, wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
 ) -> int:
     """Writes the cached derivation, else makes it, and caches it where its proof holds; returns the exit code."""
-    from eomgen.verbs import cached_derivation
+    from eomgen.study import cached_derivation
 
     form = form_requested(wants_json, format_, output)
     with reading(model) as source:

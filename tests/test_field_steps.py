@@ -8,8 +8,8 @@ import pytest
 
 import eomgen
 from eomgen import documents
-from eomgen.documents import rendering
 from eomgen.documents.document import Document
+from eomgen.documents.result import ALL as FORMATS
 from eomgen.mechanics.instant.motion_kind import Kinds
 from eomgen.results.at_instant.plots import centrode_panel
 from eomgen.results.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
@@ -127,7 +127,7 @@ def test_the_ladders_field_and_centrodes_are_told():
         assert all(same(motion.phase, *pair) for pair in zip(found, true, strict=True))
 
 
-@pytest.mark.parametrize("name", [member.name for member in rendering.ALL])
+@pytest.mark.parametrize("name", [member.name for member in FORMATS])
 def test_steps_are_set_in_every_format(name):
     """No format leaves a table or a formula out."""
     motion = journey_of(TURNTABLE)

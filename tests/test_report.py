@@ -35,7 +35,7 @@ from eomgen.documents.latex import symbols_in
 from eomgen.documents.motion_steps import moved_coordinates
 from eomgen.documents.proven_documents import proven
 from eomgen.documents.reading import Reader
-from eomgen.documents.rendering import ALL, rendered
+from eomgen.documents.result import ALL, rendered
 from eomgen.documents.statements import MEANINGS, Entry, Formula, Name, Partial, Prose, Rate, Step, quantities
 from eomgen.documents.text import WIDTH, broken, formula_text
 from eomgen.equations import Equations

@@ -313,11 +313,11 @@ from eomgen.documents.reading import with_roots_named as with_roots_named
 # The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x)
 from eomgen.documents.reading import without_cases as without_cases
 
-# The document in one of the formats of ALL: text, latex, markdown, json
-from eomgen.documents.rendering import rendered as rendered
-
 # Result of a verb that can be shown: a derivation, entries for JSON, and a picture where it has one
 from eomgen.documents.result import Result as Result
+
+# The document in one of the formats of ALL: text, latex, markdown, json
+from eomgen.documents.result import rendered as rendered
 from eomgen.documents.statements import Cell as Cell
 
 # Something that a user types

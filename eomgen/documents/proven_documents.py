@@ -17,8 +17,7 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.documents.document import Document, quantities_of
 from eomgen.documents.read_back import page_read_back
-from eomgen.documents.rendering import drawn
-from eomgen.documents.result import Result
+from eomgen.documents.result import Result, drawn
 from eomgen.documents.statements import Equation, Formula, Grid, Law, Listing, Matrix, Quantity, Statement, parts_of
 from eomgen.documents.text import cases_text, cell_text, is_piecewise, side_text
 from eomgen.documents.texts_read import json_read_back, text_read_back

@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from eomgen.documents import json_form
+from eomgen.documents import json_form, latex, markdown, text
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
 from eomgen.documents.markdown import markdown_below
-from eomgen.documents.rendering import rendered
+from eomgen.errors import UsageError, visible
 from eomgen.proof import Certificate, Check, DrawnPanel
+
+ALL = (text, latex, markdown, json_form)
+
+
+def rendered(document: Document, format: str = "text") -> str:
+    """The document in one of the formats of ALL: text, latex, markdown, json.
+
+    Raises:
+        UsageError: an unknown format.
+    """
+    return visible(drawn(document, format))
+
+
+def drawn(document: Document, format: str) -> str:
+    """Document in a format, as of `rendered` but with control characters left in; this text is read back."""
+    formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
+    if format not in formats:
+        raise UsageError(f"unknown format '{format}'", fix=f"one of {', '.join(formats)}")
+    return formats[format](document)
 
 
 class Result:

@@ -42,9 +42,8 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.judge.fixes import Authored
 from eomgen.judge.reading import MULTIPLIER, HandEquation
-from eomgen.judge.terms import angles_in, short_text, term_text, terms_of
+from eomgen.judge.terms import WrongTerms, angles_in, short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
-from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.statics import KINDS, ActingForce, CutBalance, FreeBodies, PlacedPush

@@ -29,9 +29,8 @@ from eomgen.judge.diagnosis import (
     in_other_units,
     samples_of,
 )
-from eomgen.judge.terms import short_text, term_text, terms_of
+from eomgen.judge.terms import Term, WrongTerms, short_text, term_text, terms_of
 from eomgen.judge.verdict import other_calls
-from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.symbolic.expression import (
     Call,
     Node,

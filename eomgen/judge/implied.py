@@ -45,7 +45,7 @@ from eomgen.judge.diagnosis import (
     samples_of,
 )
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.wrong_terms import WrongTerms
+from eomgen.judge.terms import WrongTerms
 from eomgen.model import AtRest, WrittenEquation
 from eomgen.questions import Answer
 from eomgen.symbolic.exact import determinant

@@ -17,8 +17,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Mistake
-from eomgen.judge.terms import terms_of
-from eomgen.judge.wrong_terms import Term, WrongTerms
+from eomgen.judge.terms import Term, WrongTerms, terms_of
 from eomgen.symbolic.expression import (
     Fraction,
     Node,

@@ -5,7 +5,7 @@ Formulas -> their terms, and what may stand in them in the place of a name or an
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
@@ -15,13 +15,25 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.judge.diagnosis import EXCHANGED, MINUS, ODD, PLAINEST, TERMS, UNUSUAL, USUAL, WELL_KNOWN, simple_factor
+from eomgen.judge.diagnosis import (
+    EXCHANGED,
+    MINUS,
+    ODD,
+    PLAINEST,
+    TERMS,
+    UNUSUAL,
+    USUAL,
+    WELL_KNOWN,
+    Mistake,
+    simple_factor,
+)
 from eomgen.symbolic.exact import TooLarge, legible, readable, written_terms
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
     Scalar,
     ScalarRow,
+    depends_on,
     is_zero,
     linear_terms,
     order,
@@ -542,3 +554,93 @@ def _of_number(c: Fraction) -> float:
     """The cost of a number, compared with none."""
     size = next((more / 2 for known, more in USUAL if abs(c) in known), UNUSUAL)
     return size + (MINUS if c < 0 else 0.0)
+
+
+# -------- wrong terms -----------------------------------------------------------------------------------------
+
+
+Term = tuple[int, Scalar]  # of which row
+
+
+@dataclass(frozen=True)
+class WrongTerms:
+    """Possible mistakes in single terms.
+
+    Args:
+        edits: what goes wrong in formulas.
+        parameters, rates: the names that may stand in the place of one another.
+        owner: whose rows these are, in words; "" where they are the equations.
+        body, force: whose it is.
+    """
+
+    edits: Edits
+    parameters: Sequence[Node]
+    rates: Collection[Node]
+    owner: str = ""
+    body: str = ""
+    force: str = ""
+
+    def in_rows(self, rows: Sequence[Scalar], known: Collection[Term] = ()) -> Iterator[Mistake]:
+        """Mistakes in the terms of each row, one by one.
+
+        Args:
+            known: terms that are looked at already.
+        """
+        for k, row in enumerate(rows):
+            terms = terms_of(row, frozenset(self.edits.positive))
+            for term in terms:
+                if (k, term) not in known:
+                    yield from self._of_term(term, k, len(rows), terms)
+
+    def _of_term(self, term: Scalar, k: int, number: int, terms: Sequence[Scalar]) -> Iterator[Mistake]:
+        alone = len(terms) == 1
+        name = f"the {'product' if is_product(term, terms) else 'term'} {term_text(term)}"
+        name = f"{name} of {self.owner}" if self.owner and not alone else self.owner or name
+        if not alone:
+            squared = [u for u in self.rates if depends_on(term, (u,))]
+            kind = "coriolis" if len(squared) == 2 else "factor"
+            yield Mistake(name, kind, _row(term, k, number), TERMS, self.body, self.force)
+        if type(term) is not Node:
+            return
+        for each in self.edits.of_term(term):
+            yield self._changed(name, each.kind, each.to[0] - term, each.text, each.rank, k, number)
+        for kind, mapping, what in wrong_parameters(symbols_of((term,)), self.parameters):
+            if kind == "wrong_quantity":
+                yield from self._replaced(name, term, kind, mapping, what, EXCHANGED, k, number)
+        held = [u for u in self.rates if depends_on(term, (u,))]
+        for u in held:
+            for w in self.rates:
+                if w is not u:
+                    what = f"{w.name} stands where {u.name} is meant"
+                    yield from self._replaced(name, term, "wrong_quantity", {u: w}, what, ODD, k, number)
+                    for other, of in ((u + w, "it is no relative one"), (u - w, "it is a relative one")):
+                        what = f"{term_text(other)} stands where {u.name} is meant: {of}"
+                        yield from self._replaced(name, term, "wrong_quantity", {u: other}, what, ODD, k, number)
+
+    def throughout(self, rows: Sequence[Scalar]) -> Iterator[Mistake]:
+        """Mistakes throughout a row: in angles and parameters."""
+        for k, row in enumerate(rows):
+            whole = sum(terms_of(row, frozenset(self.edits.positive)), start=0)
+            if type(whole) is not Node:
+                continue
+            for angle in angles_in((whole,)):
+                for kind, mapping, what in turned_angles(angle, (whole,)):
+                    reported = what.format(term_text(angle))
+                    yield from self._replaced("everything", whole, kind, mapping, reported, EXCHANGED, k, len(rows))
+            for kind, mapping, what in wrong_parameters(symbols_of((whole,)), self.parameters):
+                rank = EXCHANGED if kind == "wrong_quantity" else ODD
+                yield from self._replaced("everything", whole, kind, mapping, what, rank, k, len(rows))
+
+    def _replaced(
+        self, name: str, x: Scalar, kind: str, mapping: Mapping[Node, Scalar], what: str, rank: float, k: int, n: int
+    ) -> Iterator[Mistake]:
+        with suppress(DerivationError):  # it has no value there
+            yield self._changed(name, kind, substituted((x,), mapping)[0] - x, what, rank, k, n)
+
+    def _changed(self, name: str, kind: str, by: Scalar, what: str, rank: float, k: int, n: int) -> Mistake:
+        text = f"in {name} {what}"
+        return Mistake(name, kind, _row(by, k, n), rank, self.body, self.force, open=False, text=text)
+
+
+def _row(x: Scalar, place: int, number: int) -> tuple[Scalar, ...]:
+    return tuple(x if j == place else 0 for j in range(number))

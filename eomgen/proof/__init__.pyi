@@ -11,6 +11,12 @@ from eomgen.proof.at_a_state import NumericState as NumericState
 
 # Check the equations of a system
 from eomgen.proof.certificate import certify as certify
+
+# Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved
+from eomgen.proof.certificate import reaction_numbers as reaction_numbers
+
+# Check of each text at the start, in pieces and at random, by the bodies' equations solved there in doubles
+from eomgen.proof.certificate import reaction_texts as reaction_texts
 from eomgen.proof.check import SIGNS as SIGNS
 
 # The proof that comes with a result
@@ -172,12 +178,6 @@ from eomgen.proof.structure import certify_structure as certify_structure
 
 # Check of every panel titled N, V or M of a body, or influence line
 from eomgen.proof.structure import diagrams_drawn as diagrams_drawn
-
-# Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved
-from eomgen.proof.texts_of_reactions import reaction_numbers as reaction_numbers
-
-# Check of each text at the start, in pieces and at random, by the bodies' equations solved there in doubles
-from eomgen.proof.texts_of_reactions import reaction_texts as reaction_texts
 
 # An equation with its verdict
 from eomgen.proof.verdicts import JudgedEquation as JudgedEquation

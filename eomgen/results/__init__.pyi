@@ -21,6 +21,9 @@ from eomgen.results.at_rest.result import why_not_at_rest as why_not_at_rest
 # Step that derives one reaction from the virtual work of the mechanism that its release leaves
 from eomgen.results.at_rest.steps import virtual_work_step as virtual_work_step
 
+# The model's parts and its degrees of freedom, by rank and by the counting formula
+from eomgen.results.check import check_document as check_document
+
 # Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes
 from eomgen.results.mass_properties.result import inertia as inertia
 

@@ -1,13 +1,25 @@
 """Door of the room: what other rooms may import from `eomgen.study`."""
 
-# State of a motion at one instant, exact and in numbers
-from eomgen.study.instants import StateAtInstant as StateAtInstant
+# Results of checking a model without mistakes
+from eomgen.study.checked import Checked as Checked
+
+# Closure of the loops at the start
+from eomgen.study.checked import LoopStart as LoopStart
+
+# Checks a model: degrees of freedom, redundancy, closure of loops, cautions
+from eomgen.study.checked import checked_model as checked_model
+
+# The entry of a derivation in the cache; None where this package is not made of files
+from eomgen.study.kept_derivations import cached_derivation as cached_derivation
 
 # The motion of a model at an instant, however the model gives it
 from eomgen.study.kinematics import kinematic_state as kinematic_state
 
 # The motion of a model from its start
 from eomgen.study.motion import MotionFromStart as MotionFromStart
+
+# State of a motion at one instant, exact and in numbers
+from eomgen.study.motion import StateAtInstant as StateAtInstant
 
 # Efforts that move a system with given accelerations: A tau + J^T lam = M a + c - Q
 from eomgen.study.programs import InverseDynamics as InverseDynamics

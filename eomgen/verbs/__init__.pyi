@@ -3,9 +3,6 @@
 # The model with the values that were typed, and their record; the other options, equations in SI
 from eomgen.verbs.assignments import typed as typed
 
-# The model's parts and its degrees of freedom, by rank and by the counting formula
-from eomgen.verbs.check import check_document as check_document
-
 # The model with coordinates and inputs that follow files: a coordinate in the way it was driven, else by `motion`
 from eomgen.verbs.csv_inputs import following as following
 
@@ -20,9 +17,6 @@ from eomgen.verbs.examples import examples_document as examples_document
 
 # The model file, written where an output is given; and the parts of the robot's file without a counterpart in it
 from eomgen.verbs.importing import import_document as import_document
-
-# The entry of a derivation in the cache; None where this package is not made of files
-from eomgen.verbs.kept_derivations import cached_derivation as cached_derivation
 
 # The motion at one instant
 from eomgen.verbs.kinematics import kinematics_requested as kinematics_requested

@@ -10,7 +10,7 @@ import pytest
 
 from eomgen import disk_cache, verbs
 from eomgen.cli import main
-from eomgen.verbs import kept_derivations
+from eomgen.study import kept_derivations
 
 MODEL = (Path(__file__).parents[2] / "models" / "simple_pendulum.toml").read_text(encoding="utf-8")
 

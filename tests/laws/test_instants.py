@@ -23,7 +23,7 @@ from eomgen.mechanics.start.state import Start
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.study import StateAtInstant, Study, study_of
-from eomgen.study.instants import reached
+from eomgen.study.motion import reached
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.text import parse
