@@ -270,7 +270,7 @@ def test_what_changes_the_dimension_explains_no_equation_that_keeps_it():
     (row, *_), l = case.rows, case.system.symbols.parameters["l"]
     flat = (row, 2 * row, row * l, row / l + row, 0 * l)
     samples = samples_of(case.system, flat)
-    others = in_other_units(samples, case.parts.dimensions)
+    others = in_other_units(samples, case.edits.dimensions)
     assert fitting(samples.of(flat), others.of(flat), 1, 1).tolist() == [True, False, False, True]
     inhomogeneous = (row + row * l, *flat)
     assert fitting(samples.of(inhomogeneous), others.of(inhomogeneous), 1, 1).all()

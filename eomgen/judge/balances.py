@@ -279,7 +279,7 @@ class Balances:
         """Friction that is taken as large as it can be, mu N, where balance needs another; None: there is none."""
         ((requested, _),) = self._requested[1].items()
         true, owners = self._values.get(requested), {each.symbol: each.force for each in free.acting}
-        dimensions = self.case.parts.dimensions
+        dimensions = self.case.edits.dimensions
         numbers = [x for x in self.case.edits.also if not (d := dimensions.get(x.name)) or d.unknowns]
         others = [
             x for x, owner in owners.items() if x is not None and x is not requested and owner == owners.get(requested)

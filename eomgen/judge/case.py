@@ -10,13 +10,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.frozen import dataclass
-from eomgen.judge.contributions import Contributions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
 from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.model_edits import ModelEdit, edited_models
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics import EquationsOfMotion, Extent, System
+from eomgen.mechanics.dynamics import Contributions, EquationsOfMotion, Extent, System
 from eomgen.mechanics.equilibrium import Equilibrium
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.start import ExactStart
@@ -153,7 +152,7 @@ class Case:
 
     def dimension(self, name: str) -> str:
         """Dimension of a declared name, as far as it follows from the model; "" else."""
-        return str(self.parts.dimensions.get(name, ""))
+        return str(self.edits.dimensions.get(name, ""))
 
     @property
     def _equilibria(self) -> tuple[Equilibrium, ...]:
@@ -188,7 +187,7 @@ class Case:
     @property
     def edits(self) -> Edits:
         """The mistakes that are looked for in formulas of the model."""
-        return self.parts.edits
+        return Edits.of_system(self.system)
 
     @cached_property
     def edited(self) -> tuple[ModelEdit, ...]:

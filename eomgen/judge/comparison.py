@@ -218,7 +218,7 @@ class Comparison:
         scalars = self._moving([self.scalar, *self.rows, *(x for each in known for x in each.rows)])
         flat = samples.of(scalars)
         D, E, C = flat[0], flat[1 : n + 1], flat[n + 1 :].reshape(len(known), n, *flat.shape[1:])
-        others = in_other_units(samples, self.case.parts.dimensions)
+        others = in_other_units(samples, self.case.edits.dimensions)
         if others is not None:
             fits = fitting(flat, others.of(scalars), n + 1, n)
             known, C = tuple(each for each, fit in zip(known, fits, strict=True) if fit), C[fits]

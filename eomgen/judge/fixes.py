@@ -16,11 +16,12 @@ from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
-from eomgen.judge.contributions import ANGLES, FEW, Contribution
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import PLAINEST, Explanation, Mistake, Samples, Share, samples_of
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import (
+    ANGLES,
+    FEW,
     Amended,
     Products,
     angles_in,
@@ -33,6 +34,7 @@ from eomgen.judge.terms import (
     wrong_power,
 )
 from eomgen.judge.truth import truth_of
+from eomgen.mechanics.dynamics import Contribution
 from eomgen.symbolic.expression import (
     Call,
     Expression,
@@ -159,7 +161,7 @@ class Fixes:
             found = self._of_terms(what, *sides)
         if 0 < len(found) <= FEW:
             return tuple(found.values())
-        return case.parts.holding(around, what.replace("motion", ""))
+        return case.parts.holding(around, FEW, what.replace("motion", ""))
 
     def _of_terms(self, what: str, right: Scalar, wrong: Scalar) -> dict[str, Contribution]:
         """The contributions with a term that the change makes, where most of the equation is made of such terms."""
@@ -307,7 +309,7 @@ class Authored:
             held = {*symbols_of(formulas)}
             atoms += [x for x in (*symbols.q, *symbols.u) if x in held]
         angles = angles_in(formulas)
-        angles += [x for x in atoms if str(self.case.parts.dimensions.get(x.name, "")) in ANGLES[:2]]
+        angles += [x for x in atoms if str(self.case.edits.dimensions.get(x.name, "")) in ANGLES[:2]]
         waves = [x.graph.call(op, x) for x in dict.fromkeys(angles) for op in ("sin", "cos")]
         atoms += [x for x in waves if type(x) is Node and x not in atoms]
         return tuple(atoms[:MOST_ATOMS])

@@ -116,7 +116,7 @@ class Implied:
         if samples is None:
             return ()
         found, n = samples.of(flat), len(self.mistakes)
-        others = in_other_units(samples, self.case.parts.dimensions)
+        others = in_other_units(samples, self.case.edits.dimensions)
         ours = found[: n + 1]
         fits = np.ones(n, dtype=bool) if others is None else fitting(ours, others.of(flat[: n + 1]), 1, 1)
         known = tuple(each for each, fit in zip(self.mistakes, fits, strict=True) if fit)

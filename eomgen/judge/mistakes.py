@@ -15,9 +15,9 @@ from itertools import combinations
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Mistake
-from eomgen.judge.terms import Term, WrongTerms, terms_of
+from eomgen.judge.terms import Edits, Term, WrongTerms, terms_of
+from eomgen.mechanics.dynamics import Contribution, Contributions
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -52,6 +52,10 @@ class Mistakes:
     what: str
     of: tuple[str, ...] = ()
     start: Mapping[Node, Scalar] = field(default_factory=dict)
+
+    @property
+    def _edits(self) -> Edits:
+        return Edits.of_system(self.parts.system)
 
     def rows(self, part: Contribution) -> ScalarRow:
         """The share of a contribution in the requested quantity."""
@@ -90,7 +94,7 @@ class Mistakes:
     def _sought(self) -> Iterator[Mistake]:
         alike: dict[tuple[str, ScalarRow], list[Contribution]] = {}
         for part in self.whole:
-            alike.setdefault((part.kind, self.parts.edits.written(self.rows(part))), []).append(part)
+            alike.setdefault((part.kind, self._edits.written(self.rows(part))), []).append(part)
         for members in alike.values():
             for part in members:  # of several that do the same all are rather wrong than one
                 rank, squares = 2 * SHORTER if len(members) > 1 else PLAIN, not is_zero(part.T)
@@ -115,7 +119,7 @@ class Mistakes:
         """(row, term) of every contribution, multiplied out."""
         if self.what == "energy":
             return frozenset()  # what it has changed by since the start is no sum of terms changed one by one
-        positive = frozenset(self.parts.edits.positive)
+        positive = frozenset(self._edits.positive)
         return frozenset(
             (k, term)
             for part in self.whole
@@ -126,11 +130,11 @@ class Mistakes:
     def _wrong_terms(self, part: Contribution) -> WrongTerms:
         symbols = self.parts.system.symbols
         parameters, rates = tuple(symbols.parameters.values()), (*symbols.u, *symbols.a)
-        return WrongTerms(self.parts.edits, parameters, rates, part.name, part.body, part.force)
+        return WrongTerms(self._edits, parameters, rates, part.name, part.body, part.force)
 
     def _edited(self, part: Contribution) -> Iterator[Mistake]:
         """A contribution with one place of its energy or its forces changed, carried through the derivation."""
-        edits = self.parts.edits
+        edits = self._edits
         forms: list[tuple[ScalarRow, Callable[[ScalarRow], Contribution]]] = [
             ((part.T,), lambda x: replace(part, T=x[0], V=0, Q=(), row=None)),
             ((part.V,), lambda x: replace(part, T=0, V=x[0], Q=(), row=None)),

@@ -17,9 +17,9 @@ from typing import Any
 
 from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
-from eomgen.judge.contributions import FEW, Contributions
 from eomgen.judge.diagnosis import EXCHANGED, PLACED, PLAINEST, SHARED, SHORTER, Explanation, Mistake, Share
-from eomgen.judge.terms import term_text, wrong_parameters
+from eomgen.judge.terms import FEW, Edits, term_text, wrong_parameters
+from eomgen.mechanics.dynamics import Contributions
 from eomgen.model import Body, Coordinate, Leaf, MassProperties, Model, Table, whereabouts
 from eomgen.symbolic.expression import (
     Expression,
@@ -190,7 +190,9 @@ class _Editor:
                 yield kind, substituted((x,), mapping)[0], f"is wrong: {text}", EXCHANGED
 
     def _dimension(self, x: Scalar) -> str:
-        return str(self.parts.dimensions.get(x.name, x.name)) if type(x) is Node and x.op == "symbol" else ""
+        if type(x) is not Node or x.op != "symbol":
+            return ""
+        return str(Edits.of_system(self.parts.system).dimensions.get(x.name, x.name))
 
     # -- points and bodies ---------------------------------------------------------------------------
 

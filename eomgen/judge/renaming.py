@@ -10,8 +10,8 @@ from itertools import islice, product
 
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
-from eomgen.judge.contributions import ANGLES
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.terms import ANGLES
 from eomgen.symbolic.expression import Node, Scalar, is_zero, order, over
 from eomgen.symbolic.print import to_text
 

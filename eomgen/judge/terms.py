@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain, combinations
 
@@ -27,6 +27,8 @@ from eomgen.judge.diagnosis import (
     Mistake,
     simple_factor,
 )
+from eomgen.mechanics.dynamics import System
+from eomgen.model import Dimension
 from eomgen.symbolic.exact import TooLarge, legible, readable, written_terms
 from eomgen.symbolic.expression import (
     Fraction,
@@ -44,6 +46,8 @@ from eomgen.symbolic.expression import (
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import readable_text
 
+FEW = 2  # contributions that are named together
+ANGLES = ("1", "rad", "")  # dimensions of angles
 MOST_TERMS = 60  # of an equation that is looked at term by term
 
 
@@ -229,11 +233,27 @@ class Edits:
         positive: symbols that stand for positive numbers.
         alike: groups of parameters of one dimension; the ratio of two of them is looked at as a whole.
         also: nodes by which somebody may multiply or divide although they do not stand there.
+        dimensions: of every name, as far as they are known.
     """
 
     positive: Collection[Node] = ()
     alike: Sequence[frozenset[Node]] = ()
     also: Sequence[Node] = ()
+    dimensions: Mapping[str, Dimension] = field(default_factory=dict, repr=False, compare=False)
+
+    @staticmethod
+    def of_system(system: System) -> Edits:
+        """The mistakes that are looked for in formulas of a system."""
+        if Edits not in system.found:
+            dimensions = system.scope.model.dimensions.found
+            groups: dict[str, set[Node]] = {}
+            for name, x in system.symbols.parameters.items():
+                groups.setdefault(str(dimensions.get(name, name)), set()).add(x)
+            alike = tuple(frozenset(group) for group in groups.values() if len(group) > 1)
+            parameters = tuple(system.symbols.parameters.values())
+            system.found[Edits] = Edits(system.scope.positive, alike, parameters, dimensions)
+        found: Edits = system.found[Edits]
+        return found
 
     def of(self, formulas: ScalarRow) -> Iterator[Edit]:
         """Edits of formulas as they are and as they are written, each once; a shared place is changed in all."""

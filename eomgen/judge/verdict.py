@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.reading import MULTIPLIER, HandEquation
-from eomgen.judge.terms import LONG, short_text
+from eomgen.judge.terms import FEW, LONG, short_text
 from eomgen.model import FUNCTIONS, Model, OutputSource
 from eomgen.symbolic.exact import legible
 from eomgen.symbolic.expression import (
@@ -348,7 +348,7 @@ def cause_of(case: Case, share: Share, row: int, *, reported: bool = True, movin
     is_term = mistake.name.startswith(("the term ", "the product "))
     if reported and not body and not force and is_term:
         total = sum((x for x in rows if not is_zero(x)), start=0)
-        held = case.parts.holding(total, "T" if depends_on(total, case.system.symbols.a) else "")
+        held = case.parts.holding(total, FEW, "T" if depends_on(total, case.system.symbols.a) else "")
         if len(held) == 1:
             whose = f": it is a term of {held[0].name}" if kind == "extra_term" else f" ({held[0].name})"
             body, force, text = held[0].body, held[0].force, f"{text}{whose}"

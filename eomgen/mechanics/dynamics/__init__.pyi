@@ -11,6 +11,12 @@ from eomgen.mechanics.dynamics.accelerations import stabilized as stabilized
 # The equations with explicit accelerations, where articulated bodies give them
 from eomgen.mechanics.dynamics.accelerations import with_accelerations as with_accelerations
 
+# One part of energies and equations
+from eomgen.mechanics.dynamics.contributions import Contribution as Contribution
+
+# All contributions of a system
+from eomgen.mechanics.dynamics.contributions import Contributions as Contributions
+
 # Accelerations and multipliers of equations of motion as explicit functions
 from eomgen.mechanics.dynamics.explicit_accelerations import Explicit as Explicit
 from eomgen.mechanics.dynamics.formulations import ALL as ALL

@@ -8,18 +8,14 @@ every equation of motion by one and the same operator:
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import field
 from functools import cached_property
 
 from eomgen.frozen import dataclass
-from eomgen.judge.terms import Edits
-from eomgen.mechanics.dynamics import (
-    EquationsOfMotion,
-    System,
-)
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import Applied, SystemInertia
-from eomgen.model import Couple, Dimension, Load, PointForce, UniformField
+from eomgen.model import Couple, Load, PointForce, UniformField
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
@@ -35,9 +31,6 @@ from eomgen.symbolic.expression import (
     tangent,
     times,
 )
-
-FEW = 2  # contributions that are named together
-ANGLES = ("1", "rad", "")  # dimensions of angles
 
 
 @dataclass(frozen=True)
@@ -148,29 +141,15 @@ class Contributions:
         return Operator(self.system)
 
     @cached_property
-    def dimensions(self) -> Mapping[str, Dimension]:
-        """The dimension of every name, as far as it is known."""
-        return self.system.scope.model.dimensions.found
-
-    @cached_property
-    def edits(self) -> Edits:
-        """The mistakes that are looked for in formulas of the system."""
-        groups: dict[str, set[Node]] = {}
-        parameters = self.system.symbols.parameters
-        for name, x in parameters.items():
-            groups.setdefault(str(self.dimensions.get(name, name)), set()).add(x)
-        alike = tuple(frozenset(group) for group in groups.values() if len(group) > 1)
-        return Edits(self.system.scope.positive, alike, tuple(parameters.values()))
-
-    @cached_property
     def elementary(self) -> tuple[Contribution, ...]:
         """Bodies' energies and forces, one by one."""
         return (*self._kinetic(), *self._forces(), *self._others())
 
-    def holding(self, x: Scalar, what: str = "") -> tuple[Contribution, ...]:
+    def holding(self, x: Scalar, most: int, what: str = "") -> tuple[Contribution, ...]:
         """The few contributions of whose constants x is made: those of the one that fewest hold, of all if there are.
 
         Args:
+            most: so many at most; () of more.
             what: of those with a share of this energy, "T" or "V"; "" of all.
         """
         symbols = self.system.symbols
@@ -179,7 +158,7 @@ class Contributions:
         holders = [[part for part in known if y in part.held] for y in symbols_of((x,)) if y in constants]
         few = min(holders, key=len, default=[])
         found = [part for part in few if all(part in some for some in holders)] or few
-        return tuple(found) if len(found) <= FEW else ()
+        return tuple(found) if len(found) <= most else ()
 
     def _kinetic(self) -> list[Contribution]:
         motion, found = self.operator.base.motion, []
