@@ -250,13 +250,8 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "proof": 63,
     "model": 128,
     "mechanics.kinematics": 21,
-<<<<<<< HEAD
     "mechanics.constraints": 23,
     "mechanics.dynamics": 28,
-=======
-    "mechanics.constraints": 26,
-    "mechanics.dynamics": 28,
->>>>>>> 0f362c0a (The door of dynamics gives the parts of the equations)
     "mechanics.start": 13,
     "mechanics.free_bodies": 30,
     "mechanics.statics": 25,
