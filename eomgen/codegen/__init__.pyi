@@ -100,9 +100,6 @@ from eomgen.codegen.targets.c import c_together as c_together
 # An object of the functions `constants` and `evaluate`, for scripts that are no modules
 from eomgen.codegen.targets.javascript import javascript_expression as javascript_expression
 
-# products in addition to its sums that a coefficient takes where one motion is followed: measured
-from eomgen.codegen.taylor import ALONE as ALONE
-
 # The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least
 from eomgen.codegen.taylor import order_for as order_for
 

@@ -421,7 +421,12 @@ def series_of(program: Program, order: int) -> Series | None:
     return Series(series, along, size, found)
 
 
-def order_for(rtol: float, beside: float = 0.0) -> int:
+def order_for(rtol: float, *, alone: bool = False) -> int:
+    """The order of the series at a relative tolerance, where many motions are followed together, or one alone."""
+    return cheapest_order(rtol, ALONE if alone else 0.0)
+
+
+def cheapest_order(rtol: float, beside: float) -> int:
     """The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least.
 
     A step goes as far as exp(ln(rtol)/p), and takes p^2 products in its sums, and in addition p times so much as

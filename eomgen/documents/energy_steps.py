@@ -63,7 +63,7 @@ from eomgen.mechanics.kinematics import (
     JointEffort,
     SystemInertia,
 )
-from eomgen.mechanics.start import known_start
+from eomgen.mechanics.start import ExactStart
 from eomgen.model import Couple, Load, PointForce
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, depends_on, gradient, inner, is_zero, jacobian, order
 from eomgen.symbolic.print import text_size, to_text
@@ -453,7 +453,7 @@ def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
     if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or system.free is not None:
         return ()
     accelerations = Explicit(equations).short
-    start = None if accelerations is None else known_start(system)
+    start = None if accelerations is None else ExactStart(system).known
     laws = {} if accelerations is None or start is None else laws_of_motion(system, accelerations, start)
     free = {u.name.removesuffix("'") for u in symbols.u}
     found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]

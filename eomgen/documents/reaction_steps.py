@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.dynamics import EquationsOfMotion, System, derived_by
 from eomgen.mechanics.free_bodies import BodyEquation, Reactions
 from eomgen.mechanics.integrals import rates_and_extent
-from eomgen.mechanics.start import known_start
+from eomgen.mechanics.start import ExactStart
 from eomgen.model import called
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Node, Scalar, depends_on, is_zero, order, substituted
@@ -150,7 +150,7 @@ def _is_clear(x: Scalar) -> bool:
 def _start(system: System) -> dict[Node, Scalar] | None:
     """q and u at the start, as every verb takes them; None where it is not known, or a coordinate is driven."""
     driven = any(part.driven for part in system.scope.model.coordinates.values())
-    return None if driven else known_start(system)
+    return None if driven else ExactStart(system).known
 
 
 # -- what is indeterminate -------------------------------------------------------------------------

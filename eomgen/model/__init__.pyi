@@ -53,7 +53,6 @@ from eomgen.model.constraints.equation import NodeBalance as NodeBalance
 
 # The two nodes of tension(T, n1-n2) or tension(T, n1, n2); None where it names no two
 from eomgen.model.constraints.link import ends_requested as ends_requested
-from eomgen.model.constraints.row import AXIS_NAMES as AXIS_NAMES
 
 # One scalar row of a constraint
 from eomgen.model.constraints.row import ConstraintRow as ConstraintRow
@@ -78,9 +77,6 @@ from eomgen.model.diagnostics import whereabouts as whereabouts
 
 # A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
 from eomgen.model.driven import law_of as law_of
-
-# event of a run
-from eomgen.model.fields import EVERY as EVERY
 
 # The place at which all forces balance, instead of an instant
 from eomgen.model.fields import AtRest as AtRest

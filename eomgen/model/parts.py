@@ -6,6 +6,7 @@ from typing import Annotated, Any, ClassVar
 from eomgen.frozen import dataclass
 from eomgen.model import joints, shapes
 from eomgen.model.fields import (
+    EVERY,
     UNIT,
     AtRest,
     EquationRule,
@@ -307,3 +308,8 @@ class Output(Part):
     event: Annotated[int | str, EventRule()] | None = None
     unit: UnitText | None = None
     about: Text | None = None
+
+    @property
+    def of_every_event(self) -> bool:
+        """True if all values are requested, one at each event of a run."""
+        return self.event == EVERY

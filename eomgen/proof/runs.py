@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.instant import requests_of
-from eomgen.model import EVERY, Output, OutputSource, WrittenEquation, formula_at
+from eomgen.model import Output, OutputSource, WrittenEquation, formula_at
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, Tally, differing, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_reported, changes_follow_impulses, contacts_do_as_assumed
@@ -167,7 +167,7 @@ class SamplesOfRun:
         Args:
             reported: the value in SI; None: no value is reported.
         """
-        if output.event == EVERY or output.from_ is not None or requests_of(output.value, OutputSource.SMALL_MOTIONS):
+        if output.of_every_event or output.from_ is not None or requests_of(output.value, OutputSource.SMALL_MOTIONS):
             return ""
         if not isinstance(output.at, WrittenEquation):
             return self._by_samples(output, reported) if output.at is None else ""

@@ -12,7 +12,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import EACH_AXIS, Axes, Component, components_of
+from eomgen.mechanics.free_bodies import Axes, Component, components_of
 from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene
 from eomgen.model import (
     ArcForm,
@@ -47,6 +47,7 @@ from eomgen.scene.forms import (
 )
 from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression import (
+    IDENTITY,
     ZERO,
     Fraction,
     Node,
@@ -515,7 +516,7 @@ def resultants(system: System, names: Container[str]) -> Iterator[Resultant]:
     for owner, components in owners.items():
         seat, units = (
             _seat(system, owner),
-            {f"reaction_{axis}({owner})": e for axis, e in zip(along, EACH_AXIS, strict=False)},
+            {f"reaction_{axis}({owner})": e for axis, e in zip(along, IDENTITY, strict=False)},
         )
         if seat is not None and all(name in names for name in units):
             yield Resultant(owner, motion.position(seat), units)

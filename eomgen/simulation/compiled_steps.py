@@ -22,7 +22,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from eomgen.codegen import ALONE, Address, Program, RightHandSide, Solve, in_c, order_for, outputs_at
+from eomgen.codegen import Address, Program, RightHandSide, Solve, in_c, order_for, outputs_at
 from eomgen.errors import ToolMissing, UsageError
 from eomgen.simulation import event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, RankLookout, Rows
@@ -250,7 +250,7 @@ class CompiledSteps:
     def _expand(self) -> None:
         """Takes steps along power series, from the start on."""
         m = self._m
-        m.order = order_for(m.rtol, ALONE)
+        m.order = order_for(m.rtol, alone=True)
         series = self._fun.rhs.series(m.order)
         rows = 2 * (m.order + 1) * m.n
         numbers = _aligned(series.size + rows)

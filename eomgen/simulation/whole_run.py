@@ -16,7 +16,7 @@ import numpy as np
 from eomgen.errors import DerivationError, ExpressionError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
-from eomgen.model import EVERY, Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
+from eomgen.model import Model, Output, OutputSource, WrittenEquation, formula_at, requested_of
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.curves import ChebyshevPieces, resolved_curve
 from eomgen.simulation.motion import DenseMotion, Plan
@@ -180,7 +180,7 @@ class WholeRun:
         if requests_of(output.value, OutputSource.OF_A_RUN) or requests_of(output.value, OutputSource.SMALL_MOTIONS):
             raise DerivationError(f"'{output.value.text}' belongs to no instant", fix="leave out `at`")
         events = self.events(output.at)
-        if output.event == EVERY:
+        if output.of_every_event:
             found = [self._at(output, *event) for event in events]
             return RunValue(tuple(found), tuple(t for _, t in events))
         n = 1 if output.event is None else int(output.event)

@@ -68,7 +68,6 @@ from eomgen.mechanics.free_bodies.velocity_plan import VelocityPlan as VelocityP
 
 # Roman numeral by which textbooks name a block: I, II, III, IV,
 from eomgen.mechanics.free_bodies.velocity_plan import numeral as numeral
-from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS as EACH_AXIS
 
 # The axes of each body's equations: the ground's in the plane, the body's own in space
 from eomgen.mechanics.free_bodies.wrenches import Axes as Axes

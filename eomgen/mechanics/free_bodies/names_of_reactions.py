@@ -15,7 +15,7 @@ from eomgen.mechanics.constraints import Row, holds_identically
 from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import BodyLink, Motion
-from eomgen.model import AXIS_NAMES, PointForce
+from eomgen.model import PointForce
 from eomgen.symbolic.expression import (
     ZERO,
     Node,
@@ -176,9 +176,9 @@ def _left_out(balance: Balance, rows: Mapping[tuple[str, int], Row], row: Row, q
 
     A force along an axis of the ground has parts R^T e along those of the carrier, from which the gaps are seen.
     """
-    if row.carrier is None or row.component not in AXIS_NAMES:
+    if row.carrier is None or row.component not in ("x", "y", "z"):
         return _left_of_row(balance, row, q)
-    k, R = AXIS_NAMES.index(row.component), balance.system.motion.link(row.carrier).pose.R
+    k, R = "xyz".index(row.component), balance.system.motion.link(row.carrier).pose.R
     beside = (
         rows.get((row.constraint, row.number - k + n))
         for n in range(2 if balance.system.scope.model.space == "plane" else 3)

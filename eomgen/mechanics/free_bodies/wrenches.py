@@ -209,7 +209,6 @@ def _over(magnitude: Scalar, square: Scalar) -> Scalar:
 
 
 FORCE, COUPLE = "N", "N*m"
-EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 @dataclass(frozen=True)
@@ -364,7 +363,7 @@ def _basis(axes: Axes, link: BodyLink, system: System) -> list[tuple[str, Vector
         return [*_forces(axes, link, forces, 2), *([] if is_idle(axes, link, system) else found)]
     mixed = [c for c in columns if not _vanishes(c[:3]) and not _vanishes(c[3:])]
     names = [f"couple {axis}" for axis in "xyz"] if len(couples) == 3 else _numbered("couple", len(couples))
-    held = [(name, ZERO, c) for name, c in zip(names, EACH_AXIS if len(couples) == 3 else couples, strict=True)]
+    held = [(name, ZERO, c) for name, c in zip(names, IDENTITY if len(couples) == 3 else couples, strict=True)]
     wrenches = [(f"wrench {k}", vector_of(c[3:]), vector_of(c[:3])) for k, c in enumerate(mixed, start=1)]
     return [*_forces(axes, link, forces, 3), *held, *wrenches]
 
@@ -381,7 +380,7 @@ def _forces(axes: Axes, link: BodyLink, forces: list[Vector], most: int) -> list
     """The forces of a joint: along the equations' axes where it can carry any, else normal to its motion."""
     if len(forces) == most:
         R_CE = transposed(axes.of_body(link))
-        return [("xyz"[k], in_turned_axes(R_CE, EACH_AXIS[k]), ZERO) for k in range(most)]
+        return [("xyz"[k], in_turned_axes(R_CE, IDENTITY[k]), ZERO) for k in range(most)]
     return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
 
 
@@ -627,8 +626,8 @@ def _any_wrench(system: System, axes: Axes, link: BodyLink) -> Iterator[tuple[st
     """(label, force, couple) along the axes of the body's equations, child's axes."""
     R_CE = transposed(axes.of_body(link))
     for k in range(2 if axes.plane else 3):
-        yield "xyz"[k], in_turned_axes(R_CE, EACH_AXIS[k]), ZERO
+        yield "xyz"[k], in_turned_axes(R_CE, IDENTITY[k]), ZERO
     if not axes.plane:
-        yield from ((f"couple {axis}", ZERO, e) for axis, e in zip("xyz", EACH_AXIS, strict=True))
+        yield from ((f"couple {axis}", ZERO, e) for axis, e in zip("xyz", IDENTITY, strict=True))
     elif not is_idle(axes, link, system):
-        yield "couple", ZERO, EACH_AXIS[2]
+        yield "couple", ZERO, IDENTITY[2]

@@ -15,7 +15,6 @@ from eomgen.mechanics.instant.kinematic_state import body_motions as body_motion
 # The motion of a point, seen from a body (or from the ground)
 from eomgen.mechanics.instant.kinematic_state import composition_of as composition_of
 from eomgen.mechanics.instant.mechanism import FIXED as FIXED
-from eomgen.mechanics.instant.mechanism import POINT as POINT
 
 # A centre that two lines give, or two others that are at one place
 from eomgen.mechanics.instant.mechanism import FoundPoint as FoundPoint
@@ -29,7 +28,6 @@ from eomgen.mechanics.instant.mechanism import PointPair as PointPair
 
 # The centre of rotation of a pair of blocks
 from eomgen.mechanics.instant.mechanism import RotationCenter as RotationCenter
-from eomgen.mechanics.instant.motion_kind import HELICAL as HELICAL
 
 # The centre of rotation of one body as its motion goes on
 from eomgen.mechanics.instant.motion_kind import Centrodes as Centrodes

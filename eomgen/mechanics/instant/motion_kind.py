@@ -79,6 +79,11 @@ class Kind:
     way: Curve | None = None
     point: str = ""
 
+    @property
+    def is_helical(self) -> bool:
+        """True if the body advances along the axis about which it turns, at any instant."""
+        return self.name == HELICAL
+
 
 @dataclass(frozen=True)
 class Kinds:

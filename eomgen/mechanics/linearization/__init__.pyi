@@ -30,7 +30,6 @@ from eomgen.mechanics.linearization.reduction import NAME as NAME
 # M du_i' + C du_i + K dq_i = B dw, dq_i' = F dq_i + E du_i
 from eomgen.mechanics.linearization.reduction import LinearEquations as LinearEquations
 from eomgen.mechanics.linearization.reference import EQUILIBRIUM as EQUILIBRIUM
-from eomgen.mechanics.linearization.reference import STEADY as STEADY
 
 # The steady motions that one belongs to
 from eomgen.mechanics.linearization.reference import Family as Family

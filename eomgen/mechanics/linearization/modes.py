@@ -15,7 +15,6 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside
 from eomgen.mechanics.linearization.reduction import LinearEquations, floats
-from eomgen.mechanics.linearization.reference import EQUILIBRIUM
 from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.mechanics.state import Entries, Numbers
 from eomgen.symbolic.exact import Conditions, Polynomial, book_form, simplest
@@ -403,7 +402,7 @@ def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
 
 def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
     """Modes of eigenvalue 0: at an equilibrium two zeros are one rigid motion; else each leads to neighbours."""
-    pairs = len(shapes) // 2 if small.is_second_order and small.reference.about == EQUILIBRIUM else 0
+    pairs = len(shapes) // 2 if small.is_second_order and small.reference.about_equilibrium else 0
     rigid = [Mode(0j, True, shape) for shape in shapes[: 2 * pairs : 2]]
     return rigid + [Mode(0j, False, shape) for shape in shapes[2 * pairs :]]
 
@@ -455,14 +454,14 @@ def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[M
         return "undecided", "two oscillations have come to be one: to first order they grow with the time"
     drift = drifting(small.numbers, sum(x == 0 for x in values))
     leads_on = drift is not None and _leads_on(small, drift)
-    if drift is not None and (small.reference.about == EQUILIBRIUM or not leads_on):
+    if drift is not None and (small.reference.about_equilibrium or not leads_on):
         others = "" if leads_on else "; terms of higher order may decide otherwise"
         return "unstable to first order", _grows_like_time(small, drift, values) + others
-    if any(x == 0 for x in values) and small.reference.about != EQUILIBRIUM and small.reference.moving:
+    if any(x == 0 for x in values) and not small.reference.about_equilibrium and small.reference.moving:
         return "stable to first order", "motions oscillate, fade, or go over into a steady motion nearby"
     if any(x == 0 for x in values):
         return "undecided", _drifting(modes)
-    if _is_undamped(small) and small.reference.about == EQUILIBRIUM:
+    if _is_undamped(small) and small.reference.about_equilibrium:
         added = ", that of the centrifugal forces included," if small.reference.moving else ""
         return "stable", f"the potential energy{added} has a minimum (Lagrange and Dirichlet)"
     return "stable to first order", "all motions oscillate or fade; terms of higher order may decide otherwise"

@@ -24,7 +24,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization.linearization import SmallMotions
 from eomgen.mechanics.linearization.reduction import LinearEquations, Reducing, floats
-from eomgen.mechanics.linearization.reference import EQUILIBRIUM, ReferenceMotion
+from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import NumberField, Numbers
 from eomgen.symbolic.expression import Fraction, Node, Scalar, tangent
@@ -134,7 +134,7 @@ class ParameterSlopes:
         """
         reference = self._reference
         symbols = reference.system.symbols
-        if reference.about == EQUILIBRIUM and not reference.moving:
+        if reference.about_equilibrium and not reference.moving:
             found = dict(zip(symbols.q, self._rest().tolist(), strict=True))
             return found | dict.fromkeys(symbols.u, 0.0)
         if not reference.is_exact:

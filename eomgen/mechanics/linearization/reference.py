@@ -49,6 +49,16 @@ class ReferenceMotion:
     family: Family | None = None
     beside: Mapping[Node, float] | None = None
 
+    @property
+    def about_equilibrium(self) -> bool:
+        """True if the state is an equilibrium."""
+        return self.about == EQUILIBRIUM
+
+    @property
+    def about_steady_motion(self) -> bool:
+        """True if the state is one of a steady motion."""
+        return self.about == STEADY
+
     @cached_property
     def is_exact(self) -> bool:
         """True if all coordinates and speeds are known in closed form."""

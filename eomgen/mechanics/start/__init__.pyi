@@ -13,9 +13,6 @@ from eomgen.mechanics.start.exact import ExactStart as ExactStart
 from eomgen.mechanics.start.exact import ScalarValues as ScalarValues
 from eomgen.mechanics.start.exact import Seeds as Seeds
 
-# t, q and u at the start, a number where there is no closed form; None where it is not known
-from eomgen.mechanics.start.exact import known_start as known_start
-
 # The scalars as numbers, None where something in one has no value; nan where it has none itself
 from eomgen.mechanics.start.exact import shown_numbers as shown_numbers
 

@@ -140,13 +140,13 @@ class ExactStart:
     def _sought(self) -> tuple[_Sought, ...]:
         return tuple(_Sought(self.system, self.at_rest, _drawn(self.system, seed)) for seed in SEEDS)
 
-
-def known_start(system: System) -> dict[Node, Scalar] | None:
-    """t, q and u at the start, a number where there is no closed form; None where it is not known."""
-    try:
-        return ExactStart(system).values or None
-    except DerivationError:  # the constraints do not close there: whoever needs a state says so
-        return None
+    @property
+    def known(self) -> dict[Node, Scalar] | None:
+        """t, q and u at the start, a number where there is no closed form; None where it is not known."""
+        try:
+            return self.values or None
+        except DerivationError:  # the constraints do not close there: whoever needs a state says so
+            return None
 
 
 def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scalar]:

@@ -3,12 +3,6 @@
 # States of the contacts of a model at its start
 from eomgen.mechanics.statics.contacts import ContactsAtStart as ContactsAtStart
 
-# Condition for a contact to be in the assumed state
-from eomgen.mechanics.statics.contacts import RestCondition as RestCondition
-
-# Conditions of the contacts that can end or slide, where their reactions are determinate
-from eomgen.mechanics.statics.contacts import conditions_of as conditions_of
-
 # One thing that acts
 from eomgen.mechanics.statics.cut_bodies import ActingForce as ActingForce
 
@@ -51,6 +45,9 @@ from eomgen.mechanics.statics.member_axis import MemberAxis as MemberAxis
 
 # One load of the structure
 from eomgen.mechanics.statics.virtual_work import Acting as Acting
+
+# Condition for a contact to be in the assumed state
+from eomgen.mechanics.statics.virtual_work import RestCondition as RestCondition
 
 # One reaction, or one unknown of the loads
 from eomgen.mechanics.statics.virtual_work import StaticReaction as StaticReaction

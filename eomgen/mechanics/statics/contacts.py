@@ -15,9 +15,8 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerat
 from eomgen.mechanics.free_bodies import Reactions, SystemFriction, equations_of_motion
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import Start
-from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
 from eomgen.model import Contact, Model
-from eomgen.symbolic.expression import Scalar, State, function, sqrt, symbols_of
+from eomgen.symbolic.expression import Scalar, State, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
 
 # -------- contacts at start -----------------------------------------------------------------------------------
@@ -306,60 +305,3 @@ def _lacking(names: Sequence[str]) -> str:
 #
 # At rest a rough contact does not slide: its friction is a reaction like others, as long as |F| <= mu N. A contact
 # that can only push, or only pull, needs N >= 0.
-
-
-@dataclass(frozen=True)
-class RestCondition:
-    """Condition for a contact to be in the assumed state.
-
-    Args:
-        constraint: the contact, or the body on a path.
-        kind: "pushes", "pulls" or "sticks".
-        margin: it is not negative where the condition holds [N].
-    """
-
-    constraint: str
-    kind: str
-    margin: Scalar
-
-    @property
-    def broken(self) -> str:
-        """Consequence of a negative margin, in words."""
-        return {
-            "pushes": f"contact '{self.constraint}' would have to pull",
-            "pulls": f"'{self.constraint}' would have to push",
-            "sticks": f"contact '{self.constraint}' slides: it would need more friction than mu N",
-        }[self.kind]
-
-
-def conditions_of(statics: StaticReactions) -> tuple[RestCondition, ...]:
-    """Conditions of the contacts that can end or slide, where their reactions are determinate."""
-    found = []
-    for contact in statics.system.scope.model.contacts:
-        name = contact.name
-        normal, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "tension"))
-        along = _resultant([_value(statics, f"reaction_{k}({name})") for k in ("ts" if contact.surface else "t")])
-        if contact.round:  # of all that it carries the part across its line
-            whole = _resultant([_value(statics, f"reaction_{axis}({name})") for axis in "xyz"])
-            normal = None if whole is None or along is None else sqrt(whole * whole - along * along)
-        if contact.unilateral and normal is not None:
-            found.append(RestCondition(name, "pushes", normal))
-        if contact.unilateral and pull is not None:
-            found.append(RestCondition(name, "pulls", pull))
-        if contact.mu is not None and normal is not None and along is not None:
-            most = statics.system.scope.value(contact.mu) * function("abs", normal)
-            found.append(RestCondition(name, "sticks", most - function("abs", along)))
-    return tuple(found)
-
-
-def _resultant(components: Sequence[Scalar | None]) -> Scalar | None:
-    """The magnitude; of one component with its sign; None where one is not determined."""
-    known = [x for x in components if x is not None]
-    if len(known) < len(components) or len(known) == 1:
-        return known[0] if len(known) == len(components) else None
-    return sqrt(sum((x * x for x in known), start=0))
-
-
-def _value(statics: StaticReactions, name: str) -> Scalar | None:
-    reaction: StaticReaction | None = statics.by_name.get(name)
-    return None if reaction is None else reaction.value

@@ -36,8 +36,10 @@ from eomgen.symbolic.expression import (
     Reference,
     Scalar,
     depends_on,
+    function,
     over,
     parse,
+    sqrt,
     substituted,
     times,
 )
@@ -311,6 +313,26 @@ class StaticReactions:
         structure.refuse_loose()
         return reactions_in(structure, only=only)
 
+    @property
+    def conditions(self) -> tuple[RestCondition, ...]:
+        """Conditions of the contacts that can end or slide, where their reactions are determinate."""
+        found = []
+        for contact in self.system.scope.model.contacts:
+            name = contact.name
+            normal, pull = (_value(self, f"{kind}({name})") for kind in ("reaction_n", "tension"))
+            along = _resultant([_value(self, f"reaction_{k}({name})") for k in ("ts" if contact.surface else "t")])
+            if contact.round:  # of all that it carries the part across its line
+                whole = _resultant([_value(self, f"reaction_{axis}({name})") for axis in "xyz"])
+                normal = None if whole is None or along is None else sqrt(whole * whole - along * along)
+            if contact.unilateral and normal is not None:
+                found.append(RestCondition(name, "pushes", normal))
+            if contact.unilateral and pull is not None:
+                found.append(RestCondition(name, "pulls", pull))
+            if contact.mu is not None and normal is not None and along is not None:
+                most = self.system.scope.value(contact.mu) * function("abs", normal)
+                found.append(RestCondition(name, "sticks", most - function("abs", along)))
+        return tuple(found)
+
 
 def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReactions:
     """Every reaction of a structure in which nothing can move; `only` as of `static_reactions_of`."""
@@ -397,3 +419,40 @@ def name_of(call: Call, names: Container[str]) -> str:
 def argument_name(argument: Reference | Expression) -> str:
     """An argument of a call as it was written."""
     return argument.name if isinstance(argument, Reference) else argument.text
+
+
+@dataclass(frozen=True)
+class RestCondition:
+    """Condition for a contact to be in the assumed state.
+
+    Args:
+        constraint: the contact, or the body on a path.
+        kind: "pushes", "pulls" or "sticks".
+        margin: it is not negative where the condition holds [N].
+    """
+
+    constraint: str
+    kind: str
+    margin: Scalar
+
+    @property
+    def broken(self) -> str:
+        """Consequence of a negative margin, in words."""
+        return {
+            "pushes": f"contact '{self.constraint}' would have to pull",
+            "pulls": f"'{self.constraint}' would have to push",
+            "sticks": f"contact '{self.constraint}' slides: it would need more friction than mu N",
+        }[self.kind]
+
+
+def _resultant(components: Sequence[Scalar | None]) -> Scalar | None:
+    """The magnitude; of one component with its sign; None where one is not determined."""
+    known = [x for x in components if x is not None]
+    if len(known) < len(components) or len(known) == 1:
+        return known[0] if len(known) == len(components) else None
+    return sqrt(sum((x * x for x in known), start=0))
+
+
+def _value(statics: StaticReactions, name: str) -> Scalar | None:
+    reaction: StaticReaction | None = statics.by_name.get(name)
+    return None if reaction is None else reaction.value

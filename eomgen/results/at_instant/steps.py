@@ -26,8 +26,6 @@ from eomgen.documents import (
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import (
     FIXED,
-    HELICAL,
-    POINT,
     BodyMotion,
     Centrodes,
     Curve,
@@ -139,7 +137,7 @@ def _of_kind(kind: Kind, axes: int) -> Iterator[Piece]:
         yield from (" at ", *_place(kind.at, axes))
     if kind.axis is not None and not (is_zero(kind.axis[0]) and is_zero(kind.axis[1])):
         yield from (", across " if kind.name == "plane motion" else ", along ", *_place(kind.axis, 3))
-    if kind.name == HELICAL and kind.pitch is not None:
+    if kind.is_helical and kind.pitch is not None:
         yield from (", advancing ", _formula(kind.pitch), " per radian")
     if kind.way is not None:
         yield from _way(kind.way)
@@ -439,7 +437,7 @@ PUSHES = {
     "tension": "the line of '{}'",
     "t": "the line of contact of '{}'",
     "couple": "the line at infinity, as '{}' lets nothing turn",
-    POINT: "the line at infinity, as '{}' is a point that does not turn",
+    "point": "the line at infinity, as '{}' is a point that does not turn",
 }
 
 

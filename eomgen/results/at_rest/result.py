@@ -13,14 +13,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
 from eomgen.mechanics.start import shown_numbers
-from eomgen.mechanics.statics import (
-    InfluenceLine,
-    RestCondition,
-    StaticReaction,
-    StaticReactions,
-    WorkEquation,
-    conditions_of,
-)
+from eomgen.mechanics.statics import InfluenceLine, RestCondition, StaticReaction, StaticReactions, WorkEquation
 from eomgen.model import Model, ModelOrPath, Values, model_at
 from eomgen.proof import Certificate, Check, DrawnPanel, ReportedWork, certify_structure, diagrams_drawn
 from eomgen.resources import doing
@@ -90,7 +83,7 @@ class Statics(Result):
     @cached_property
     def conditions(self) -> tuple[RestCondition, ...]:
         """Conditions on contacts that can open or slide."""
-        return conditions_of(self.found)
+        return self.found.conditions
 
     @cached_property
     def broken(self) -> tuple[str, ...]:

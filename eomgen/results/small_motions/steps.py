@@ -32,9 +32,7 @@ from eomgen.documents import (
 from eomgen.documents import Entry as Place
 from eomgen.errors import DerivationError
 from eomgen.mechanics.linearization import (
-    EQUILIBRIUM,
     MOST_WRITTEN,
-    STEADY,
     Family,
     Frequency,
     LinearEquations,
@@ -493,7 +491,7 @@ def reference_step(modes: Modes) -> Step:
     """The state, how it was found, and the family that a steady motion belongs to."""
     small, reference = modes.small, modes.small.reference
     symbols = reference.system.symbols
-    shown = symbols.q if reference.about == EQUILIBRIUM else (*symbols.q, *symbols.u)
+    shown = symbols.q if reference.about_equilibrium else (*symbols.q, *symbols.u)
     rows: list[tuple[Cell, ...]] = []
     for x in shown:
         exact: Cell = reference.exact.get(x, "")
@@ -506,7 +504,7 @@ def reference_step(modes: Modes) -> Step:
         statements += _family(modes, reference.family)
     if reference.place is not None and reference.place.statics.held:
         statements.append(prose(f"Driven coordinates are held there: {', '.join(reference.place.statics.held)}."))
-    if reference.about == EQUILIBRIUM:
+    if reference.about_equilibrium:
         statements += open_at_rest(reference.system)
     if small.left_out:
         one = len(small.left_out) == 1
@@ -518,9 +516,9 @@ def reference_step(modes: Modes) -> Step:
 def _words(reference: ReferenceMotion) -> str:
     if reference.beside is not None:
         return f"The start is accelerated. {_near(reference)} near it, about which this is:"
-    if reference.about == STEADY:
+    if reference.about_steady_motion:
         return "The steady motion nearest to the start:"
-    if reference.about != EQUILIBRIUM:
+    if not reference.about_equilibrium:
         return "The steady motion from the start:"
     if reference.moving:
         return "The relative equilibrium in the steady motion, nearest to the start:"
@@ -528,7 +526,7 @@ def _words(reference: ReferenceMotion) -> str:
 
 
 def _near(reference: ReferenceMotion) -> str:
-    return "The steady motion" if reference.about == STEADY else "The equilibrium"
+    return "The steady motion" if reference.about_steady_motion else "The equilibrium"
 
 
 def _family(modes: Modes, family: Family) -> list[Statement]:
@@ -567,7 +565,7 @@ def _others(modes: Modes, family: Family) -> list[Statement]:
 
 
 def _at_rest(modes: Modes) -> bool:
-    return modes.small.reference.about == EQUILIBRIUM
+    return modes.small.reference.about_equilibrium
 
 
 def _digits(x: float) -> str:
