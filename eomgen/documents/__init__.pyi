@@ -272,20 +272,23 @@ from eomgen.documents.proven_documents import with_start_reported as with_start_
 # The reactions of a system with their symbols, or why they cannot be derived
 from eomgen.documents.reaction_steps import letters_of as letters_of
 
+# A reaction that outputs can request by one name, with the letters that it has in derivations
+from eomgen.documents.reaction_values import RequestedReaction as RequestedReaction
+
 # A symbol for every reaction, none of them a name of the model
 from eomgen.documents.reaction_values import lettered as lettered
 
 # Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}
 from eomgen.documents.reaction_values import null_space as null_space
 
-# The symbol that a joint or a constraint gives a reaction of its own; None of sums, and where it gives none
-from eomgen.documents.reaction_values import own_symbol as own_symbol
-
 # The formula of every reaction
 from eomgen.documents.reaction_values import reaction_formulas as reaction_formulas
 
 # Name of a reaction: B_x, R_stick_x, N_wall, T_rope_2, M_E
 from eomgen.documents.reaction_values import reaction_name as reaction_name
+
+# Reactions of a system, without those that need the name of a body too
+from eomgen.documents.reaction_values import requested_reactions as requested_reactions
 
 # Meaning in words of a reaction that an output names
 from eomgen.documents.reaction_values import said as said

@@ -13,16 +13,14 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents import notation_of, own_symbol, reaction_name
+from eomgen.documents import RequestedReaction, notation_of, requested_reactions
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
 from eomgen.model import FUNCTIONS
 from eomgen.symbolic.expression import SLOPE, Call, Expression, Instruction, Reference, Scalar, parse, parse_equation
-from eomgen.symbolic.print import Symbol
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
@@ -171,24 +169,20 @@ class Reading:
         return {letter: formula for letter, formula in found.items() if letter not in own}
 
     @cached_property
-    def _named(self) -> tuple[tuple[NamedReaction, Call, str], ...]:
-        """(a reaction that can be requested, how, the number of its strand or ""); none where nothing is held."""
+    def _requested(self) -> tuple[tuple[RequestedReaction, Call], ...]:
+        """(a reaction that can be requested, how); none where something acts at no place."""
         found = []
         with suppress(DerivationError):
-            for each in named_reactions(Balance.of(self.system)):
-                function, _, arguments = each.name.removesuffix(")").partition("(")
-                owner, _, number = arguments.partition(", ")
-                strand = (Expression.number(int(number)),) if function == "tension" and number.isdigit() else ()
-                if strand or not number:
-                    found.append((each, Call(function, (Reference(owner), *strand)), number))
+            for each in requested_reactions(self.system):
+                strand = (Expression.number(int(each.number)),) if each.number else ()
+                found.append((each, Call(each.function, (Reference(each.argument), *strand))))
         return tuple(found)
 
     def _declared_letters(self) -> Iterator[tuple[str, Call]]:
         """The symbols that joints and constraints give their reactions, as plain names, and what each stands for."""
-        for each, call, _ in self._named:
-            symbol = own_symbol(Balance.of(self.system), each)
-            if symbol is not None:
-                yield plain_name(symbol), call
+        for each, call in self._requested:
+            if each.declared is not None:
+                yield plain_name(each.declared.base, each.declared.below), call
 
     def _as_derived(self, call: Call, owner: str) -> Call:
         """A component in the axes in which derivations have it: in space a joint's along those of its body."""
@@ -200,12 +194,8 @@ class Reading:
     def _reactions(self) -> Iterator[tuple[str, Call]]:
         """Letters of reactions and multipliers, and the function that each stands for."""
         model = self.system.scope.model
-        for each, call, number in self._named:
-            label = call.name.removeprefix("reaction_")
-            if not label.startswith("couple_"):
-                yield reaction_name(label, each.owner, number), self._as_derived(call, each.owner)
-                if label == "tension" and not number:
-                    yield reaction_name(label, each.owner, "1"), call
+        for each, call in self._requested:
+            yield from ((letter, self._as_derived(call, each.owner)) for letter in each.letters)
         joints = {name: body.joint.symbol for name, body in model.bodies.items() if body.joint is not None}
         owners = {**dict.fromkeys(model.constraints), **joints}
         for name, symbol in owners.items():
@@ -343,9 +333,9 @@ def _formula(argument: Reference | Expression) -> Expression:
     return argument if isinstance(argument, Expression) else parse(argument.name)
 
 
-def plain_name(symbol: Symbol) -> str:
-    """A symbol as a name of the text grammar: F_{\\mathrm{S}} is F_S."""
-    pieces = (re.sub(r"\\(?:mathrm|text|mathit|mathbf|mathsf)\b|[^\w]", "", x) for x in (symbol.base, symbol.below))
+def plain_name(*parts: str) -> str:
+    """A symbol, its base and its index, as a name of the text grammar: F_{\\mathrm{S}} is F_S."""
+    pieces = (re.sub(r"\\(?:mathrm|text|mathit|mathbf|mathsf)\b|[^\w]", "", x) for x in parts)
     return "_".join(filter(None, pieces))
 
 
