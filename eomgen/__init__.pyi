@@ -57,6 +57,8 @@ from eomgen.proof.check import Certificate as Certificate
 from eomgen.proof.check import Check as Check
 from eomgen.questions.outputs_answered import Answer as Answer
 from eomgen.questions.outputs_answered import solve as solve
+from eomgen.questions.reactions import FoundReactions as FoundReactions
+from eomgen.questions.reactions import reactions as reactions
 from eomgen.resources import OutOfPatience as OutOfPatience
 from eomgen.resources import patience as patience
 from eomgen.results.at_instant.result import Kinematics as Kinematics
@@ -79,6 +81,4 @@ from eomgen.simulation.result import Trajectory as Trajectory
 from eomgen.study.programs import InverseDynamics as InverseDynamics
 from eomgen.sweeps.runs_of_a_plan import Sweep as Sweep
 from eomgen.sweeps.runs_of_a_plan import sweep as sweep
-from eomgen.verbs.reactions import FoundReactions as FoundReactions
-from eomgen.verbs.reactions import reactions as reactions
 from eomgen.version import __version__ as __version__

@@ -244,7 +244,7 @@ def reactions_command(**options: Any) -> int:
     rates with its number at the start; with --at, exactly and as a number at that instant. --plot draws them along the
     motion from the start.
     """
-    from eomgen.verbs import reactions_document
+    from eomgen.questions import reactions_document
 
     drawn = (options["plot"] is not None, OF_PLOT)
     refuse_idle(view=drawn, time=(drawn[0], "says how much --plot draws: give both"))

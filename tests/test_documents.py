@@ -11,10 +11,10 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
+from eomgen.questions.reactions import reactions_document
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.verbs.reactions import reactions_document
 from eomgen.verbs.solve import solve_document
 
 MODELS = Path(__file__).parent.parent / "models"

@@ -21,11 +21,11 @@ from eomgen.mechanics.free_bodies.names_of_reactions import named_reactions
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
+from eomgen.questions.reactions import reactions
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.verbs.reactions import reactions
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 

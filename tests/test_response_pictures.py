@@ -14,7 +14,7 @@ from eomgen.cli import main
 from eomgen.documents.figures import VIEWS, resultants
 from eomgen.model.replaced import range_of
 from eomgen.results.small_motions.pictures import dashes, roots_over
-from eomgen.verbs.reaction_picture import turn_of
+from eomgen.runs.single_run import one_turn
 
 pytestmark = pytest.mark.slow
 
@@ -93,7 +93,7 @@ def test_values_at_the_colours_are_in_their_unit(tmp_path):
 def test_reactions_are_drawn_over_one_turn_of_the_drive(tmp_path):
     """phi = n t turns in 2 pi / n; at rates that change, or without a drive, there is no such time"""
     for name, turn in (("scotch_yoke", 2 * np.pi / 5), ("seeds/ch9_p6", None), ("four_bar", None)):
-        found = turn_of(eomgen.derive(MODELS / f"{name}.toml").graph.system)
+        found = one_turn(eomgen.derive(MODELS / f"{name}.toml").graph.system)
         assert found == (None if turn is None else pytest.approx(turn, rel=1e-12)), name
     path = tmp_path / "forces.svg"
     reported = CliRunner().invoke(

@@ -272,17 +272,14 @@ from eomgen.documents.proven_documents import with_start_reported as with_start_
 # The reactions of a system with their symbols, or why they cannot be derived
 from eomgen.documents.reaction_steps import letters_of as letters_of
 
+# The reactions of equations of motion as they are printed
+from eomgen.documents.reaction_values import PrintedReactions as PrintedReactions
+
 # A reaction that outputs can request by one name, with the letters that it has in derivations
 from eomgen.documents.reaction_values import RequestedReaction as RequestedReaction
 
 # A symbol for every reaction, none of them a name of the model
 from eomgen.documents.reaction_values import lettered as lettered
-
-# Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}
-from eomgen.documents.reaction_values import null_space as null_space
-
-# The formula of every reaction
-from eomgen.documents.reaction_values import reaction_formulas as reaction_formulas
 
 # Name of a reaction: B_x, R_stick_x, N_wall, T_rope_2, M_E
 from eomgen.documents.reaction_values import reaction_name as reaction_name
@@ -292,9 +289,6 @@ from eomgen.documents.reaction_values import requested_reactions as requested_re
 
 # Meaning in words of a reaction that an output names
 from eomgen.documents.reaction_values import said as said
-
-# (text as in an output, unit) of sums of indeterminate reactions that have one value, as far as short
-from eomgen.documents.reaction_values import sums_of_open as sums_of_open
 from eomgen.documents.read_back import HOW as HOW
 
 # Comparison of one document with its page

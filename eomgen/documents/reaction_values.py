@@ -9,7 +9,7 @@ few equations as can be, or by all of them, projected on the reaction. The short
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -51,6 +51,7 @@ from eomgen.symbolic.expression import (
     is_zero,
     operations,
     order,
+    parse,
     substituted,
 )
 from eomgen.symbolic.numeric import Work
@@ -565,29 +566,6 @@ def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> di
     return {**found, **({"reaction_definitions": [list(pair) for pair in definitions]} if definitions else {})}
 
 
-def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
-    """Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}."""
-    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
-    spaces = _null_space(readings, named_reactions(readings.ways[0].balance))
-    texts = iter(_texts(readings, [x for space in spaces for x in space.values()], frozenset())[1])
-    return [{name: next(texts) for name in space} for space in spaces]
-
-
-def sums_of_open(equations: EquationsOfMotion) -> tuple[tuple[str, str], ...]:
-    """(text as in an output, unit) of sums of indeterminate reactions that have one value, as far as short."""
-    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
-    names = named_reactions(readings.ways[0].balance)
-    units, graph = {named.name: named.unit for named in names}, equations.system.scope.graph
-    found = []
-    for combination in determinate_sums(_null_space(readings, names)):
-        reader, positive = readings.reader, equations.system.scope.positive
-        terms = [readable_value(reader, k, positive) * graph.symbol(name) for name, k in combination.items()]
-        text = to_text(sum(terms, start=0))
-        if len(text) <= LONGEST_SUM:
-            found.append((text, units[next(iter(combination))]))
-    return tuple(found)
-
-
 def _value(readings: Readings, named: NamedReaction) -> Scalar | None:
     try:
         return readings.with_accelerations(named.combination, named.given)
@@ -646,14 +624,58 @@ class ReactionFormula:
     message: str | None = None
 
 
-def reaction_formulas(equations: EquationsOfMotion) -> dict[str, ReactionFormula]:
-    """The formula of every reaction.
+@dataclass(frozen=True)
+class PrintedReactions:
+    """The reactions of equations of motion as they are printed.
 
     Raises:
         DerivationError: a body is unsupported; a force acts at no place.
     """
-    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
-    return {named.name: _formula(readings, named) for named in named_reactions(readings.ways[0].balance)}
+
+    equations: EquationsOfMotion
+
+    @cached_property
+    def _readings(self) -> Readings:
+        return readings_of(self.equations, Reader(positive=self.equations.system.scope.positive))
+
+    @cached_property
+    def _names(self) -> tuple[NamedReaction, ...]:
+        return tuple(named_reactions(self._readings.ways[0].balance))
+
+    @property
+    def formulas(self) -> dict[str, ReactionFormula]:
+        """The formula of every reaction."""
+        return {named.name: _formula(self._readings, named) for named in self._names}
+
+    @property
+    def null_space(self) -> list[dict[str, str]]:
+        """Self-stresses, which may be added to indeterminate reactions: for each free component {name: coefficient}."""
+        spaces = _null_space(self._readings, self._names)
+        texts = iter(_texts(self._readings, [x for space in spaces for x in space.values()], frozenset())[1])
+        return [{name: next(texts) for name in space} for space in spaces]
+
+    @property
+    def sums(self) -> dict[str, str]:
+        """{text as in an output: unit} of sums of indeterminate reactions that have one value, as far as short."""
+        system, readings = self.equations.system, self._readings
+        units = {named.name: named.unit for named in self._names}
+        found = {}
+        for combination in determinate_sums(_null_space(readings, self._names)):
+            terms = [
+                readable_value(readings.reader, k, system.scope.positive) * system.scope.graph.symbol(name)
+                for name, k in combination.items()
+            ]
+            text = to_text(sum(terms, start=0))
+            if len(text) <= LONGEST_SUM:
+                found[text] = units[next(iter(combination))]
+        return found
+
+    def laws_in(self, texts: Iterable[str]) -> dict[str, str]:
+        """{psi': law, psi'': law} of the names of driven rates and accelerations that stand in formulas."""
+        names = {name for text in texts for kind, name in parse(text, longest=len(text)).code if kind == "name"}
+        return {
+            x.name: to_text(book_form(law)) for x, law in self.equations.system.scope.laws.items() if x.name in names
+        }
 
 
 def _formula(readings: Readings, named: NamedReaction) -> ReactionFormula:

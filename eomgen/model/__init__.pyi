@@ -283,6 +283,9 @@ from eomgen.model.replaced import Values as Values
 # True if values given in Python are several, perhaps an array with a unit, and not one value
 from eomgen.model.replaced import are_several as are_several
 
+# (name, text) of each NAME=VALUE
+from eomgen.model.replaced import assignments as assignments
+
 # The equation of a text that a person typed, in SI; one that is written already stays as it is
 from eomgen.model.replaced import equation_in as equation_in
 

@@ -172,6 +172,21 @@ def taken_of(model: Model, settled: Settled) -> Taken:
     return Taken(settled.name, settled.typed, number, text)
 
 
+def assignments(given: Iterable[str], example: str) -> list[tuple[str, str]]:
+    """(name, text) of each NAME=VALUE.
+
+    Raises:
+        UsageError: a word that is no assignment; `example` is its fix.
+    """
+    pairs = []
+    for word in given:
+        name, sign, text = word.partition("=")
+        if not sign or not name.strip() or not text.strip():
+            raise UsageError(f"'{word}' is no assignment", fix=f"write {example}")
+        pairs.append((name.strip(), text.strip()))
+    return pairs
+
+
 def equation_typed(model: Model, text: str, *, declared: bool = False) -> tuple[WrittenEquation, tuple[Taken, ...]]:
     """An equation that a person typed, in SI, and what was taken of it.
 

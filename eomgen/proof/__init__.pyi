@@ -12,11 +12,8 @@ from eomgen.proof.at_a_state import NumericState as NumericState
 # Check the equations of a system
 from eomgen.proof.certificate import certify as certify
 
-# Checks that each number at the start is the value of its formula with 50 digits, printed or as it was solved
-from eomgen.proof.certificate import reaction_numbers as reaction_numbers
-
-# Check of each text at the start, in pieces and at random, by the bodies' equations solved there in doubles
-from eomgen.proof.certificate import reaction_texts as reaction_texts
+# Check the equations, every formula of a reaction, and its number at the start
+from eomgen.proof.certificate import certify_reactions as certify_reactions
 from eomgen.proof.check import SIGNS as SIGNS
 
 # The proof that comes with a result

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.mechanics.free_bodies import SystemFriction
+from eomgen.mechanics.start import Start
 from eomgen.proof.check import Certificate
 from eomgen.proof.identities import identity_checks
 from eomgen.proof.masses import other_data
@@ -85,6 +87,25 @@ def certify_standing(equations: EquationsOfMotion) -> Certificate:
 
 
 # -------- reactions -------------------------------------------------------------------------------------------
+
+
+def certify_reactions(
+    equations: EquationsOfMotion, texts: Mapping[str, str], values: Mapping[str, float]
+) -> Certificate:
+    """Check the equations, every formula of a reaction, and its number at the start, where that is known.
+
+    Args:
+        texts: of each reaction by its name, a function of q, u, t and accelerations.
+        values: of each reaction by its name, at the start.
+    """
+    found = certify(equations) + reaction_texts(equations, texts)
+    try:
+        symbols, begun = equations.symbols, Start.of(equations.system).values
+        numbers = {symbols.t: 0.0, **{x: begun[x.name] for x in (*symbols.q, *symbols.u)}}
+        start = NumericState(equations, equations.system.scope.known_exactly, numbers)
+    except (MissingValues, DerivationError):
+        return found
+    return found + reaction_numbers(start, texts, values)
 
 
 def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> Iterator[Check]:

@@ -3,8 +3,11 @@
 # One output: exact, as a number, or why there is none
 from eomgen.questions.outputs_answered import Answer as Answer
 
-# Answers to the outputs of a model, with their proof
-from eomgen.questions.outputs_answered import Answers as Answers
-
 # Every output of the model, in its order
 from eomgen.questions.outputs_answered import solve as solve
+
+# Positions from which a motion starts at rest, by name
+from eomgen.questions.reactions import positions_at_rest as positions_at_rest
+
+# Every reaction, as `reactions` finds it, in words and for machines
+from eomgen.questions.reactions import reactions_document as reactions_document

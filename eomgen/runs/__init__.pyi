@@ -23,6 +23,9 @@ from eomgen.runs.simulator import with_controlled as with_controlled
 # time of a motion that a page shows [s]
 from eomgen.runs.single_run import PAGE_TIME as PAGE_TIME
 
+# Longest time for one turn among the joints that are driven at a constant rate [s]; None if there is none
+from eomgen.runs.single_run import one_turn as one_turn
+
 # Stepping of a motion for which no time was given
 from eomgen.runs.single_run import page_stepping as page_stepping
 

@@ -16,6 +16,7 @@ from eomgen.codegen import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.frozen import with_fields
+from eomgen.mechanics.dynamics import System
 from eomgen.model import Typed, WrittenEquation
 from eomgen.proof import RunProof
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
@@ -36,8 +37,8 @@ from eomgen.simulation import (
     joined,
     refuse_bad_run,
 )
-from eomgen.symbolic.expression import Expression
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.expression import Expression, is_zero, symbols_of
+from eomgen.symbolic.numeric import number_of, tolerances
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
@@ -248,3 +249,21 @@ def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:
         raise DerivationError(
             what, f"constraints.{fork.constraints[0]}", "give it start speeds, or start near that position"
         )
+
+
+def one_turn(system: System) -> float | None:
+    """Longest time for one turn among the joints that are driven at a constant rate [s]; None if there is none."""
+    scope, driven = system.scope, [q for q in system.symbols.q if system.scope.model.coordinates[q.name].driven]
+    turned = {
+        x
+        for link in system.motion.links
+        for s, (w, _) in zip(link.s, link.S, strict=False)
+        if not all(map(is_zero, w))
+        for x in symbols_of((s,))
+    }
+    rates = [scope.names[f"{q.name}'"] for q in driven if q in turned]
+    parameters = set(system.symbols.parameters.values())
+    steady = [rate for rate in rates if parameters.issuperset(symbols_of((rate,)))]
+    known = scope.known_exactly
+    sizes = [abs(number_of(rate, known)) for rate in steady if not is_zero(rate)]
+    return math.tau / min(sizes) if sizes else None

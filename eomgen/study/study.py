@@ -22,6 +22,8 @@ from functools import cached_property
 from itertools import islice, product
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import RECALLED, dataclass, recalled
 from eomgen.mechanics.constraints import Rank, holds_identically
@@ -37,7 +39,15 @@ from eomgen.mechanics.dynamics import (
     system_of,
     with_accelerations,
 )
-from eomgen.mechanics.free_bodies import SystemFriction, equations_of_motion, values_at_a_state, with_friction
+from eomgen.mechanics.free_bodies import (
+    Balance,
+    NamedReaction,
+    SystemFriction,
+    equations_of_motion,
+    named_reactions,
+    values_at_a_state,
+    with_friction,
+)
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
@@ -180,6 +190,39 @@ class Study:
         from eomgen.mechanics.free_bodies import Reactions
 
         return Reactions.of(self.system)
+
+    @cached_property
+    def named_reactions(self) -> tuple[NamedReaction, ...]:
+        """The reactions as outputs name them, each with its unit and the components of which it consists.
+
+        Raises:
+            DerivationError: an unsupported body; a force that acts at no place.
+        """
+        return tuple(named_reactions(Balance.of(self.system)))
+
+    @property
+    def reactions_at_start(self) -> dict[str, float]:
+        """The reactions that have a single value at the start, in numbers.
+
+        Raises:
+            MissingValues: a parameter that they need has no value.
+            DerivationError: a force jumps there; an unsupported body.
+            ModelError: a free coordinate moves no mass.
+        """
+        from eomgen.codegen import compiled, parameter_vector
+        from eomgen.simulation import ReactionColumns
+
+        p, symbols, start = parameter_vector(self.model), self.system.symbols, list(self.state_at_start.values())
+        known = {x: Fraction(value) for x, value in zip((*symbols.q, *symbols.u), start, strict=True)}
+        refuse_jump(self.system, known | {symbols.t: Fraction(0)})
+        columns = ReactionColumns(self.reactions, compiled(self.program, "numpy"))
+        values = columns.along(np.zeros(1), np.array([start]), p)[0]
+        rounding = tolerances.ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
+        return {
+            name: float(x) if abs(x) > rounding else 0.0
+            for name, x in zip(columns.names, values, strict=True)
+            if math.isfinite(x)
+        }
 
     @cached_property
     def reaction_values(self) -> dict[str, Scalar]:

@@ -24,9 +24,6 @@ from eomgen.verbs.kinematics import kinematics_requested as kinematics_requested
 # A commented starter model NAME.toml, or the example as it is; never over a file that is there
 from eomgen.verbs.new import new_document as new_document
 
-# Every reaction, as `reactions` finds it, in words and for machines
-from eomgen.verbs.reactions import reactions_document as reactions_document
-
 # The JSON Schema of a model file
 from eomgen.verbs.schema import schema_document as schema_document
 

@@ -12,9 +12,8 @@ from typing import Any
 from eomgen.documents import nearest_name
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
-from eomgen.model import Coordinate, Input, Model, Table, samples
+from eomgen.model import Coordinate, Input, Model, Table, assignments, samples
 from eomgen.symbolic.expression import Expression
-from eomgen.verbs.assignments import assignments
 
 EXAMPLE = "--follow theta=run.csv"
 LARGEST = 100_000_000  # bytes of a file

@@ -7,9 +7,9 @@ from dataclasses import replace
 from eomgen.documents import Document
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.model import Model, range_of, requested_typed
+from eomgen.model import Model, assignments, range_of, requested_typed
 from eomgen.sweeps import TABLE, Stepped, planned, spread_of, sweep_reported, swept
-from eomgen.verbs.assignments import assignments, typed
+from eomgen.verbs.assignments import typed
 
 
 @dataclass(frozen=True)

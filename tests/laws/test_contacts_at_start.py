@@ -18,8 +18,8 @@ from eomgen.mechanics.kinematics.scene import ContactMode
 from eomgen.mechanics.start import state as open_constraints
 from eomgen.mechanics.start.state import Start
 from eomgen.proof.contact_phases import leaving_at_start
+from eomgen.questions.reactions import reactions_document
 from eomgen.simulation.phase_models import PhaseModels
-from eomgen.verbs.reactions import reactions_document
 
 MODELS = Path(__file__).parents[2] / "models"
 BALL = """

@@ -18,9 +18,9 @@ from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.reactions import holding_of
 from eomgen.mechanics.equilibrium.search import Equilibria, Equilibrium
 from eomgen.model.model import Model
+from eomgen.questions.reactions import reactions_document
 from eomgen.study import Study
 from eomgen.symbolic.print.text import to_text
-from eomgen.verbs.reactions import reactions_document
 
 pytestmark = pytest.mark.slow
 

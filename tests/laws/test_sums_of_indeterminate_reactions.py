@@ -8,7 +8,7 @@ import pytest
 
 import eomgen
 from eomgen.proof import structure
-from eomgen.verbs.reactions import reactions
+from eomgen.questions.reactions import reactions
 
 TABLE = """
 eomgen = 1

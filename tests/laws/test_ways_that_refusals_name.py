@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import ModelError
-from eomgen.verbs.reactions import reactions
+from eomgen.questions.reactions import reactions
 
 NODE = """
 eomgen = 1

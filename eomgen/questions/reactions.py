@@ -1,40 +1,37 @@
-"""eomgen reactions: every reaction, as a formula, or at one instant of the motion exactly and in numbers."""
+"""Model -> FoundReactions: every reaction, as a formula, or at one instant of the motion exactly and in numbers."""
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from eomgen import pipeline
-from eomgen.codegen import parameter_vector
 from eomgen.documents import (
     Document,
     Found,
     Lines,
     Listing,
+    Picture,
+    PrintedReactions,
     Quantity,
     Statement,
     listed,
     listing_markdown,
-    null_space,
+    nearest_name,
     plain_document,
     prose,
     proven,
-    reaction_formulas,
+    run_picture,
     said,
-    sums_of_open,
     with_start_reported,
 )
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.dynamics import System, refuse_jump, system_of, with_nodes_balanced
-from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
+from eomgen.mechanics.dynamics import System, with_nodes_balanced
+from eomgen.mechanics.free_bodies import Balance, NamedReaction
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import (
     FUNCTIONS,
@@ -45,21 +42,18 @@ from eomgen.model import (
     Table,
     Values,
     WrittenEquation,
+    assignments,
     equation_in,
     model_at,
     with_values,
 )
-from eomgen.proof import Certificate, Check, NumericState, reaction_numbers, reaction_texts
-from eomgen.proof import certify as certificate_of_equations
-from eomgen.questions import Answers, solve
+from eomgen.proof import Certificate, Check, certify_reactions
+from eomgen.questions.outputs_answered import Answers, solve
 from eomgen.resources import doing
 from eomgen.results import why_not_at_rest
-from eomgen.simulation import ReactionColumns
-from eomgen.symbolic.exact import book_form
-from eomgen.symbolic.expression import Fraction, parse
-from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.print import to_text
-from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
+from eomgen.runs import one_turn, run_of_a_page
+from eomgen.study import Study, study_of_modes
+from eomgen.symbolic.expression import parse
 
 NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
@@ -123,8 +117,8 @@ def reactions(
     model = with_nodes_balanced(model_at(model, parameters, start))
     held = bool(model.unknowns_in_loads())
     equations = None if held else pipeline.derive(model, "kinetostatic")
-    system = system_of(model) if equations is None else equations.system
-    requested = [named for named in named_reactions(Balance.of(system)) if _function(named.name) in FUNCTIONS]
+    study = _study(model, equations)
+    requested = [named for named in study.named_reactions if _function(named.name) in FUNCTIONS]
     answered = partial(_answers, _at_rest(model, from_rest), at=at, from_rest=bool(from_rest))
     found: dict[str, Quantity]
     proof: Callable[[Mapping[str, Quantity]], Certificate]
@@ -135,7 +129,7 @@ def reactions(
     else:
         found, proof = answered({named.name: named.unit for named in requested})
     open_ = any(OPEN in (answer.message or "") for answer in found.values())
-    reported = dict(sums_of_open(equations.in_print)) if open_ and equations is not None else {}
+    reported = PrintedReactions(equations.in_print).sums if open_ and equations is not None else {}
     return FoundReactions(found, equations, proof, *(answered(reported) if reported else ({}, proof)))
 
 
@@ -158,14 +152,16 @@ def reactions_document(
     """
     found = reactions(model, at=at, from_rest=from_rest)
     equations = found.equations
-    system = system_of(model) if equations is None else equations.system
-    requested = [named for named in named_reactions(Balance.of(system)) if named.name in found]
+    study = _study(model, equations)
+    system = study.system
+    requested = [named for named in study.named_reactions if named.name in found]
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
     starting = _at_rest(model, from_rest)
-    space = null_space(equations.graph) if open_ and equations is not None else []
-    laws = {} if equations is None else _laws_in(equations, found)
+    space = PrintedReactions(equations.graph).null_space if open_ and equations is not None else []
+    texts = [answer.exact for answer in found.values() if answer.exact is not None]
+    laws = {} if equations is None else PrintedReactions(equations.in_print).laws_in(texts)
     more = {**({"laws": laws} if laws else {}), **({"null_space": space} if space else {})}
     more |= {"sums": found.sums} if found.sums else {}
     document = plain_document(
@@ -181,8 +177,6 @@ def reactions_document(
     )
     document = with_start_reported(document, starting)
     if plot is not None:
-        from eomgen.verbs.reaction_picture import reaction_picture
-
         reaction_picture(starting, view, time).save(plot)
     return proven(document, found.certify() if certify and found else None)
 
@@ -200,6 +194,11 @@ def _without_sliding(model: Model) -> tuple[str, ...]:
     return (f"{here}; formulas of sliding: eomgen derive --method kinetostatic",) if names else ()
 
 
+def _study(model: Model, equations: Equations | None) -> Study:
+    """The study of a model; where unknowns in the loads hold it, with all its contacts closed."""
+    return study_of_modes(model) if equations is None else equations.study
+
+
 def _function(name: str) -> str:
     return name.partition("(")[0]
 
@@ -207,10 +206,14 @@ def _function(name: str) -> str:
 # -- as formulas -----------------------------------------------------------------------------------
 
 
-def _formulas(equations: Equations, requested: list[NamedReaction]) -> dict[str, Quantity]:
+def _formulas(equations: Equations, requested: Iterable[NamedReaction]) -> dict[str, Quantity]:
     """Every reaction as a formula, and its value at the start."""
-    found = reaction_formulas(equations.in_print)
-    values, missing = _at_start(equations)
+    found = PrintedReactions(equations.in_print).formulas
+    values, missing = dict[str, float](), ""
+    try:
+        values = equations.study.reactions_at_start
+    except (MissingValues, DerivationError, ModelError) as error:
+        missing = f"{error.what}; {error.fix}" if isinstance(error, DerivationError) and error.fix else error.what
     answered = {}
     for named in requested:
         formula = found[named.name]
@@ -221,38 +224,11 @@ def _formulas(equations: Equations, requested: list[NamedReaction]) -> dict[str,
     return answered
 
 
-def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
-    """({name: value}, the reason if there are none, or None), only of reactions with a single value at the start."""
-    try:
-        p = parameter_vector(equations.model)
-        system = equations.graph.system
-        start = zip((*system.symbols.q, *system.symbols.u), map(float, equations.start()), strict=True)
-        refuse_jump(system, {x: Fraction(value) for x, value in start} | {system.symbols.t: Fraction(0)})
-        columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
-        values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
-    except (MissingValues, DerivationError, ModelError) as error:
-        return {}, f"{error.what}; {error.fix}" if isinstance(error, DerivationError) and error.fix else error.what
-    rounding = tolerances.ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
-    return {
-        n: float(x) if abs(x) > rounding else 0.0
-        for n, x in zip(columns.names, values, strict=True)
-        if math.isfinite(x)
-    }, None
-
-
 def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> Certificate:
     """The equations of motion, then every formula and its number at the start."""
     texts = {name: answer.exact for name, answer in found.items() if answer.exact is not None}
     values = {name: answer.value for name, answer in found.items() if answer.value is not None}
-    graph = equations.graph
-    certificate = certificate_of_equations(graph)
-    try:
-        symbols, start = graph.symbols, equations.start()
-        numbers = {symbols.t: 0.0, **dict(zip((*symbols.q, *symbols.u), start.tolist(), strict=True))}
-        state = NumericState(graph, graph.system.scope.known_exactly, numbers)
-    except (MissingValues, DerivationError):
-        return certificate + reaction_texts(graph, texts)
-    return certificate + reaction_texts(graph, texts) + reaction_numbers(state, texts, values)
+    return certify_reactions(equations.graph, texts, values)
 
 
 # -- at an instant, or from rest -------------------------------------------------------------------
@@ -304,9 +280,28 @@ def _at_rest(model: Model, given: Values | Sequence[str]) -> Model:
     Raises:
         UsageError: no coordinate of that name, a driven one, or no expression of parameters.
     """
-    values = given if isinstance(given, Mapping) else dict(assignments(split_words(given), '"theta=0"'))
-    refuse_no_place(model, values)
+    values = positions_at_rest(model, given, '"theta=0"')
     return with_values(model, None, values, options=("parameters", "from_rest")).model
+
+
+def positions_at_rest(model: Model, given: Values | Iterable[str], example: str) -> Values:
+    """Positions from which a motion starts at rest, by name; several may stand in one word, "theta=0, phi=1".
+
+    Args:
+        example: the fix of a word that is no assignment.
+    Raises:
+        UsageError: such a word; a name that is no free coordinate.
+    """
+    words = () if isinstance(given, Mapping) else (word for text in given for word in re.split(r",(?=[^()]*=)", text))
+    values = given if isinstance(given, Mapping) else dict(assignments(words, example))
+    for name in values:
+        if name not in model.coordinates:
+            what = f"--from-rest: there is no coordinate '{name}'"
+            raise UsageError(what, fix=nearest_name(name, model.coordinates))
+        if model.coordinates[name].driven:
+            free = listed(q for q, part in model.coordinates.items() if not part.driven)
+            raise UsageError(f"--from-rest: '{name}' is driven, it moves as given", fix=f"there are {free}")
+    return values
 
 
 def _checked(model: Model, where: str, **changes: Any) -> Model:
@@ -340,14 +335,6 @@ def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str
     return Listing(tuple(rows))
 
 
-def _laws_in(equations: Equations, found: Mapping[str, Quantity]) -> dict[str, str]:
-    """{psi': law, psi'': law} of the names of driven rates and accelerations that stand in the formulas."""
-    texts = [answer.exact for answer in found.values() if answer.exact is not None]
-    names = {name for text in texts for kind, name in parse(text, longest=len(text)).code if kind == "name"}
-    laws = equations.in_print.system.scope.laws
-    return {x.name: to_text(book_form(law)) for x, law in laws.items() if x.name in names}
-
-
 def _law_statements(laws: Mapping[str, str]) -> Iterable[Statement]:
     """States the laws of the driven coordinates, once."""
     if laws:
@@ -375,3 +362,23 @@ def _sum_statements(sums: Mapping[str, Quantity]) -> Iterable[Statement]:
 
 def _times(share: str, k: str) -> str:
     return {"1": k, "-1": f"-{k}"}.get(share, f"({share})*{k}" if " " in share else f"{share}*{k}")
+
+
+# -- as a picture ---------------------------------------------------------------------------------
+
+
+SAMPLES = 721  # of a cycle
+
+
+def reaction_picture(model: Model, view: str | None = None, time: float | None = None) -> Picture:
+    """Reactions along the motion from the start.
+
+    Args:
+        view: "polar" or "resultants"; None: of hinges in the plane the first.
+        time: the duration [s]; None: one turn of the driven joint, else as long as a page shows it.
+    Raises:
+        RunFailed: nothing carries such a force; the motion ends at once.
+    """
+    equations = pipeline.derive(model)
+    run, _ = run_of_a_page(equations, time or one_turn(equations.graph.system), SAMPLES)
+    return run_picture(run, view or ("polar" if model.space == "plane" else "resultants"), title=model.name)
