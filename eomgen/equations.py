@@ -29,7 +29,6 @@ from eomgen.mechanics.dynamics import (
     EquationsOfMotion,
     System,
     derived_by,
-    reported_of_nodes,
     system_of,
 )
 from eomgen.mechanics.free_bodies import Inverse, Reactions, equations_of_motion
@@ -87,7 +86,7 @@ class Equations(Result):
     @property
     def assumptions(self) -> tuple[str, ...]:
         """Assumptions about massless nodes and contacts: "floor assumed closed: h has no value"."""
-        return (*reported_of_nodes(self.model), *self.study.assumptions)
+        return self.study.assumptions
 
     def __repr__(self) -> str:
         names = self.coordinates[:SHOWN] + ("...",) * (len(self.coordinates) > SHOWN)

@@ -16,9 +16,8 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.identification import Regressor, groups_checked, regressor_of
-from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.mechanics.free_bodies import named_reactions
-from eomgen.model import Model, ModelOrPath, Values, model_at
+from eomgen.model import Model, ModelOrPath, Values
 from eomgen.proof import (
     Certificate,
     Check,
@@ -34,7 +33,7 @@ from eomgen.proof import (
     unwritten,
 )
 from eomgen.resources import doing
-from eomgen.study import Matrices
+from eomgen.study import Matrices, model_to_study
 from eomgen.symbolic.numeric import tolerances
 from eomgen.version import __version__
 
@@ -343,7 +342,7 @@ def generate(
     Raises:
         UsageError: a language that there is none; an integrator of what is not in C, or whose contacts change.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     if integrator:
         _refuse_integrator(model, targets)
     doubles = [target.name for target in targets_named(targets) if target.single is None]  # refuses what is none

@@ -11,11 +11,11 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import recalled
 from eomgen.mechanics.constraints import limits_passed
-from eomgen.mechanics.dynamics import METHODS, with_nodes_balanced
+from eomgen.mechanics.dynamics import METHODS
 from eomgen.mechanics.kinematics import ContactModes
-from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, model_at, with_inputs
+from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, with_inputs
 from eomgen.resources import doing, growing
-from eomgen.study import InverseDynamics, Study, study_of, study_of_modes
+from eomgen.study import InverseDynamics, Study, model_to_study, study_of, study_of_modes
 from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
@@ -48,7 +48,7 @@ def derive(
         DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is
             unsupported, or a force has no point of application.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", fix=f"one of {', '.join(METHODS)}")
     model.refuse_motion()
@@ -93,7 +93,7 @@ def simulator(
     from eomgen.simulation import Stepping
 
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
-    return Simulator(with_nodes_balanced(model_at(model)), derive, how, target)
+    return Simulator(model_to_study(model), derive, how, target)
 
 
 def simulate_many(
@@ -166,7 +166,7 @@ def simulate(
     from eomgen.runs import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
     from eomgen.simulation import SAMPLES
 
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     controllers = controllers_of(model, inputs or {})
     model = with_inputs(model, {name: value for name, value in (inputs or {}).items() if name not in controllers})
     if controllers:

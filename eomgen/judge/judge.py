@@ -62,10 +62,10 @@ from eomgen.judge.verdict import (
     causes_of,
     kind_of_equation,
 )
-from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import AtRest, ModelOrPath, equation_in, model_at
+from eomgen.model import AtRest, ModelOrPath, equation_in
 from eomgen.proof import JudgedEquation
 from eomgen.resources import doing
+from eomgen.study import model_to_study
 from eomgen.symbolic.expression import (
     SLOPE,
     Node,
@@ -93,7 +93,7 @@ def verify(
     Raises:
         ExpressionError: it cannot be read; column and length say where.
     """
-    model = with_nodes_balanced(model_at(model))
+    model = model_to_study(model)
     return Judge(Case(model, bool(from_rest))).verdict(equation, at=at, kind=kind)
 
 

@@ -32,11 +32,11 @@ from eomgen.documents import (
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import system_of, with_nodes_balanced
+from eomgen.mechanics.dynamics import system_of
 from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.statics import ContactsAtStart, released_in
-from eomgen.model import Model, ModelOrPath, Typed, Values, model_at
+from eomgen.model import Model, ModelOrPath, Typed, Values
 from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof import Check, pictures_reported, states_shown
 from eomgen.results import virtual_work_step
@@ -44,6 +44,7 @@ from eomgen.runs import PAGE_TIME, page_stepping, page_time
 from eomgen.runs import run as simulated
 from eomgen.scene import VirtualDisplacement, picture_reported
 from eomgen.simulation import Stepping, Trajectory
+from eomgen.study import model_to_study
 from eomgen.symbolic.numeric import tolerances
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
@@ -218,7 +219,7 @@ def virtual_displacement(
         UsageError: another ending; there is no such reaction.
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
-    found, _ = released(with_nodes_balanced(model_at(model, parameters, start)), reaction)
+    found, _ = released(model_to_study(model, parameters, start), reaction)
     if path is None:
         return PlayerFrame(_displacement_page(found))
     refuse_ending(str(path))

@@ -17,13 +17,13 @@ from eomgen.codegen import TestVector, compiled
 from eomgen.documents import Document, Lines, plain_document, proven, with_start_reported
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import Model, ModelOrPath, Taken, Typed, TypedNumbers, Values, model_at, seconds
+from eomgen.model import Model, ModelOrPath, Taken, Typed, TypedNumbers, Values, seconds
 from eomgen.page.contents import framed
 from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.resources import doing
 from eomgen.runs import run_of_a_page
+from eomgen.study import model_to_study
 
 SAMPLES = 401  # of a run in a page
 LIKE = "write --slider m=0.1:5"
@@ -120,7 +120,7 @@ def play(
     Raises:
         UsageError: nothing moves; a slider of an unknown name.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     ranges, _ = slider_ranges(model, sliders, declared=False)
     options = PlayerOptions(ranges, True, trail, forces, speed)
     found = played(model, None if time is None else seconds(time), options)

@@ -28,8 +28,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.generated import Generated
-from eomgen.mechanics.dynamics import with_nodes_balanced
-from eomgen.model import Model, ModelOrPath, Typed, Values, bytes_at, loads, model_at, seconds
+from eomgen.model import Model, ModelOrPath, Typed, Values, bytes_at, loads, seconds
 from eomgen.page.contents import PLAYER, SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
 from eomgen.page.figure import figure_of, motion_drawings, rest_figure
 from eomgen.page.formats import FORMATS, FilesByName, written_as
@@ -50,6 +49,7 @@ from eomgen.results import Statics, inertia, kinematics, linearize, statics
 from eomgen.runs import PAGE_TIME, run_of_a_page
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
+from eomgen.study import model_to_study
 
 SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
 MOST_RELEASED = 8  # reactions whose virtual displacement a page plays
@@ -191,7 +191,7 @@ def report(
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
     lasts = None if time is None else seconds(time)
-    subject = Subject(with_nodes_balanced(model_at(model, parameters, start)), lasts, certify, origin, source)
+    subject = Subject(model_to_study(model, parameters, start), lasts, certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         found, texts = _read_back(subject, found, form, Path(path).name)

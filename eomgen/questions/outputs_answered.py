@@ -23,7 +23,7 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates, with_nodes_balanced
+from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates
 from eomgen.mechanics.instant import InstantKinematics, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
@@ -35,13 +35,12 @@ from eomgen.model import (
     OutputSource,
     Unit,
     Values,
-    model_at,
 )
 from eomgen.proof import AnswerSolver, Certificate, certify_answers
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.results import Linearization, linearize, why_not_at_rest
 from eomgen.simulation import is_of_a_run
-from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, study_at_rest
+from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, model_to_study, study_at_rest
 from eomgen.symbolic.exact import book_form
 from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
 from eomgen.symbolic.numeric import FLOAT, Work, evaluate, number_of, transplanted
@@ -105,7 +104,7 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
     Raises:
         ModelError: no output can be answered as the model is wrong: say, a coordinate that moves no mass.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     solver, found, wrong, stopped = _solver_of(model), dict[str, Answer](), [], ""
     for name, output in model.outputs.items():
         if stopped:

@@ -30,7 +30,7 @@ from eomgen.documents import (
 )
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.dynamics import System, with_nodes_balanced
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Balance, NamedReaction
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import (
@@ -44,7 +44,6 @@ from eomgen.model import (
     WrittenEquation,
     assignments,
     equation_in,
-    model_at,
     with_values,
 )
 from eomgen.proof import Certificate, Check, certify_reactions
@@ -52,7 +51,7 @@ from eomgen.questions.outputs_answered import Answers, solve
 from eomgen.resources import doing
 from eomgen.results import why_not_at_rest
 from eomgen.runs import one_turn, run_of_a_page
-from eomgen.study import Study, study_of_modes
+from eomgen.study import Study, model_to_study, study_of_modes
 from eomgen.symbolic.expression import parse
 
 NO_VALUE = "it has no single value at the start"
@@ -114,7 +113,7 @@ def reactions(
         UsageError: no equation, or no coordinate of that name.
         DerivationError: a body is unsupported; a force acts at no place.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     held = bool(model.unknowns_in_loads())
     equations = None if held else pipeline.derive(model, "kinetostatic")
     study = _study(model, equations)

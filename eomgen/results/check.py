@@ -9,18 +9,18 @@ from typing import Any
 from eomgen.documents import Document, Lines, listed, plain_document
 from eomgen.errors import Problem
 from eomgen.mechanics.constraints import Freedom, VelocityRow
-from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
+from eomgen.mechanics.dynamics import reported_of_nodes
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.start import AssemblyMode, Branches
 from eomgen.model import Model, Truss
 from eomgen.proof import branches_otherwise, counted_otherwise, lines_otherwise
-from eomgen.study import Checked, LoopStart, checked_model
+from eomgen.study import Checked, LoopStart, checked_model, model_to_study
 from eomgen.symbolic.print import to_text
 
 
 def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank and by the counting formula."""
-    model = with_nodes_balanced(model)
+    model = model_to_study(model)
     found = checked_model(model)
     lines = [*_declared_lines(found), *_freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
     reported = {**_declared(found), **_counted(found), **_started(found.start)}

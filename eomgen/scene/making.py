@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from itertools import combinations, pairwise
 
-from eomgen.mechanics.dynamics import EquationsOfMotion, System, with_nodes_balanced
+from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import GROUND, BodyLink
-from eomgen.model import ArcForm, ModelOrPath, PolygonForm, is_node, model_at
+from eomgen.model import ArcForm, ModelOrPath, PolygonForm, is_node
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
 from eomgen.scene.connections import (
     applied_marks,
@@ -23,7 +23,7 @@ from eomgen.scene.connections import (
 )
 from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
-from eomgen.study import study_of
+from eomgen.study import model_to_study, study_of
 from eomgen.symbolic.expression import ZERO, Fraction, Node, Vector, collected, derivative, is_zero, minus, plus, times
 
 
@@ -58,7 +58,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
 
 def scene_of(model: ModelOrPath) -> Scene:
     """Scene of a model: its drawable elements at a state, forces left out."""
-    model = with_nodes_balanced(model_at(model))
+    model = model_to_study(model)
     return scene_of_system(study_of(model).system)
 
 

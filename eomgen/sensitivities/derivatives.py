@@ -19,7 +19,6 @@ import numpy as np
 from eomgen.documents import Document, Found, Listing, Quantity, Result, plain_document
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import with_nodes_balanced
 from eomgen.mechanics.instant import requests_of
 from eomgen.mechanics.linearization import MATRICES, ParameterSlopes
 from eomgen.mechanics.start import Seeds, Start, start_seeds
@@ -34,7 +33,6 @@ from eomgen.model import (
     Typed,
     Unit,
     Values,
-    model_at,
     names_of,
     requested_of,
     seconds,
@@ -44,7 +42,7 @@ from eomgen.resources import doing
 from eomgen.results import Linearization, linearize
 from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation import instants_of
-from eomgen.study import Study, study_of
+from eomgen.study import Study, model_to_study, study_of
 from eomgen.symbolic.exact import book_form, legible
 from eomgen.symbolic.expression import Call, Expression, Fraction, Node, Scalar, jacobian, parse, substituted, tangent
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
@@ -267,7 +265,7 @@ def sensitivity(
         MissingValues: a parameter without a value.
         NotYet: contacts may change along the run, or a force jumps.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     asking = _Asking(model)
     names = (to,) if isinstance(to, str) else tuple(to) or tuple(model.parameters)
     wanted = (of,) if isinstance(of, str) else tuple(of)

@@ -39,6 +39,9 @@ from eomgen.study.study import Study as Study
 # Exact rational values of doubles; nan is left out
 from eomgen.study.study import exact_numbers as exact_numbers
 
+# The model whose motion is studied: each massless node is held by the balance of what pushes it
+from eomgen.study.study import model_to_study as model_to_study
+
 # The study of a model with its contacts as they are where it rests
 from eomgen.study.study import study_at_rest as study_at_rest
 

@@ -34,10 +34,12 @@ from eomgen.mechanics.dynamics import (
     WellPosed,
     assembled_by_recursion,
     refuse_jump,
+    reported_of_nodes,
     signs_of_rates,
     stabilized,
     system_of,
     with_accelerations,
+    with_nodes_balanced,
 )
 from eomgen.mechanics.free_bodies import (
     Balance,
@@ -53,7 +55,7 @@ from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import ExactStart, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import Model, OutputSource, Table, WrittenEquation
+from eomgen.model import Model, ModelOrPath, OutputSource, Table, Values, WrittenEquation, model_at
 from eomgen.resources import growing
 from eomgen.symbolic.exact import LinearSystem, legible, readable_all
 from eomgen.symbolic.expression import (
@@ -89,12 +91,12 @@ class Study:
 
     Args:
         system: motion, loads and constraints.
-        assumptions: what had to be assumed of contacts: "floor assumed closed: h has no value".
+        of_contacts: what had to be assumed of them: "floor assumed closed: h has no value".
         replaced: equations of motion in place of those of the system, with rows that pull back what has opened.
     """
 
     system: System
-    assumptions: tuple[str, ...] = ()
+    of_contacts: tuple[str, ...] = ()
     replaced: EquationsOfMotion | None = None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -104,6 +106,11 @@ class Study:
     @property
     def model(self) -> Model:
         return self.system.scope.model
+
+    @property
+    def assumptions(self) -> tuple[str, ...]:
+        """Assumptions about massless nodes and contacts."""
+        return (*reported_of_nodes(self.model), *self.of_contacts)
 
     @cached_property
     def derived(self) -> EquationsOfMotion:
@@ -570,6 +577,15 @@ class Study:
         missing = [x for x in (symbols.t, *symbols.q, *symbols.u) if x not in state]  # results with one are not used
         found = {names[j]: x for j, x in solution.constants.items() if solution.determined(j)}
         return {name: self.simple(x) if readable and not depends_on(x, missing) else x for name, x in found.items()}
+
+
+def model_to_study(model: ModelOrPath, parameters: Values | None = None, start: Values | None = None) -> Model:
+    """The model whose motion is studied: each massless node is held by the balance of what pushes it.
+
+    Args:
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    """
+    return with_nodes_balanced(model_at(model, parameters, start))
 
 
 def study_of(model: Model) -> Study:

@@ -25,7 +25,6 @@ from eomgen.documents import (
 )
 from eomgen.errors import DerivationError, ToolMissing, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import reported_of_nodes, with_nodes_balanced
 from eomgen.mechanics.linearization import (
     EQUILIBRIUM,
     Family,
@@ -43,14 +42,13 @@ from eomgen.model import (
     ModelOrPath,
     Range,
     Values,
-    model_at,
     names_of,
     range_of,
 )
 from eomgen.proof import Certificate, Check, DrawnPanel, certify_small_motions, small_motions_drawn
 from eomgen.resources import doing
 from eomgen.results.small_motions.steps import linearization_steps, printed_modes
-from eomgen.study import study_at_rest, study_of
+from eomgen.study import model_to_study, study_at_rest, study_of
 from eomgen.symbolic.exact import Polynomial
 from eomgen.symbolic.expression import Call, Expression, Fraction, Scalar
 from eomgen.symbolic.numeric import numbers_of
@@ -452,7 +450,7 @@ def linearize(
         UsageError: a coordinate that the model does not have.
         DerivationError: no equilibrium; the start is no steady motion; the coordinates do not move by themselves.
     """
-    model = with_nodes_balanced(model_at(model, parameters, start))
+    model = model_to_study(model, parameters, start)
     part = model.linearize
     requested = coordinates or (part.coordinates if part is not None else None) or ()
     wanted = tuple(dict.fromkeys((requested,) if isinstance(requested, str) else requested))
@@ -462,7 +460,7 @@ def linearize(
     about = about or (part.about if part is not None else "equilibrium")
     study = study_at_rest(model) if about == EQUILIBRIUM and not model.rough_contacts else study_of(model)
     modes = Modes(SmallMotions.of(study.system, about, wanted))
-    return Linearization(model, modes, assumptions=(*reported_of_nodes(model), *study.assumptions))
+    return Linearization(model, modes, assumptions=study.assumptions)
 
 
 # -------- state space -----------------------------------------------------------------------------------------
