@@ -25,7 +25,7 @@ from eomgen.scene.scene import ROLES, Mark, Scene, drawn_start, frame_at, plain_
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.print.names import COMMANDS, SIGNS, parse_symbol
+from eomgen.symbolic.print.names import COMMANDS, SIGNS, Symbol
 
 MODELS = Path(__file__).parent.parent / "models"
 ALL = [str(path.relative_to(MODELS))[:-5] for path in sorted((*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")))]
@@ -327,7 +327,7 @@ def test_every_symbol_that_can_be_declared_can_be_drawn():
     parser = MathTextParser("agg")
     for command in COMMANDS:
         text = command if command in SIGNS else rf"{command}{{x}}"
-        assert parser.parse(f"${parse_symbol(text).tex}$").width > 0
+        assert parser.parse(f"${Symbol.parsed(text).tex}$").width > 0
 
 
 def test_a_picture_has_the_symbols_that_a_model_declares():

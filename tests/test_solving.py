@@ -8,8 +8,9 @@ from random import Random
 import pytest
 from each import each
 
+from eomgen.mechanics.equilibrium.places import outside_of_turns
 from eomgen.symbolic.exact.normal_forms import sign_of_terms, simplest
-from eomgen.symbolic.exact.solving import has_period, outside_of_turns, roots
+from eomgen.symbolic.exact.solving import has_period, roots
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node, Scalar

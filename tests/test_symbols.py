@@ -20,7 +20,7 @@ from eomgen.documents.figures import mathtext
 from eomgen.documents.latex import names_in, setter_of
 from eomgen.errors import ExpressionError, ModelError
 from eomgen.model.likely_mistakes import warnings_of
-from eomgen.symbolic.print.names import COMMANDS, LONGEST, SPACES, parse_symbol
+from eomgen.symbolic.print.names import COMMANDS, LONGEST, SPACES, Symbol
 
 TOKENS = (*COMMANDS, *SPACES, *"abcXYZ019_^{}'{}__", " ", ",", "+", r"\input", "$", "%", "θ", "\t")
 
@@ -51,11 +51,11 @@ def test_what_is_let_in_is_a_symbol_for_whoever_sets_it(text):
     from matplotlib.mathtext import MathTextParser
 
     try:
-        symbol = parse_symbol(text)
+        symbol = Symbol.parsed(text)
     except ExpressionError as error:
         assert 0 <= error.column <= len(text) and error.what and error.fix
         return
-    assert len(symbol.tex) > LONGEST or parse_symbol(symbol.tex) == symbol
+    assert len(symbol.tex) > LONGEST or Symbol.parsed(symbol.tex) == symbol
     for tex in (symbol.tex, symbol.dotted(2), symbol.with_index("x").tex):
         assert tex.count("{") == tex.count("}")
         assert set(re.findall(r"\\(?:[a-zA-Z]+|.)", tex)) <= {*COMMANDS, *SPACES, r"\dddot"}
@@ -69,7 +69,7 @@ def test_what_is_let_in_is_mathematics_for_a_browser(text):
     """MathML of it by math-core, which knows nothing of our grammar."""
     converter = LatexToMathML()
     try:
-        symbol = parse_symbol(text)
+        symbol = Symbol.parsed(text)
     except ExpressionError:
         return
     for tex in (symbol.tex, symbol.dotted(1), f"{symbol.tex} {symbol.dotted(2)}"):
@@ -88,7 +88,7 @@ def test_what_is_let_in_is_mathematics_for_a_browser(text):
 )
 def test_a_rate_has_its_dot_over_the_letter(text, tex, rate):
     """d/dt J_C is a dotted J with the index C; a dot more on what has one."""
-    assert (parse_symbol(text).tex, parse_symbol(text).dotted(1)) == (tex, rate)
+    assert (Symbol.parsed(text).tex, Symbol.parsed(text).dotted(1)) == (tex, rate)
 
 
 @each(
@@ -110,7 +110,7 @@ def test_a_rate_has_its_dot_over_the_letter(text, tex, rate):
 )
 def test_what_is_no_symbol_says_where_and_how_to_mend_it(text, what, column, fix):
     with pytest.raises(ExpressionError) as caught:
-        parse_symbol(text)
+        Symbol.parsed(text)
     assert what in caught.value.what and caught.value.column == column and fix in caught.value.fix
 
 

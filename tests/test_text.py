@@ -16,7 +16,7 @@ from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.print.layout import factors, terms
+from eomgen.symbolic.print.layout import Product, terms
 from eomgen.symbolic.print.text import named_parts, text_size, to_text, with_definitions
 
 
@@ -249,7 +249,7 @@ def test_a_sum_that_shares_its_parts_is_flattened_by_multiplicity():
 def test_factors_stand_above_or_below_the_line():
     """-3/2 x y^2 / z^3 = coefficient, powers above, powers below; what is in both cancels."""
     graph = Graph()
-    product = factors(read("-3/2*x*y^2*w/(z^3*w)", graph))
+    product = Product.of(read("-3/2*x*y^2*w/(z^3*w)", graph))
     x, y, z = (graph.symbol(n) for n in "xyz")
     assert product.coefficient == Fraction(-3, 2)
     assert set(product.numerator) == {(x, 1), (y, 2)} and product.denominator == ((z, 3),)

@@ -55,7 +55,6 @@ from eomgen.mechanics.integrals import (
     FirstIntegrals,
     Integral,
     laws_of_motion,
-    work_of_constant_forces,
 )
 from eomgen.mechanics.kinematics import (
     Applied,
@@ -441,7 +440,7 @@ def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> l
         return [prose(*words, ".")]
     if law is not JACOBI:
         T, V = energies_by_parts(equations.system, reader, equations.T)
-        parts = [T, V, *([-work_of_constant_forces(equations.system)] if law is ENERGY_AND_WORK else [])]
+        parts = [T, V, *([-FirstIntegrals(equations).work_of_constant_forces] if law is ENERGY_AND_WORK else [])]
         return [prose(*words, ":"), *page(reader, [(law, reader.as_sum(energy.expression, parts))])]
     return [prose(*words, ":"), *page(reader, [(law, energy.expression)])]
 

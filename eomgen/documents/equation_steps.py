@@ -5,7 +5,7 @@ Both sides of each equation -> the last steps: equations of motion, divided and 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 from eomgen.documents.bounded import elsewhere
 from eomgen.documents.motion_steps import moved_coordinates
@@ -30,7 +30,7 @@ from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Pie
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.free_bodies import FrictionContact
-from eomgen.symbolic.exact import book_form, common_factor, readable, simple_constants
+from eomgen.symbolic.exact import book_form, common_factor, readable, simplest
 from eomgen.symbolic.expression import (
     ROOT_OF_SUM,
     Fraction,
@@ -49,7 +49,7 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import Factor, factors, length_of, number_text, products_of, text_size
+from eomgen.symbolic.print import Factor, Product, length_of, number_text, products_of, text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most
@@ -232,7 +232,7 @@ def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
 
 def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
     """Words on the factors by which both sides were multiplied and divided, and that a divisor must not vanish."""
-    found = factors(divisor)
+    found = Product.of(divisor)
     number, graph = found.coefficient, system.scope.graph
     above, below = (_product(graph, part) for part in (found.numerator, found.denominator))
     if number.numerator == 1:
@@ -470,3 +470,15 @@ def _senses(letters: Lettered, system: System) -> dict[Node, Node]:
                     name += "_r"
                 found[node] = system.scope.graph.symbol(name)
     return found
+
+
+def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) -> dict[Node, Scalar]:
+    """All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2."""
+    constant = set(parameters)
+    nodes = order(tuple(scalars))
+    for x in nodes:
+        if x.op != "symbol" and x.args and all(type(a) is not Node or a in constant for a in x.args):
+            constant.add(x)
+    carried = {x for x in scalars if type(x) is Node and x in constant}
+    carried |= {a for x in nodes if x not in constant for a in x.args if type(a) is Node and a in constant}
+    return {x: simplest(x, Work.PART) for x in carried if x.args}

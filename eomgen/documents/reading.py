@@ -43,7 +43,7 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import Product, factors, length_of, named_parts, products_of, symbol_of, text_size, to_text
+from eomgen.symbolic.print import Product, Symbol, length_of, named_parts, products_of, text_size, to_text
 
 LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
@@ -182,7 +182,7 @@ class Reader:
 
     def as_square(self, x: Scalar) -> Scalar:
         """A potential k*(a - b)^2/2 with its parentheses, where that is shorter than multiplied out; else x."""
-        product = factors(self.with_symbols((x,))[0])
+        product = Product.of(self.with_symbols((x,))[0])
         if type(x) is not Node or not any(base.op in SUMS and e == 2 for base, e in product.numerator):
             return x
         found: Scalar = product.coefficient
@@ -387,11 +387,11 @@ def with_coefficients_named(scope: Scope, equations: Sequence[Equation], taken: 
     if not large:
         return NamedCoefficients(tuple(equations))
     units = [_unit(scope, part) for part in large]
-    set_as = {symbol_of(name).tex for name in taken}
+    set_as = {Symbol.of(name).tex for name in taken}
     names = {letter: free_names(f"{letter}_") for letter in (*LETTERS.values(), OTHER)}
     known: dict[Node, Node] = {}
     for part, unit in zip(large, units, strict=True):
-        name = next(n for n in names[LETTERS.get(unit, OTHER)] if symbol_of(n).tex not in set_as)
+        name = next(n for n in names[LETTERS.get(unit, OTHER)] if Symbol.of(n).tex not in set_as)
         known[part] = scope.graph.constant(name)
     sides = [substituted((e.left, e.right), known) for e in equations]
     written = tuple(replace(e, left=left, right=right) for e, (left, right) in zip(equations, sides, strict=True))

@@ -13,7 +13,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression import Node, Scalar, operations
-from eomgen.symbolic.print import symbol_of
+from eomgen.symbolic.print import Symbol
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,7 @@ class Law:
     @classmethod
     def of_letter(cls, text: str) -> Law:
         """A letter, with an index or without: v_x, J_xy, omega."""
-        return cls(text, symbol_of(text).tex)
+        return cls(text, Symbol.of(text).tex)
 
 
 @dataclass(frozen=True)

@@ -32,12 +32,12 @@ from eomgen.symbolic.expression import (
     ScalarRow,
     depends_on,
     derivative,
-    exact,
     gradient,
     inner,
     is_zero,
     parse,
     substituted,
+    tidy,
 )
 from eomgen.symbolic.print import to_text
 
@@ -275,7 +275,7 @@ class Case:
     @cached_property
     def _values(self) -> dict[str, Any]:
         """Exact values of the parameters, by name; those in doubles left out."""
-        return {name: exact(x) for name, x in self.model.exact_parameters().items() if not isinstance(x, float)}
+        return {name: tidy(x) for name, x in self.model.exact_parameters().items() if not isinstance(x, float)}
 
     def _values_in(self, scalars: ScalarRow, values: Mapping[str, Any]) -> dict[Node, Scalar]:
         """Values of the parameters that stand in scalars."""

@@ -15,7 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.diagnostics import Decimal, Diagnostic, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
 from eomgen.model.quantities import Unit, parse_typed_equation
-from eomgen.symbolic.expression import EXACT, Expression, as_expression
+from eomgen.symbolic.expression import Expression, as_expression, is_exact
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"
@@ -136,7 +136,7 @@ def mixed(value: Expression, unit: Unit, path: DocumentPath) -> Diagnostic:
 
 
 def _expression(raw: Any, path: DocumentPath, found: list[Diagnostic], references: bool = False) -> Expression | None:
-    if isinstance(raw, bool) or not isinstance(raw, (float, str, *EXACT, Expression)):
+    if isinstance(raw, bool) or not (is_exact(raw) or isinstance(raw, (float, str, Expression))):
         found.append(Diagnostic(path, f"a number or an expression is needed here, not {shown(raw)}"))
         return None
     return read_text(lambda: as_expression(raw, references=references), raw, path, found)

@@ -16,7 +16,7 @@ from typing import Any
 from eomgen.errors import ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.model.quantities import Unit
-from eomgen.symbolic.expression import EXACT, Call, Expression, Fraction, token_at
+from eomgen.symbolic.expression import Call, Expression, Fraction, is_exact, token_at
 
 BASE = ("kg", "m", "s")
 LARGEST_COEFFICIENT = 12  # of a number that textbooks write before parameters: 1/2 k x^2, 4/3 r, m l^2/12
@@ -285,7 +285,7 @@ class Walk:
         if self._expression.columns[k] < 0 and len(self._expression.code) > 1:  # a factor of a unit
             return Term(NUMBER, k, k)
         free = self.inference.unknown()
-        small = kind == "name" or (isinstance(what, EXACT) and _is_coefficient(what))
+        small = kind == "name" or (is_exact(what) and _is_coefficient(what))
         return Term(free, k, k, numbers=(free,) if small else (), bare=True)
 
     def _product(self, a: Term, b: Term, k: int, kind: str) -> Term:
@@ -300,7 +300,7 @@ class Walk:
 
     def _power(self, a: Term, b: Term, k: int, kind: str) -> Term:
         exponent = _value(self._expression.code[b.first : b.last + 1])
-        if isinstance(exponent, EXACT):
+        if is_exact(exponent):
             return Term(a.dimension.raised(Fraction(exponent)), a.first, k, a.names, a.numbers, a.bare)
         if not self.inference.equal(self._finished(b).dimension, NUMBER):
             self._clash(b, NUMBER, function="an exponent")

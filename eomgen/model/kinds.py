@@ -29,7 +29,7 @@ from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import TimeLawRule
 from eomgen.symbolic.expression import Expression, Sampled
-from eomgen.symbolic.print import LONGEST, Symbol, parse_symbol
+from eomgen.symbolic.print import LONGEST, Symbol
 
 ValueOf = Callable[[Expression], Any]
 """Value of an expression, in the arithmetic of the caller."""
@@ -115,7 +115,7 @@ Coordinates = Annotated[tuple[str, ...], ListRule(NameRule("coordinate"), 1)]
 REACTIONS = ("x", "y", "z", "n", "t", "s", "couple", "tension", "drive")
 SYMBOL = ParsedTextRule(
     Symbol,
-    parse_symbol,
+    Symbol.parsed,
     "a symbol",
     r"like '\theta_A' or 'J_C', in single quotes",
     (("minLength", 1), ("maxLength", LONGEST)),

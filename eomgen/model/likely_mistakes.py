@@ -19,7 +19,7 @@ from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
 from eomgen.symbolic.expression import Expression, Fraction
 from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.print import Symbol, symbol_of
+from eomgen.symbolic.print import Symbol
 
 
 def unbuilt(model: Any) -> tuple[tuple[str, str], ...]:
@@ -281,7 +281,7 @@ def _symbols_twice(catalog: Catalog) -> Iterator[Diagnostic]:
     for table in SYMBOL_TABLES:
         for name in catalog.table(table):
             path: DocumentPath = (table, name, "symbol")
-            if path not in declared and (other := looks.get(symbol_of(name).tex)) is not None:
+            if path not in declared and (other := looks.get(Symbol.of(name).tex)) is not None:
                 yield _alike(other, declared[other], whereabouts((table, name)))
     for path, symbol in declared.items():
         if looks[symbol.tex] != path:

@@ -33,7 +33,6 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import system_of
-from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import Structure
 from eomgen.mechanics.statics import ContactsAtStart, released_in
 from eomgen.model import Model, ModelOrPath, Typed, Values
@@ -251,8 +250,8 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
     system = system_of(model, ContactsAtStart.at_rest(model))
-    stands = not has_degrees_of_freedom(system)
-    structure = Structure.of(with_drives_held(system)[0] if stands else system)
+    stands = not system.has_degrees_of_freedom
+    structure = Structure.of(system.with_drives_held()[0] if stands else system)
     if stands:
         structure.refuse_loose()
     return VirtualDisplacement(structure, released_in(structure, reaction)), stands

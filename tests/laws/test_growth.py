@@ -11,6 +11,7 @@ import pytest
 from known_answers import MODELS
 
 import eomgen
+from eomgen.documents.equation_steps import simple_constants
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.equilibrium.equations import static_equations
 from eomgen.mechanics.free_bodies import velocity_plan as blocks
@@ -18,7 +19,6 @@ from eomgen.mechanics.free_bodies.structure import Structure
 from eomgen.mechanics.linearization.first_order import FirstOrder
 from eomgen.mechanics.statics.virtual_work import by_virtual_work, requested_reactions
 from eomgen.symbolic.exact.equality import real_values
-from eomgen.symbolic.exact.normal_forms import simple_constants
 from eomgen.symbolic.expression.derivatives import substituted
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.traversal import order

@@ -25,14 +25,16 @@ from eomgen.mechanics.kinematics import (
     Scope,
     shorter,
 )
-from eomgen.model import Model, rate_matrix_of
-from eomgen.symbolic.exact import cramer
+from eomgen.model import Model, Table, rate_matrix_of
+from eomgen.symbolic.exact import cramer, vanishes
 from eomgen.symbolic.expression import (
     Node,
     Scalar,
     ScalarRow,
     Symbols,
+    as_expression,
     depends_on,
+    depends_on_any,
     inner,
     is_zero,
     jacobian,
@@ -41,6 +43,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import transplanted
+from eomgen.symbolic.print import to_text
 
 # -------- system ----------------------------------------------------------------------------------------------
 # Model -> System: motion, loads and constraints of one model, over one graph.
@@ -150,6 +153,32 @@ class System:
             if is_zero(substituted((block.determinant,), place)[0]):
                 fix = "start near it, or leave out `dependent`: then their rates belong to the state"
                 raise DerivationError(f"{block} {when} ({PLACE})", fix=fix)
+
+    @property
+    def has_degrees_of_freedom(self) -> bool:
+        """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
+        unknowns = self.symbols.unknowns.values()
+        forces = self.loads.generalized_forces
+        return Rank(self.constraints).degrees_of_freedom() > 0 and not depends_on_any(forces, unknowns)
+
+    def with_drives_held(self) -> tuple[System, tuple[str, ...]]:
+        """(the system with driven coordinates at rest where they start, the names of those that the model moves)."""
+        scope = self.scope
+        bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))
+        starts = {q.name: x for q, x in scope.start_values().items()}
+        table = dict(scope.model.coordinates)
+        moved = [name for name, part in table.items() if part.driven and not vanishes(bias[name])]
+        if not moved:
+            return self, ()
+        free = any(not part.driven for part in table.values())
+        for name in moved:
+            if free and not depends_on(bias[name], (scope.symbols.t,)):
+                what = f"'{name}' moves at a constant rate: there is no equilibrium"
+                raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
+            place = as_expression(to_text(starts[name]))
+            table[name] = table[name].altered(motion=place, rate=None, acceleration=None, start=None, speed=None)
+        model = scope.model.altered(coordinates=Table(table))
+        return system_of(model, self.modes), tuple(moved)
 
 
 def system_of(

@@ -3,9 +3,6 @@
 # The balance of a system at rest
 from eomgen.mechanics.equilibrium.equations import StaticEquations as StaticEquations
 
-# True if the constraints and drives leave degrees of freedom, and no unknown load acts along them
-from eomgen.mechanics.equilibrium.equations import has_degrees_of_freedom as has_degrees_of_freedom
-
 # The system over its rates, where a declared speed is not 0 at rest; else as it is
 from eomgen.mechanics.equilibrium.equations import over_rates as over_rates
 
@@ -14,9 +11,6 @@ from eomgen.mechanics.equilibrium.equations import standing_system as standing_s
 
 # The equations of the system at rest, its drives held
 from eomgen.mechanics.equilibrium.equations import static_equations as static_equations
-
-# (the system with its driven coordinates at rest where they start, the names of those that the model moves)
-from eomgen.mechanics.equilibrium.equations import with_drives_held as with_drives_held
 
 # Every equilibrium that is found
 from eomgen.mechanics.equilibrium.places import places_of_rest as places_of_rest

@@ -12,8 +12,8 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Constraints, Rank
-from eomgen.mechanics.dynamics import System, system_of
+from eomgen.mechanics.constraints import Constraints
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Loads, Motion, Scope
 from eomgen.mechanics.state import Doubles
 from eomgen.model import Table
@@ -24,7 +24,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     State,
-    as_expression,
     depends_on,
     depends_on_any,
     is_zero,
@@ -33,7 +32,6 @@ from eomgen.symbolic.expression import (
     symbols_of,
 )
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
-from eomgen.symbolic.print import to_text
 
 # -------- static equations ------------------------------------------------------------------------------------
 # System -> Static equations: the expressions that vanish at an equilibrium.
@@ -199,7 +197,7 @@ def static_equations(system: System) -> StaticEquations:
             velocity constraint that no place satisfies at rest.
     """
     _refuse_dry_friction(system)
-    system, held = with_drives_held(system)
+    system, held = system.with_drives_held()
     free = system.free or system
     scope = free.scope
     driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
@@ -280,33 +278,6 @@ def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node])
 
 
 # -- what is held ------------------------------------------------------------------------------------
-
-
-def has_degrees_of_freedom(system: System) -> bool:
-    """True if the constraints and drives leave degrees of freedom, and no unknown load acts along them."""
-    unknowns = system.symbols.unknowns.values()
-    forces = system.loads.generalized_forces
-    return Rank(system.constraints).degrees_of_freedom() > 0 and not depends_on_any(forces, unknowns)
-
-
-def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
-    """(the system with its driven coordinates at rest where they start, the names of those that the model moves)."""
-    scope = system.scope
-    bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))
-    starts = {q.name: x for q, x in scope.start_values().items()}
-    table = dict(scope.model.coordinates)
-    moved = [name for name, part in table.items() if part.driven and not vanishes(bias[name])]
-    if not moved:
-        return system, ()
-    free = any(not part.driven for part in table.values())
-    for name in moved:
-        if free and not depends_on(bias[name], (scope.symbols.t,)):
-            what = f"'{name}' moves at a constant rate: there is no equilibrium"
-            raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
-        place = as_expression(to_text(starts[name]))
-        table[name] = table[name].altered(motion=place, rate=None, acceleration=None, start=None, speed=None)
-    model = scope.model.altered(coordinates=Table(table))
-    return system_of(model, system.modes), tuple(moved)
 
 
 def _refuse_dry_friction(system: System) -> None:

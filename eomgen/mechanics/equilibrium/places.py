@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -15,17 +15,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.mechanics.kinematics import Located, Motion
-from eomgen.symbolic.exact import (
-    LinearSystem,
-    Solution,
-    cramer,
-    has_period,
-    outside_of_turns,
-    readable,
-    readable_all,
-    simplest,
-    vanishes,
-)
+from eomgen.symbolic.exact import LinearSystem, Solution, cramer, has_period, readable, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -38,6 +28,7 @@ from eomgen.symbolic.expression import (
     gradient,
     is_zero,
     jacobian,
+    linear_terms,
     order,
     substituted,
     symbols_of,
@@ -590,3 +581,23 @@ def unit_of_length(motion: Motion, state: Mapping[Node, float]) -> Fraction:
         return Fraction(1)
     largest = float(np.max(np.ptp(np.array(x, dtype=float).reshape(-1, 3), axis=0), initial=0.0)) if places else 0.0
     return Fraction(f"{largest:.0e}" if 0 < largest < math.inf else 1)
+
+
+def outside_of_turns(equations: Iterable[Scalar]) -> frozenset[Node]:
+    """The symbols that stand elsewhere than in the argument of a sine or cosine, times a whole number.
+
+    After a whole turn of any other, all of the equations are the same.
+    """
+    stack = [x for x in equations if type(x) is Node]
+    seen = {*stack}
+    while stack:
+        x = stack.pop()
+        inside: Iterable[Scalar | None] = x.args
+        if x.op in ("sin", "cos"):
+            terms = linear_terms(x.args[0])
+            inside = (a for a, c in terms.items() if a is not None and (a.op != "symbol" or type(c) is not int))
+        for a in inside:
+            if type(a) is Node and a not in seen:
+                seen.add(a)
+                stack.append(a)
+    return frozenset(x for x in seen if x.op == "symbol")

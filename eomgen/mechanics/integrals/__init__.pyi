@@ -9,9 +9,6 @@ from eomgen.mechanics.integrals.first_integrals import FirstIntegrals as FirstIn
 # A function of the motion that stays constant
 from eomgen.mechanics.integrals.first_integrals import Integral as Integral
 
-# W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k
-from eomgen.mechanics.integrals.first_integrals import work_of_constant_forces as work_of_constant_forces
-
 # State at which a condition is satisfied, in closed form
 from eomgen.mechanics.integrals.laws import ClosedInstant as ClosedInstant
 

@@ -91,6 +91,19 @@ class FirstIntegrals:
     equations: EquationsOfMotion
 
     @property
+    def work_of_constant_forces(self) -> Scalar:
+        """W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k."""
+        system = self.equations.system
+        work: Scalar = 0
+        for force in system.loads.applied:
+            for load in () if force.potential is not None else force.loads:
+                work = work + _work(system, load)
+        for effort in system.loads.efforts:
+            if _is_constant(system, effort.drive):
+                work = work + effort.drive * system.motion.link(effort.body).s[effort.variable]
+        return work
+
+    @property
     def of_energy(self) -> tuple[Integral, ...]:
         """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
 
@@ -100,7 +113,7 @@ class FirstIntegrals:
         if not self.equations.M:
             return ()
         within: list[Integral] = []
-        for V in (self.equations.V, self.equations.V - work_of_constant_forces(self.equations.system)):
+        for V in (self.equations.V, self.equations.V - self.work_of_constant_forces):
             held = WellPosed(replace(self.equations, V=V)).where_conservative
             if held.everywhere:
                 return (Integral("energy", self.equations.T + V),)
@@ -210,19 +223,6 @@ class FirstIntegrals:
             *_new(found, known),
             *min(new, key=lambda each: (len(each), sum(text_size(x.expression) for x in each))),
         )
-
-
-def work_of_constant_forces(system: System) -> Scalar:
-    """W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k."""
-    loads = system.loads
-    work: Scalar = 0
-    for force in loads.applied:
-        for load in () if force.potential is not None else force.loads:
-            work = work + _work(system, load)
-    for effort in loads.efforts:
-        if _is_constant(system, effort.drive):
-            work = work + effort.drive * system.motion.link(effort.body).s[effort.variable]
-    return work
 
 
 def _work(system: System, load: Load) -> Scalar:

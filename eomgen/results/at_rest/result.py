@@ -10,7 +10,6 @@ from eomgen.documents import Document, Picture, Quantity, Result
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.equilibrium import has_degrees_of_freedom, with_drives_held
 from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import InfluenceLine, RestCondition, StaticReaction, StaticReactions, WorkEquation
@@ -254,12 +253,12 @@ def statics(
     """
     model = model_at(model, parameters, start)
     study = study_at_rest(model)
-    if has_degrees_of_freedom(study.system):
+    if study.system.has_degrees_of_freedom:
         from eomgen.results.at_rest.equilibrium import Resting
 
         _refuse_for_resting(reaction=reaction, influence=influence)
         return Resting(model, study.equilibria)
-    held, _ = with_drives_held(study.system)  # what the model drives is held where it starts
+    held, _ = study.system.with_drives_held()  # what the model drives is held where it starts
     found = StaticReactions.of(held, only=reaction)
     line = None if influence is None else InfluenceLine.of(found.structure, influence)
     return Statics(model, found, line)

@@ -113,9 +113,6 @@ from eomgen.symbolic.exact.normal_forms import readable_all as readable_all
 # 1 or -1 where all terms of x are positive or all negative, 0 where there are none; None where that is unknown
 from eomgen.symbolic.exact.normal_forms import sign_of_terms as sign_of_terms
 
-# All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2
-from eomgen.symbolic.exact.normal_forms import simple_constants as simple_constants
-
 # The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside
 from eomgen.symbolic.exact.normal_forms import simplest as simplest
 
@@ -133,9 +130,6 @@ from eomgen.symbolic.exact.quotient import reduced as reduced
 
 # True if equation(x + period) is the same function as equation(x)
 from eomgen.symbolic.exact.solving import has_period as has_period
-
-# The symbols that stand elsewhere than in the argument of a sine or cosine, times a whole number
-from eomgen.symbolic.exact.solving import outside_of_turns as outside_of_turns
 
 # The real x with equation(x) = 0 that have a closed form; of an equation in angles those of one turn
 from eomgen.symbolic.exact.solving import roots as roots

@@ -48,8 +48,8 @@ from eomgen.symbolic.expression import (
 )
 from eomgen.symbolic.numeric import Work
 from eomgen.symbolic.print import (
+    Product,
     decimal_of,
-    factors,
     has_nested_quotient,
     length_of,
     rebuilt_as_written,
@@ -315,7 +315,7 @@ def _holds(parts: Container[Node], node: Node) -> bool:
 def _is_over(roots: Container[Node], node: Node) -> bool:
     """True for a sum every term of which is divided by one and the same root."""
     divisors = [
-        {base for base, _ in factors(1 if term is None else term).denominator if base in roots}
+        {base for base, _ in Product.of(1 if term is None else term).denominator if base in roots}
         for _, term in terms(node)
     ]
     return bool(set.intersection(*divisors))

@@ -48,7 +48,6 @@ __all__ = [
     "quotients",
     "readable",
     "readable_all",
-    "simple_constants",
     "simplest",
     "simplest_sum",
     "written_shortest",
@@ -303,18 +302,6 @@ def written_shortest(expansion: Expansion, terms: Terms) -> Scalar:
     plain = writer.sum(terms)
     forms = list(dict.fromkeys((plain, *_forms_of(expansion, writer, quotient, (terms, plain)))))
     return rebuilt_as_written(forms[0] if len(forms) == 1 else min(forms, key=_length))
-
-
-def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) -> dict[Node, Scalar]:
-    """All that is made of parameters alone in the scalars, at its simplest: (2 A + C)/2 - A is C/2."""
-    constant = set(parameters)
-    nodes = order(tuple(scalars))
-    for x in nodes:
-        if x.op != "symbol" and x.args and all(type(a) is not Node or a in constant for a in x.args):
-            constant.add(x)
-    carried = {x for x in scalars if type(x) is Node and x in constant}
-    carried |= {a for x in nodes if x not in constant for a in x.args if type(a) is Node and a in constant}
-    return {x: simplest(x, Work.PART) for x in carried if x.args}
 
 
 def legible(x: Scalar, limit: int, positive: Collection[Node], long: int) -> Scalar:

@@ -10,7 +10,7 @@ their magnitudes. Roots that these brought in are left out where numbers show th
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import replace
 from math import comb, gcd
 from random import Random
@@ -28,7 +28,6 @@ from eomgen.symbolic.expression import (
     Owner,
     Scalar,
     depends_on,
-    linear_terms,
     order,
     over,
     substituted,
@@ -66,26 +65,6 @@ def has_period(equation: Scalar, unknown: Node, period: Scalar) -> bool:
     """True if equation(x + period) is the same function as equation(x)."""
     (shifted,) = substituted((equation,), {unknown: unknown + period})
     return shifted is equation or vanishes(shifted - equation)
-
-
-def outside_of_turns(equations: Iterable[Scalar]) -> frozenset[Node]:
-    """The symbols that stand elsewhere than in the argument of a sine or cosine, times a whole number.
-
-    After a whole turn of any other, all of the equations are the same.
-    """
-    stack = [x for x in equations if type(x) is Node]
-    seen = {*stack}
-    while stack:
-        x = stack.pop()
-        inside: Iterable[Scalar | None] = x.args
-        if x.op in ("sin", "cos"):
-            terms = linear_terms(x.args[0])
-            inside = (a for a, c in terms.items() if a is not None and (a.op != "symbol" or type(c) is not int))
-        for a in inside:
-            if type(a) is Node and a not in seen:
-                seen.add(a)
-                stack.append(a)
-    return frozenset(x for x in seen if x.op == "symbol")
 
 
 def vanishes(x: Scalar) -> bool:

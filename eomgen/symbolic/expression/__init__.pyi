@@ -91,14 +91,8 @@ from eomgen.symbolic.expression.node import linear_terms as linear_terms
 from eomgen.symbolic.expression.node import op_bits as op_bits
 from eomgen.symbolic.expression.numbers import Number as Number
 
-# a as an exact number, a whole one as int
-from eomgen.symbolic.expression.numbers import exact as exact
-
 # a, a whole one as int
 from eomgen.symbolic.expression.numbers import tidy as tidy
-
-# what is taken as an exact number; what is made is an int or a Fraction
-from eomgen.symbolic.expression.rational import EXACT as EXACT
 from eomgen.symbolic.expression.rational import Fraction as Fraction
 
 # The number that a text spells ("3", "0.1", "1e-6", "1/180")

@@ -19,9 +19,6 @@ from eomgen.symbolic.print.layout import Product as Product
 # (digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better
 from eomgen.symbolic.print.layout import decimal_of as decimal_of
 
-# x as powers over powers: constants, symbols, sums, functions, then rates (27/2*M*R^2*cos(theta)^2*theta'^2)
-from eomgen.symbolic.print.layout import factors as factors
-
 # True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into
 from eomgen.symbolic.print.layout import has_nested_quotient as has_nested_quotient
 
@@ -51,12 +48,6 @@ from eomgen.symbolic.print.names import Symbol as Symbol
 
 # Words in an index, one style for all: letters slanted, words upright, max -> \mathrm{max}
 from eomgen.symbolic.print.names import index_latex as index_latex
-
-# The symbol that a text declares
-from eomgen.symbolic.print.names import parse_symbol as parse_symbol
-
-# The symbol of a name without primes, by its own letters
-from eomgen.symbolic.print.names import symbol_of as symbol_of
 
 # A sympy expression as a scalar of the symbols' graph
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy as scalar_from_sympy

@@ -27,7 +27,7 @@ from eomgen.symbolic.print.layout import (
     is_time,
     summands,
 )
-from eomgen.symbolic.print.names import LETTERS, Symbol, index_latex, symbol_of, upright
+from eomgen.symbolic.print.names import LETTERS, Symbol, index_latex, upright
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 FUNCTIONS = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")} | {
@@ -474,7 +474,7 @@ class Notation:
         if multiplier:
             return rf"\lambda_{{{self.index(multiplier['constraint'])},{multiplier['row']}}}"
         bare = name.rstrip("'")
-        symbol = self.symbols.get(bare) or symbol_of(bare, self.indices)
+        symbol = self.symbols.get(bare) or Symbol.of(bare, self.indices)
         return symbol.dotted(len(name) - len(bare))
 
     def index(self, name: str) -> str:

@@ -35,6 +35,22 @@ class Product:
     numerator: tuple[Factor, ...]
     denominator: tuple[Factor, ...]
 
+    @staticmethod
+    def of(x: Scalar, named: Container[Node] = ()) -> Product:
+        """x as powers over powers: constants, symbols, sums, functions, then rates (27/2*M*R^2*cos(theta)^2*theta'^2).
+
+        A base is a symbol, pi, a function, a sum, or a `pow` that is no whole power.
+
+        Args:
+            named: nodes with a name of their own, which are not opened.
+        """
+        if not isinstance(x, Node):
+            return Product(x, (), ())
+        known: dict[Node, Product] = {} if named else x.graph.found(Product.of)
+        if x not in known:
+            known[x] = _factors(x, named)
+        return known[x]
+
 
 def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
     """x as a sum of number * term, the term None for a plain number.
@@ -72,7 +88,7 @@ def products_of(x: Scalar, named: Container[Node] = ()) -> list[Product]:
 def product_of(term: Term, named: Container[Node] = ()) -> Product:
     """number * term with the sign of a factor turned where it reads better."""
     c, node = term
-    product = factors(1 if node is None else node, named)
+    product = Product.of(1 if node is None else node, named)
     return _turned(Product(c * product.coefficient, product.numerator, product.denominator), named)
 
 
@@ -173,22 +189,6 @@ def _opened_sum(x: Node, named: Container[Node]) -> tuple[list[Node], list[Node]
             else:
                 stack += children
     return list(opened), sorted(leaves, key=leaves.__getitem__)
-
-
-def factors(x: Scalar, named: Container[Node] = ()) -> Product:
-    """x as powers over powers: constants, symbols, sums, functions, then rates (27/2*M*R^2*cos(theta)^2*theta'^2).
-
-    A base is a symbol, pi, a function, a sum, or a `pow` that is no whole power.
-
-    Args:
-        named: nodes with a name of their own, which are not opened.
-    """
-    if not isinstance(x, Node):
-        return Product(x, (), ())
-    known: dict[Node, Product] = {} if named else x.graph.found(factors)
-    if x not in known:
-        known[x] = _factors(x, named)
-    return known[x]
 
 
 def _factors(x: Node, named: Container[Node]) -> Product:

@@ -22,7 +22,7 @@ from eomgen.symbolic.print.layout import (
     is_part_of_turn,
     summands,
 )
-from eomgen.symbolic.print.names import index_latex, symbol_of
+from eomgen.symbolic.print.names import Symbol, index_latex
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 Marks = tuple[int, int]  # how many, and how they hang together
@@ -209,4 +209,4 @@ def length_of_name(name: str) -> int:
     multiplier = _MULTIPLIER.fullmatch(name)
     if multiplier:
         return 2 + len(multiplier["row"]) + length_of_latex(index_latex(multiplier["constraint"]))
-    return length_of_latex(symbol_of(name.rstrip("'")).tex)
+    return length_of_latex(Symbol.of(name.rstrip("'")).tex)

@@ -64,6 +64,46 @@ class Symbol:
         """The symbol with more in its index, behind what stands there."""
         return replace(self, below=",".join(filter(None, (self.below, *more))))
 
+    @staticmethod
+    def of(name: str, indices: Mapping[str, str] | None = None) -> Symbol:
+        """The symbol of a name without primes, by its own letters.
+
+        Args:
+            indices: how the names of bodies, constraints and forces are set in an index, where they declare it.
+        """
+        component = _COMPONENT.fullmatch(name)
+        if component:
+            return Symbol(name, component["letter"], ",".join(filter(None, (component["axes"], component["number"]))))
+        match = _NAME.fullmatch(name)
+        if match is None:
+            return Symbol(name, _letters(name))
+        joined = _GREEK_JOINED.fullmatch(match["letters"])
+        if joined is None and match["letters"] not in GREEK:
+            joined = _JOINED.fullmatch(match["letters"])
+        letters = joined["letter"] if joined else match["letters"]
+        inside = joined["index"] if joined else ""
+        rest = index_latex(match["rest"] or "", indices)
+        return Symbol(name, _letters(letters), ",".join(filter(None, (inside, rest))))
+
+    @staticmethod
+    def parsed(text: str) -> Symbol:
+        """The symbol that a text declares.
+
+        Raises:
+            ExpressionError: it is no symbol of the grammar; `column` counts from 0 within the text.
+        """
+        if len(text) > LONGEST:
+            raise ExpressionError(f"a symbol of {len(text)} characters", 0, f"write at most {LONGEST}", len(text))
+        tokens = _Tokens(text)
+        if not tokens.now:
+            raise ExpressionError(NOTHING, 0, LIKE)
+        *before, last = _atoms(tokens)
+        if tokens.now:
+            raise ExpressionError("a brace is closed that was never opened", tokens.at, "leave out the }")
+        if re.match(r"\{*[0-9]", before[0].tex if before else last.base):
+            raise ExpressionError("a symbol that begins with a digit, as a number does", 0, "begin with a letter")
+        return Symbol(text, _joined([*(atom.tex for atom in before), last.base]), last.below, last.above)
+
 
 def _dotted(base: str, dots: int) -> str | None:
     """The letter with the dots, which join those that it has; None where there are more than anybody sets."""
@@ -86,27 +126,6 @@ def _is_one(inside: str) -> bool:
 
 
 # -- what a name looks like by itself -----------------------------------------------------------------
-
-
-def symbol_of(name: str, indices: Mapping[str, str] | None = None) -> Symbol:
-    """The symbol of a name without primes, by its own letters.
-
-    Args:
-        indices: how the names of bodies, constraints and forces are set in an index, where they declare it.
-    """
-    component = _COMPONENT.fullmatch(name)
-    if component:
-        return Symbol(name, component["letter"], ",".join(filter(None, (component["axes"], component["number"]))))
-    match = _NAME.fullmatch(name)
-    if match is None:
-        return Symbol(name, _letters(name))
-    joined = _GREEK_JOINED.fullmatch(match["letters"])
-    if joined is None and match["letters"] not in GREEK:
-        joined = _JOINED.fullmatch(match["letters"])
-    letters = joined["letter"] if joined else match["letters"]
-    inside = joined["index"] if joined else ""
-    rest = index_latex(match["rest"] or "", indices)
-    return Symbol(name, _letters(letters), ",".join(filter(None, (inside, rest))))
 
 
 def index_latex(text: str, indices: Mapping[str, str] | None = None) -> str:
@@ -168,25 +187,6 @@ _EATEN = {"\t": "t", "\b": "b", "\n": "n", "\r": "r", "\f": "f"}  # what TOML an
 NOTHING = "a symbol without a letter"
 MADE_OF = r"a symbol is made of letters, digits, Greek letters, \dot, \hat, \bar, \vec and \mathrm{...}"
 LIKE = r"like 'J_C' or '\dot\gamma'"
-
-
-def parse_symbol(text: str) -> Symbol:
-    """The symbol that a text declares.
-
-    Raises:
-        ExpressionError: it is no symbol of the grammar; `column` counts from 0 within the text.
-    """
-    if len(text) > LONGEST:
-        raise ExpressionError(f"a symbol of {len(text)} characters", 0, f"write at most {LONGEST}", len(text))
-    tokens = _Tokens(text)
-    if not tokens.now:
-        raise ExpressionError(NOTHING, 0, LIKE)
-    *before, last = _atoms(tokens)
-    if tokens.now:
-        raise ExpressionError("a brace is closed that was never opened", tokens.at, "leave out the }")
-    if re.match(r"\{*[0-9]", before[0].tex if before else last.base):
-        raise ExpressionError("a symbol that begins with a digit, as a number does", 0, "begin with a letter")
-    return Symbol(text, _joined([*(atom.tex for atom in before), last.base]), last.below, last.above)
 
 
 class _Tokens:
