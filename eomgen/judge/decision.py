@@ -34,9 +34,7 @@ from eomgen.symbolic.expression import (
 from eomgen.symbolic.numeric import (
     FLOAT,
     PIECEWISE,
-    Choices,
     NoValue,
-    as_chosen,
     evaluate,
     fifty_digits,
     tolerances,
@@ -116,14 +114,13 @@ def _in_pieces(
         return None
     if division is None or not division.found:
         return None
-    width, nodes = len(row), division.nodes
+    width = len(row)
 
-    def holds(piece: Choices) -> bool:
-        there = as_chosen(flat, nodes, piece)
+    def holds(there: Sequence[Scalar], inside: Mapping[Node, Any]) -> bool:
         table = [there[k : k + width] for k in range(0, len(there), width)]
         if not on_constraints:
             return _at_random(system, table[0], table[1:], ()).holds is True
-        state = _at_constrained_speeds(system, dict(division.found[piece]))
+        state = _at_constrained_speeds(system, dict(inside))
         if state is None:
             return True  # nothing contradicts it
         try:
@@ -133,7 +130,7 @@ def _in_pieces(
         numbers = [values[k : k + width] for k in range(0, len(values), width)]
         return combines(numbers[0], numbers[1:])
 
-    return division.where(holds)
+    return division.where_holds(flat, holds)
 
 
 def _others(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> dict[Node, Any]:

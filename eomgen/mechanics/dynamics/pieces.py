@@ -148,6 +148,18 @@ class Division:
         within = dict.fromkeys(c for node, choice in literals for c in self.conditions(node, choice))
         return Extent(False, tuple(within))
 
+    def chosen(self, scalars: Sequence[Scalar], piece: Choices) -> tuple[Scalar, ...]:
+        """The scalars as they are in a piece.
+
+        Raises:
+            DerivationError: they divide by zero there.
+        """
+        return as_chosen(scalars, self.nodes, piece)
+
+    def where_holds(self, scalars: Sequence[Scalar], decide: Callable[[tuple[Scalar, ...], State], bool]) -> Extent:
+        """Extent of a property of scalars; `decide` is called with their form in each piece, and a state there."""
+        return self.where(lambda piece: decide(self.chosen(scalars, piece), self.found[piece]))
+
     def _decided(self, decide: Callable[[Choices], bool], piece: Choices) -> bool:
         try:
             return decide(piece)
@@ -220,8 +232,7 @@ def where_holds(
     division = division_of(equations, scalars)
     if division is None:
         return Extent(True) if decide(tuple(scalars)) else Extent(False)
-    nodes = division.nodes
-    return division.where(lambda piece: decide(as_chosen(scalars, nodes, piece)))
+    return division.where(lambda piece: decide(division.chosen(scalars, piece)))
 
 
 def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:

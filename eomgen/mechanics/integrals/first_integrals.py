@@ -47,7 +47,6 @@ from eomgen.symbolic.numeric import (
     NoMeaning,
     NoValue,
     Work,
-    as_chosen,
     dense,
     evaluate,
     fifty_digits,
@@ -183,7 +182,7 @@ class FirstIntegrals:
 
         def found(piece: Choices) -> tuple[bool, ...]:
             if piece not in known:
-                values = iter(as_chosen(flat, division.nodes, piece))
+                values = iter(division.chosen(flat, piece))
                 table = [[next(values) for _ in row] for row in (*rows, *requested)]
                 known[piece] = _following(table[: len(rows)], table[len(rows) :])
             return known[piece]
@@ -265,7 +264,7 @@ def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node
         return None, Extent(False)
 
     def alone(piece: Choices) -> Scalar | None:
-        return _alone_at_all(equations.system, as_chosen((rate,), division.nodes, piece), others)[0]
+        return _alone_at_all(equations.system, division.chosen((rate,), piece), others)[0]
 
     try:
         begun = alone(division.start)
