@@ -10,8 +10,9 @@ import pytest
 import eomgen
 from eomgen.documents.drawing import is_freer_outward
 from eomgen.documents.figures import four_figures, scale_of
-from eomgen.results.mass_properties.result import inertia_scene
+from eomgen.results.mass_properties.result import values_at_start
 from eomgen.scene import forms, plane_strokes
+from eomgen.scene.making import scene_of_inertia
 from eomgen.scene.scene import Mark, drawn_start, frame_at
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 
@@ -111,7 +112,7 @@ joint = { kind = "revolute", at = [1, 0, 0], axis = [1, 0, 0], angle = "b" }
 def test_the_ellipsoid_of_inertia_is_drawn_in_space(tmp_path):
     """x I x = c: R diag(1/a^2) R^T goes as the tensor; that of a ball is the ball"""
     found = eomgen.inertia(eomgen.loads(SKEW))
-    scene = inertia_scene(found.system, found.axes, found.moments)
+    scene = scene_of_inertia(found.system, values_at_start(found.system), found.axes, found.moments)
     drawn = {mark.of: mark for mark in scene.marks_of_kind("ellipsoid") if mark.role == "inertia"}
     assert list(map(float, drawn["ball"].form.size)) == pytest.approx([0.3, 0.3, 0.3])
     R = np.array([[float(x) for x in row] for row in scene.frames[drawn["skew"].frame].pose.R])

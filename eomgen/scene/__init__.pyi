@@ -1,19 +1,10 @@
 """Door of the room: what other rooms may import from `eomgen.scene`."""
 
-# The marks as they are drawn
-from eomgen.scene.connections import ordered as ordered
-
 # The resultant force of every joint and constraint, on the body that it holds
 from eomgen.scene.connections import reaction_marks as reaction_marks
 
 # Resultants of the joints and constraints all of whose forces are among the names
 from eomgen.scene.connections import resultants as resultants
-
-# A name next to a place
-from eomgen.scene.forms import LabelForm as LabelForm
-
-# A dot
-from eomgen.scene.forms import PointForm as PointForm
 
 # Scenes of the same bodies, one after the other, as one
 from eomgen.scene.frames_of_phases import joined as joined
@@ -30,18 +21,17 @@ from eomgen.scene.making import named_points as named_points
 # Scene of a model
 from eomgen.scene.making import scene_of as scene_of
 
-# Scene of a system
+# Bodies in space and about their mass centres x I x = c, of half-axes sqrt(c/I_k): of a ball the ball
+from eomgen.scene.making import scene_of_inertia as scene_of_inertia
+
+# Scene of a system: its drawable elements at a state
 from eomgen.scene.making import scene_of_system as scene_of_system
 
 # The strokes of a scene in the plane
 from eomgen.scene.plane_strokes import plane_drawing as plane_drawing
-from eomgen.scene.scene import ROLES as ROLES
 
 # A state in numbers
 from eomgen.scene.scene import DrawnState as DrawnState
-
-# Something that is drawn
-from eomgen.scene.scene import Mark as Mark
 
 # Drawable elements of a model at a state
 from eomgen.scene.scene import Scene as Scene

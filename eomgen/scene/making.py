@@ -5,12 +5,14 @@ System -> Scene: bodies, joints, constraints, springs and names of a model, put 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from itertools import combinations, pairwise
 
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import GROUND, BodyLink
-from eomgen.model import ArcForm, ModelOrPath, PolygonForm, is_node
+from eomgen.model import ArcForm, EllipsoidForm, LineForm, ModelOrPath, PolygonForm, is_node
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
 from eomgen.scene.connections import (
     applied_marks,
@@ -21,10 +23,24 @@ from eomgen.scene.connections import (
     joint_marks,
     ordered,
 )
-from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm
+from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm, PointForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
 from eomgen.study import model_to_study, study_of
-from eomgen.symbolic.expression import ZERO, Fraction, Node, Vector, collected, derivative, is_zero, minus, plus, times
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Node,
+    Pose,
+    Vector,
+    collected,
+    derivative,
+    is_zero,
+    matrix_of,
+    minus,
+    plus,
+    times,
+    vector_of,
+)
 
 
 def scene_of_system(system: System, equations: EquationsOfMotion | None = None) -> Scene:
@@ -208,3 +224,55 @@ def _slide(system: System, link: BodyLink, q: Node) -> Mark | None:
         return None
     above = link.parent + 1 if link.parent != GROUND else 0
     return Mark(DimensionForm(link.before.p, link.local.p, q.name), above, "dimension", q.name)
+
+
+# -- ellipsoids of inertia ---------------------------------------------------------------------------------------
+
+
+LONGEST_AXIS = 4.0  # half-axis of an ellipsoid of inertia, of its shortest: that of a rod has no end
+BEYOND = 1.25  # times its half-axis a principal axis goes
+
+
+def scene_of_inertia(
+    system: System,
+    known: Mapping[Node, float],
+    axes: Mapping[str, Sequence[Sequence[float]]],
+    moments: Mapping[str, Sequence[float]],
+) -> Scene:
+    """Bodies in space and about their mass centres x I x = c, of half-axes sqrt(c/I_k): of a ball the ball.
+
+    Args:
+        known: parameters, coordinates and time at a state.
+        axes: the principal axes, the rows of R, by the body's name.
+        moments: the principal moments in their order [kg m^2], by the body's name.
+    """
+    scene = scene_of_system(system)
+    frames, marks = list(scene.frames), [mark for mark in scene.marks if mark.role != "inertia"]
+    for body, rows in axes.items():
+        if body not in system.motion.index or body not in moments or min(moments[body]) < 0 or not any(moments[body]):
+            continue
+        mass = system.scope.mass_properties(body)
+        m, *com = system.scope.numbers((mass.m, *mass.com), known) or (0.0, 0.0, 0.0, 0.0)
+        if m <= 0:
+            continue
+        marks += _ellipsoid(moments[body], m, len(frames), body)
+        pose = Pose(matrix_of(map(_vector, zip(*rows, strict=True))), _vector(com))
+        frames.append(SceneFrame(f"{body}, principal", system.motion.index[body] + 1, pose))
+    return replace(scene, frames=tuple(frames), marks=ordered(marks, ROLES))
+
+
+def _ellipsoid(moments: Sequence[float], m: float, frame: int, body: str) -> Iterator[Mark]:
+    """The ellipsoid, its centre, and its axes with their numbers."""
+    largest = max(moments)
+    size = math.sqrt(5 * sum(moments) / (6 * m))  # of the shortest half-axis: of a ball its radius
+    half = [size * min(math.sqrt(largest / I) if I > 0 else LONGEST_AXIS, LONGEST_AXIS) for I in moments]
+    yield Mark(EllipsoidForm(ZERO, _vector(half)), frame, "inertia", body)
+    yield Mark(PointForm(ZERO), frame, "center", body)
+    for k, length in enumerate(half):
+        end = _vector(BEYOND * length * (i == k) for i in range(3))
+        yield Mark(LineForm((minus(ZERO, end), end), fine=True), frame, "reaction", body)
+        yield Mark(LabelForm(str(k + 1), end), frame, "axes", body)
+
+
+def _vector(v: Iterable[float]) -> Vector:
+    return vector_of(map(Fraction, v))

@@ -5,9 +5,8 @@ Model -> Inertia: masses, mass centres, tensors, principal axes of its bodies, a
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
 from functools import cached_property
 from itertools import chain
 from typing import Any
@@ -36,7 +35,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import SystemInertia
 from eomgen.mechanics.start import Start
-from eomgen.model import EllipsoidForm, LineForm, ModelOrPath, Values, model_at, nearest
+from eomgen.model import ModelOrPath, Values, model_at, nearest
 from eomgen.proof import Certificate, Stated, mass_checks
 from eomgen.resources import doing
 from eomgen.results.mass_properties.steps import (
@@ -57,21 +56,16 @@ from eomgen.results.mass_properties.steps import (
     tensor_results,
     together,
 )
-from eomgen.scene import ROLES, LabelForm, Mark, PointForm, Scene, SceneFrame, ordered, scene_of_system
+from eomgen.scene import scene_of_inertia
 from eomgen.study import study_of
 from eomgen.symbolic.expression import (
     IDENTITY,
-    ZERO,
-    Fraction,
     Node,
-    Pose,
     State,
     Vector,
     is_zero,
-    matrix_of,
     minus,
     symbols_of,
-    vector_of,
 )
 from eomgen.symbolic.print import readable_text, text_size
 
@@ -354,8 +348,6 @@ def _conventions() -> Step:
 
 
 CENTER, AXIS = "#b03a2e", "#2e7d4f"
-LONGEST_AXIS = 4.0  # half-axis of an ellipsoid of inertia, of its shortest: that of a rod has no end
-BEYOND = 1.25  # times its half-axis a principal axis goes
 
 
 def inertia_picture(
@@ -371,7 +363,7 @@ def inertia_picture(
     """
     model = system.scope.model
     if model.space == "space":
-        return picture_of_scene(inertia_scene(system, axes, moments))
+        return picture_of_scene(scene_of_inertia(system, values_at_start(system), axes, moments))
     sketch = Sketch(system, values_at_start(system))
 
     def fill(figure: Any) -> None:
@@ -382,42 +374,6 @@ def inertia_picture(
                 _body(panel, sketch, body, np.array(rows))
 
     return Picture((8, 6), fill, model.name)
-
-
-def inertia_scene(
-    system: System, axes: Mapping[str, Sequence[Sequence[float]]], moments: Mapping[str, Sequence[float]]
-) -> Scene:
-    """Bodies in space and about their mass centres x I x = c, of half-axes sqrt(c/I_k): of a ball the ball."""
-    scene, known = scene_of_system(system), values_at_start(system)
-    frames, marks = list(scene.frames), [mark for mark in scene.marks if mark.role != "inertia"]
-    for body, rows in axes.items():
-        if body not in system.motion.index or body not in moments or min(moments[body]) < 0 or not any(moments[body]):
-            continue
-        mass = system.scope.mass_properties(body)
-        m, *com = system.scope.numbers((mass.m, *mass.com), known) or (0.0, 0.0, 0.0, 0.0)
-        if m <= 0:
-            continue
-        marks += _ellipsoid(moments[body], m, len(frames), body)
-        pose = Pose(matrix_of(map(_vector, zip(*rows, strict=True))), _vector(com))
-        frames.append(SceneFrame(f"{body}, principal", system.motion.index[body] + 1, pose))
-    return replace(scene, frames=tuple(frames), marks=ordered(marks, ROLES))
-
-
-def _ellipsoid(moments: Sequence[float], m: float, frame: int, body: str) -> Iterator[Mark]:
-    """The ellipsoid, its centre, and its axes with their numbers."""
-    largest = max(moments)
-    size = math.sqrt(5 * sum(moments) / (6 * m))  # of the shortest half-axis: of a ball its radius
-    half = [size * min(math.sqrt(largest / I) if I > 0 else LONGEST_AXIS, LONGEST_AXIS) for I in moments]
-    yield Mark(EllipsoidForm(ZERO, _vector(half)), frame, "inertia", body)
-    yield Mark(PointForm(ZERO), frame, "center", body)
-    for k, length in enumerate(half):
-        end = _vector(BEYOND * length * (i == k) for i in range(3))
-        yield Mark(LineForm((minus(ZERO, end), end), fine=True), frame, "reaction", body)
-        yield Mark(LabelForm(str(k + 1), end), frame, "axes", body)
-
-
-def _vector(v: Iterable[float]) -> Vector:
-    return vector_of(map(Fraction, v))
 
 
 def values_at_start(system: System) -> dict[Node, float]:
