@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.frozen import recalled
-from eomgen.mechanics.constraints import limits_passed
 from eomgen.mechanics.dynamics import METHODS
 from eomgen.mechanics.kinematics import ContactModes
 from eomgen.model import ModelOrPath, Typed, Values, WrittenEquation, with_inputs
@@ -191,8 +190,9 @@ def simulate(
 
 def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning to the caller."""
-    passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])
-    for problem in (*model.left_tables(float(found.t[-1]) if len(found.t) else 0.0), *passed):
+    from eomgen.runs import cautions_of
+
+    for problem in cautions_of(model, found):
         warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
     missing = found.known_remark
     if missing and (found.reactions or found.outputs):

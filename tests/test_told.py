@@ -13,9 +13,9 @@ from each import each
 import eomgen
 from eomgen.proof.reported_run import ReportedRun, run_reported
 from eomgen.proof.reported_small_motions import small_motions_reported
+from eomgen.runs.single_run import _reported, _run_payload, _run_statements
 from eomgen.simulation import WholeRun
 from eomgen.simulation.result import Trajectory
-from eomgen.verbs.simulate import _reported, _run_payload, _run_statements
 
 TWO = """
 eomgen = 1

@@ -23,6 +23,9 @@ from eomgen.runs.simulator import with_controlled as with_controlled
 # time of a motion that a page shows [s]
 from eomgen.runs.single_run import PAGE_TIME as PAGE_TIME
 
+# Warnings: samples that a run goes beyond, and limits of coordinates that it passes
+from eomgen.runs.single_run import cautions_of as cautions_of
+
 # Longest time for one turn among the joints that are driven at a constant rate [s]; None if there is none
 from eomgen.runs.single_run import one_turn as one_turn
 
@@ -34,6 +37,9 @@ from eomgen.runs.single_run import page_time as page_time
 
 # The motion by equations that are derived already
 from eomgen.runs.single_run import run as run
+
+# The document of a run
+from eomgen.runs.single_run import run_document as run_document
 
 # Motion that a page shows, and why it is shorter than PAGE_TIME
 from eomgen.runs.single_run import run_of_a_page as run_of_a_page

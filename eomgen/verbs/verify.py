@@ -9,28 +9,11 @@ from typing import Any
 
 from eomgen import files
 from eomgen.documents import Document, Lines, plain_document, proven, with_constraints_closed
-from eomgen.errors import ExpressionError, UsageError
-from eomgen.frozen import dataclass
-from eomgen.judge import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Case, Judge, Verdict
-from eomgen.model import AtRest, Model, WrittenEquation, with_values
-from eomgen.proof import Certificate, verdicts_again
-from eomgen.proof import certify as certificate_of_equations
+from eomgen.errors import UsageError
+from eomgen.judge import Answered, judged
+from eomgen.model import AtRest, Model, WrittenEquation
 
 LARGEST = 1_000_000  # bytes of a file of answers
-
-
-@dataclass(frozen=True)
-class Answered:
-    """One equation to be judged.
-
-    Args:
-        text: the equation as it was written.
-        file, line: its place; "" and 0 for a typed one.
-    """
-
-    text: str
-    file: str = ""
-    line: int = 0
 
 
 def verify_document(
@@ -60,54 +43,16 @@ def verify_document(
     ]
     if not requested:
         raise UsageError("there is no equation to judge", fix="write one behind the model, or --file FILE")
-    placed = with_values(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
-    judge = Judge(Case(placed, from_rest is not None))
-    entries: list[dict[str, Any]] = []
-    lines: list[str] = []
-    codes: list[int] = []
-    found: list[Verdict] = []
-    for each in requested:
-        verdict, entry, reported, code = _judged(judge, each, at, kind, hint, alone=len(requested) == 1)
-        found += [verdict]
-        entries.append(entry | ({"file": each.file, "line": each.line} if each.file else {}))
-        lines += [f"{each.file}:{each.line}: {reported[0]}" if each.file else reported[0], *reported[1:]]
-        codes.append(code)
-    if len(requested) > 1:
-        count = {name: sum(entry["verdict"] == name for entry in entries) for name in EXIT_CODES}
-        lines.append(f"{count[RIGHT]} right, {count[WRONG]} wrong, {count[UNDECIDED]} undecided")
-    code = next((c for c in (EXIT_CODES[WRONG], UNREADABLE, EXIT_CODES[UNDECIDED]) if c in codes), 0)
+    found = judged(model, requested, at=at, from_rest=from_rest, kind=kind, hint=hint)
     document = plain_document(
-        model, lambda: {"name": model.name, "equations": entries}, Lines(tuple(lines)), answer_code=code
+        model,
+        lambda: {"name": model.name, "equations": list(found.entries)},
+        Lines(found.lines),
+        answer_code=found.exit_code,
     )
-    if judge.case.equations is not None:
-        document = with_constraints_closed(document, judge.case.equations.system)
-    return proven(document, _certificate(judge, found if at is None else ()) if certify else None)
-
-
-def _certificate(judge: Judge, found: Sequence[Verdict]) -> Certificate:
-    """The proof of the equations against which the judge holds others, and of its verdicts by another decision."""
-    equations = judge.case.equations
-    if equations is None:
-        return Certificate(())
-    again = [said for verdict in found if (said := judge.said(verdict)) is not None]
-    return certificate_of_equations(equations) + verdicts_again(again)
-
-
-def _judged(
-    judge: Judge, each: Answered, at: Any, kind: str | None, hint: int | None, *, alone: bool
-) -> tuple[Verdict, dict[str, Any], tuple[str, ...], int]:
-    """(the verdict, for machines, for people, exit code) of one equation."""
-    try:
-        verdict = judge.verdict(each.text, at=at, kind=kind)
-    except ExpressionError as error:
-        where = f"{each.file}:{each.line}:{error.column + 1}" if each.file else ""
-        if alone:
-            caret = " " * error.column + "^" * max(1, min(error.length, len(each.text) - error.column))
-            raise UsageError(f"{error.what}\n    {each.text}\n    {caret}", where, error.fix) from error
-        reported = Verdict(each.text, kind or "", UNDECIDED, reason=f"it cannot be read: {error.what}")
-        problem = {"what": error.what, "column": error.column + 1, "fix": error.fix}
-        return reported, reported.as_dict() | {"error": problem}, reported.lines(), UNREADABLE
-    return verdict, verdict.as_dict(hint), verdict.lines(hint), verdict.exit_code
+    if found.system is not None:
+        document = with_constraints_closed(document, found.system)
+    return proven(document, found.certify(again=at is None) if certify else None)
 
 
 def _typed(text: str) -> Iterator[Answered]:
