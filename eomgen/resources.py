@@ -1,4 +1,4 @@
-"""Time and memory of a process: the time limit that a user sets, and pauses of the cycle collector.
+"""Time, memory and threads of a process: the time limit that a user sets, pauses of the cycle collector.
 
 The clock only ends what takes too long: hot loops ask it by `check_patience`; what cannot ask, a loop of a library, is
 stopped from a thread a little later.
@@ -12,11 +12,15 @@ import math
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import field
+from itertools import pairwise
 from threading import Lock
+
+import numpy as np
 
 from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
@@ -251,3 +255,26 @@ def seldom() -> Iterator[None]:
         yield
     finally:
         gc.set_threshold(*was)
+
+
+def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
+    """(first, the one after the last) of so many parts, of one length as nearly as can be."""
+    edges = np.linspace(0, count, max(1, parts) + 1).astype(int).tolist()
+    return list(pairwise(edges))
+
+
+def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:
+    """Each piece of work in a thread of its own; if `check`, called now and then, raises, their event is set."""
+
+    stop = threading.Event()
+    with ThreadPoolExecutor(len(work)) as pool:
+        begun = [pool.submit(each, stop) for each in work]
+        try:
+            while not all(each.done() for each in begun):
+                check()
+                wait(begun, timeout=0.05)
+        except BaseException:
+            stop.set()
+            raise
+        for each in begun:
+            each.result()

@@ -18,7 +18,6 @@ from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.documents.figures import mathtext, over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.dynamics import formulations as recursive
-from eomgen.mechanics.dynamics.accelerations import stabilized
 from eomgen.model.quantities import Unit
 from eomgen.page.animation import Showing, animate_document
 from eomgen.runs.single_run import page_time, run_of_a_page
@@ -355,7 +354,7 @@ def test_stiff_methods_take_few_steps_where_the_others_need_many(method):
 def test_baumgartes_rows_close_a_gap_as_a_damped_oscillation():
     """phi'' + 2 alpha phi' + beta^2 phi = 0: with alpha = beta from rest phi = phi0 (1 + beta t) exp(-beta t)."""
     system = eomgen.derive(eomgen.loads(TIED)).system
-    pulling = stabilized(recursive.assembled_by_recursion(system), (5.0, 5.0))
+    pulling = recursive.assembled_by_recursion(system).stabilized((5.0, 5.0))
     found = integrate(compiled(right_hand_side(pulling), "numpy"), time=2.0, x0=[0.6, -0.85, 0, 0], p=[])
     gap = (found["x"] ** 2 + found["y"] ** 2 - 1) / 2
     t, first = found.t, (0.6**2 + 0.85**2 - 1) / 2

@@ -5,23 +5,11 @@ from eomgen.codegen.batching import Batch as Batch
 # Options that are the same for all runs
 from eomgen.codegen.batching import Requested as Requested
 
-# Each piece of work in a thread of its own; if `check`, called now and then, raises, their event is set
-from eomgen.codegen.batching import in_threads as in_threads
-
-# (first, the one after the last) of so many parts, of one length as nearly as can be
-from eomgen.codegen.batching import pieces_of as pieces_of
-
 # Path of a compiler (the environment's, as CC, else cc, gcc, clang, or ziglang's), or None
 from eomgen.codegen.build import compiler as compiler
 
-# A function of a library
-from eomgen.codegen.build import function_of as function_of
-
-# The text, compiled and loaded
-from eomgen.codegen.build import library as library
-
-# The C compiler, with flags for the registers of this machine; every operation is rounded as without them
-from eomgen.codegen.build import of_this_machine as of_this_machine
+# The functions of a C text by their names, compiled for this machine
+from eomgen.codegen.build import functions_in_c as functions_in_c
 
 # A function of (t, x, p, inputs), its statements in the order in which they are run
 from eomgen.codegen.program import Program as Program

@@ -5,9 +5,8 @@ from __future__ import annotations
 import ctypes
 import functools
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from functools import partial
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.c_lanes import LANES, constants_of, lanes_text, text_of, vector_compiler
 from eomgen.codegen.taylor import series_text
 from eomgen.frozen import dataclass
+from eomgen.resources import in_threads, pieces_of
 
 STATUS = ("running", "finished", "not finite", "step too small", "too many steps", "stiff")
 ROUNDS = 2000  # of a call: between two calls somebody may have lost patience
@@ -205,30 +205,6 @@ class Batch:
             setattr(b, name, array.ctypes.data)
         while not stop.is_set() and self._batch(ctypes.byref(b), ROUNDS):
             pass
-
-
-def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
-    """(first, the one after the last) of so many parts, of one length as nearly as can be."""
-    edges = np.linspace(0, count, max(1, parts) + 1).astype(int).tolist()
-    return list(pairwise(edges))
-
-
-def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:
-    """Each piece of work in a thread of its own; if `check`, called now and then, raises, their event is set."""
-    from concurrent.futures import ThreadPoolExecutor, wait
-
-    stop = threading.Event()
-    with ThreadPoolExecutor(len(work)) as pool:
-        begun = [pool.submit(each, stop) for each in work]
-        try:
-            while not all(each.done() for each in begun):
-                check()
-                wait(begun, timeout=0.05)
-        except BaseException:
-            stop.set()
-            raise
-        for each in begun:
-            each.result()
 
 
 def _aligned(count: int) -> np.ndarray:

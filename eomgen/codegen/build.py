@@ -115,6 +115,16 @@ _EXTENSIONS = {"avx512f": "-mavx512f", "avx512dq": "-mavx512dq", "avx2": "-mavx2
 
 
 @cache
+def functions_in_c(text: str, *names: str) -> tuple[Any, ...]:
+    """The functions of a C text by their names, compiled for this machine.
+
+    Raises:
+        RunFailed, ToolMissing: as of `library`.
+    """
+    made = library(text, by=of_this_machine())
+    return tuple(function_of(made, name) for name in names)
+
+
 def of_this_machine() -> Compiler:
     """The C compiler, with flags for the registers of this machine; every operation is rounded as without them."""
     flags = [flag for name, flag in _EXTENSIONS.items() if name in _processor()]

@@ -21,10 +21,9 @@ from eomgen.symbolic.exact import (
     common_factor,
     equal_at_random_states,
     is_root_of_sum,
-    normal_form,
     readable,
-    readable_over,
     rooted,
+    short_over,
     with_squares,
 )
 from eomgen.symbolic.expression import (
@@ -124,12 +123,8 @@ class Reader:
         """
         held = [symbol for symbol in order((x,)) if symbol in self.roots]
         try:
-            if held and len(normal_form(x, Work.ENTRY).terms) > WAVES:
-                return None
             short = (
-                readable_over(x, held, Work.ENTRY, self.positive)
-                if held
-                else book_form(x, positive=self.positive, most=WAVES)
+                short_over(x, held, WAVES, self.positive) if held else book_form(x, positive=self.positive, most=WAVES)
             )
         except TooLarge:
             return None

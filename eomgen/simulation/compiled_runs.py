@@ -17,10 +17,10 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from eomgen.codegen import Batch, Requested, in_c, in_threads, order_for, pieces_of
+from eomgen.codegen import Batch, Requested, in_c, order_for
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.frozen import dataclass
-from eomgen.resources import check_patience
+from eomgen.resources import check_patience, in_threads, pieces_of
 from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.integration import drift_of

@@ -17,9 +17,7 @@ from eomgen.codegen import (
     at_unit_norms,
     c_together,
     compiled,
-    function_of,
-    library,
-    of_this_machine,
+    functions_in_c,
     program_of,
 )
 from eomgen.frozen import dataclass
@@ -144,10 +142,8 @@ def library_of_march() -> tuple[Any, Any, Any, Any, Any]:
     there = resources.files("eomgen.codegen")
     texts = [there / "dop853.c", there / "dop853_pieces.c", here / "march.c", here / "radau.c"]
     text = "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
-    made = library(text, by=of_this_machine())
-    begin, march, dense, look, runs = (
-        function_of(made, name) for name in ("march_begin", "march", "march_dense", "march_look", "march_runs")
-    )
+    names = ("march_begin", "march", "march_dense", "march_look", "march_runs")
+    begin, march, dense, look, runs = functions_in_c(text, *names)
     begin.argtypes, begin.restype = [_AT], None
     march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
     dense.argtypes, dense.restype = [_AT], None

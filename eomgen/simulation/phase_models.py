@@ -13,7 +13,7 @@ from eomgen.codegen import RightHandSide, compiled, program_of
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank, Row, holds_identically, rows_of_constraint
-from eomgen.mechanics.dynamics import EquationsOfMotion, PullBack, System, assembled_by_recursion, stabilized, system_of
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion, system_of
 from eomgen.mechanics.free_bodies import equations_of_motion, with_friction
 from eomgen.mechanics.kinematics import GROUND, BodyLink, ContactMode, ContactModes
 from eomgen.model import Contact, Coordinate, Model, PointForce, Table
@@ -110,7 +110,7 @@ class PhaseModels:
         model: Model,
         p: np.ndarray,
         target: str | None,
-        rates: PullBack | None = None,
+        rates: tuple[float, float] | None = None,
         derived: EquationsOfMotion | None = None,
         origin: tuple[PhaseModels, Fed | None] | None = None,
     ) -> None:
@@ -193,7 +193,7 @@ class PhaseModels:
         if self._derived is not None and self._derived.system is system and self.rates is None:
             return self._derived
         equations = assembled_by_recursion(system)
-        return with_friction(equations if self.rates is None else stabilized(equations, self.rates))
+        return with_friction(equations if self.rates is None else equations.stabilized(self.rates))
 
     def _system(self, model: Model, configuration: Configuration) -> System:
         """The system of a configuration.

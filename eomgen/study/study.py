@@ -36,7 +36,6 @@ from eomgen.mechanics.dynamics import (
     refuse_jump,
     reported_of_nodes,
     signs_of_rates,
-    stabilized,
     system_of,
     with_accelerations,
     with_nodes_balanced,
@@ -137,7 +136,7 @@ class Study:
         Raises:
             UsageError: see `stabilized`.
         """
-        return replace(self, replaced=with_friction(stabilized(assembled_by_recursion(self.system), rates)))
+        return replace(self, replaced=with_friction(assembled_by_recursion(self.system).stabilized(rates)))
 
     @cached_property
     def explicit(self) -> EquationsOfMotion:

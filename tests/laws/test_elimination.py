@@ -17,7 +17,7 @@ from slow_run import usual
 import eomgen
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints import elimination
-from eomgen.mechanics.dynamics.system import free_system_of, system_of
+from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.proof import certificate, identities
 from eomgen.symbolic.exact import cramer
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -398,5 +398,5 @@ def test_a_start_in_a_change_point_is_an_outcome_that_names_it():
 
 def test_the_free_system_has_every_coordinate():
     """Before the elimination nothing is dependent."""
-    free = free_system_of(model("three cranks"))
+    free = System.free_of(model("three cranks"))
     assert len(free.symbols.u) == 4 and {row.status for row in free.constraints.rows} == {"closing"}

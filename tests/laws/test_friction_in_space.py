@@ -10,7 +10,7 @@ import pytest
 from scipy.optimize import fsolve
 
 import eomgen
-from eomgen.mechanics.dynamics.system import free_system_of
+from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.symbolic.exact.cramer import LARGEST_BLOCK
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -334,7 +334,7 @@ friction = "mu"
 
 def test_accelerations_of_many_unknowns_have_values_wherever_the_constraints_are_regular():
     """J a + gamma = 0 where one angle after the other is 0: nothing is divided by an entry that vanishes there."""
-    system = free_system_of(eomgen.loads(WELDED))
+    system = System.free_of(eomgen.loads(WELDED))
     equations, rng = equations_of_motion(system), Random(1)
     symbols = system.symbols
     assert len(symbols.u) + len(equations.J) > LARGEST_BLOCK

@@ -14,9 +14,6 @@ from eomgen.mechanics.constraints.assembly import open_at as open_at
 
 # |x|, where it is more than rounding: against its terms, and against what the symbols would have to move
 from eomgen.mechanics.constraints.assembly import open_by as open_by
-
-# Coordinates or speeds in the order in which they may change: not given, given by the model, by the caller
-from eomgen.mechanics.constraints.assembly import tiers_of as tiers_of
 from eomgen.mechanics.constraints.closure import CLOSING as CLOSING
 
 # States in which constraints hold, phi = 0 and J u + sigma = 0, with 50 digits

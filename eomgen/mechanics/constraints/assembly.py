@@ -19,7 +19,6 @@ from eomgen.mechanics.constraints.rank import Rank
 from eomgen.mechanics.constraints.rows import Constraints, Row
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
@@ -97,7 +96,7 @@ class Assembly:
             for q in scope.symbols.q
             if q in standing and q not in sought and not scope.model.coordinates[q.name].driven
         ]
-        silent, given, typed = tiers_of(scope.model, own, called)
+        silent, given, typed = self.tiers(own, called)
         return Closure(staying).nearest_places(
             state, ([*sought, *silent], given, typed), (*sought, *silent)
         ) or state, opened
@@ -155,6 +154,13 @@ class Assembly:
                     return {**state, **{u: state[u] + float(d) for u, d in zip(free, found, strict=True)}}
         return None
 
+    def tiers(self, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
+        """Coordinates or speeds in the order in which they may change: not given, given by the model, by the caller."""
+        model = self.constraints.motion.scope.model
+        silent = [node for node in own if node.name not in called and model.is_guess(node.name)]
+        typed = [node for node in own if node.name in called]
+        return silent, [node for node in own if node not in silent and node not in typed], typed
+
 
 def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int) -> State:
     """A state at t = 0 in which positions agree with the constraints."""
@@ -172,13 +178,6 @@ def _differs(declared: Scalar, q: Node, state: State) -> bool:
     """True if a coordinate differs from its declared start."""
     before = float(evaluate((declared,), state, fifty_digits())[0])
     return abs(float(state[q]) - before) > tolerances.COMPUTED * (1 + abs(before))
-
-
-def tiers_of(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
-    """Coordinates or speeds in the order in which they may change: not given, given by the model, by the caller."""
-    silent = [node for node in own if node.name not in called and model.is_guess(node.name)]
-    typed = [node for node in own if node.name in called]
-    return silent, [node for node in own if node not in silent and node not in typed], typed
 
 
 def open_at(pairs: Iterable[tuple[Row, Scalar | None]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:

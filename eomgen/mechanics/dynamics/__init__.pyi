@@ -1,12 +1,7 @@
 """Door of the folder: what other folders may import from `eomgen.mechanics.dynamics`."""
 
-from eomgen.mechanics.dynamics.accelerations import PullBack as PullBack
-
 # Accelerations with more digits than doubles have: the residual of each solution is solved for again
 from eomgen.mechanics.dynamics.accelerations import exact_accelerations as exact_accelerations
-
-# The equations of motion with rows that pull
-from eomgen.mechanics.dynamics.accelerations import stabilized as stabilized
 
 # The equations with explicit accelerations, where articulated bodies give them
 from eomgen.mechanics.dynamics.accelerations import with_accelerations as with_accelerations
@@ -62,9 +57,6 @@ from eomgen.mechanics.dynamics.system import EquationsOfMotion as EquationsOfMot
 
 # Motion, loads and constraints from which every formulation assembles the equations; none of them uses another
 from eomgen.mechanics.dynamics.system import System as System
-
-# Motion, loads and constraints of a model in which dependent coordinates are as free as others
-from eomgen.mechanics.dynamics.system import free_system_of as free_system_of
 
 # Motion, loads and constraints of a model, dependent coordinates eliminated
 from eomgen.mechanics.dynamics.system import system_of as system_of

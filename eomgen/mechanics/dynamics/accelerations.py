@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, branches_of, inertia_wrench, rate_matrix
@@ -15,14 +14,12 @@ from eomgen.mechanics.kinematics import GROUND, Loads, Motion, SystemInertia
 from eomgen.symbolic.expression import (
     IDENTITY,
     ZERO,
-    Fraction,
     Matrix,
     Scalar,
     State,
     Vector,
     apply,
     cross,
-    fraction_of,
     is_zero,
     matrix_of,
     over,
@@ -327,34 +324,3 @@ def _turn(branch: Branch, a: Vector) -> Vector:
 # beta. Of a row that is given as a velocity alone the speed decays, with the rate 2 alpha. Source: Baumgarte,
 # Stabilization of constraints and integrals of motion in dynamical systems, Computer Methods in Applied Mechanics and
 # Engineering 1 (1972).
-
-
-PullBack = tuple[float, float]
-
-
-def stabilized(equations: EquationsOfMotion, rates: PullBack) -> EquationsOfMotion:
-    """The equations of motion with rows that pull.
-
-    Args:
-        rates: alpha, beta [1/s].
-    Raises:
-        UsageError: a rate that is no positive number; a constraint that has no multiplier to pull by.
-    """
-    alpha, beta = (_exact(rate) for rate in rates)
-    taken = dict.fromkeys(row.constraint for row in equations.system.constraints.rows if row.status == "eliminated")
-    if taken:
-        names = ", ".join(f"'{name}'" for name in taken)
-        raise UsageError(
-            f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
-            fix="take the projection, or declare no coordinate dependent",
-        )
-    rows = zip(equations.gamma, equations.system.constraints.closing, equations.phi, strict=True)
-    pulling = (g + 2 * alpha * row.velocity + (0 if phi is None else beta * beta * phi) for g, row, phi in rows)
-    return replace(equations, gamma=tuple(pulling))
-
-
-def _exact(rate: float) -> Fraction:
-    """A decimal as it was written."""
-    if not 0 < rate < float("inf"):
-        raise UsageError(f"Baumgarte's rates must be positive, not {rate:g}", fix="give alpha and beta in 1/s")
-    return fraction_of(repr(float(rate)))

@@ -7,12 +7,7 @@ from dataclasses import replace
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.frozen import dataclass, recalled
-from eomgen.mechanics.dynamics.system import (
-    EquationsOfMotion,
-    System,
-    assembled,
-    free_system_of,
-)
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, assembled
 from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, bias_forces, branches_of, composite_mass_matrix
 from eomgen.mechanics.kinematics import Loads, Motion, SystemInertia
 from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
@@ -369,7 +364,7 @@ def _balanced(model: Model) -> Model:
     if not free or model.speeds or model.unknowns or not any(map(_is_lean, model.bodies.values())):
         return model
     try:
-        equations = assembled_by_recursion(free_system_of(model))
+        equations = assembled_by_recursion(System.free_of(model))
         found = dict(_balances(equations, free))
         if not found:
             return model

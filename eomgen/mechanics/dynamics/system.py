@@ -7,7 +7,7 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.errors import DerivationError, ModelError
+from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import (
     PLACE,
@@ -28,6 +28,7 @@ from eomgen.mechanics.kinematics import (
 from eomgen.model import Model, Table, rate_matrix_of
 from eomgen.symbolic.exact import cramer, vanishes
 from eomgen.symbolic.expression import (
+    Fraction,
     Node,
     Scalar,
     ScalarRow,
@@ -35,6 +36,7 @@ from eomgen.symbolic.expression import (
     as_expression,
     depends_on,
     depends_on_any,
+    fraction_of,
     inner,
     is_zero,
     jacobian,
@@ -180,6 +182,20 @@ class System:
         model = scope.model.altered(coordinates=Table(table))
         return system_of(model, self.modes), tuple(moved)
 
+    @staticmethod
+    def free_of(
+        model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
+    ) -> System:
+        """Motion, loads and constraints of a model in which dependent coordinates are as free as others."""
+        motion = Motion.of(Scope.of(model, with_laws=with_laws))
+        constraints = Constraints.of(motion, modes=modes)
+        begun: Mapping[Node, Scalar] = {}
+        if begun_as is not None:
+            begun = _carried_places(begun_as, motion.scope)
+        elif any(force.of_the_start for force in model.forces.values()):
+            begun = Assembly(constraints).begun_places()
+        return System(motion, Loads.of(motion, begun), constraints, modes or {})
+
 
 def system_of(
     model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
@@ -195,22 +211,8 @@ def system_of(
         NotYet: a kind of joint, force or constraint that this version does not derive.
         DerivationError: what the model says cannot be derived.
     """
-    free = free_system_of(model, modes, with_laws=with_laws, begun_as=begun_as)
+    free = System.free_of(model, modes, with_laws=with_laws, begun_as=begun_as)
     return free.reduced() if free.scope.dependent or model.speeds else free
-
-
-def free_system_of(
-    model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
-) -> System:
-    """Motion, loads and constraints of a model in which dependent coordinates are as free as others."""
-    motion = Motion.of(Scope.of(model, with_laws=with_laws))
-    constraints = Constraints.of(motion, modes=modes)
-    begun: Mapping[Node, Scalar] = {}
-    if begun_as is not None:
-        begun = _carried_places(begun_as, motion.scope)
-    elif any(force.of_the_start for force in model.forces.values()):
-        begun = Assembly(constraints).begun_places()
-    return System(motion, Loads.of(motion, begun), constraints, modes or {})
 
 
 def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:
@@ -285,6 +287,26 @@ class EquationsOfMotion:
     def inputs(self) -> dict[str, Scalar]:
         """The model's own expression of each input."""
         return self.system.inputs
+
+    def stabilized(self, rates: tuple[float, float]) -> EquationsOfMotion:
+        """The equations of motion with rows that pull.
+
+        Args:
+            rates: alpha, beta [1/s].
+        Raises:
+            UsageError: a rate that is no positive number; a constraint that has no multiplier to pull by.
+        """
+        alpha, beta = (_exact(rate) for rate in rates)
+        taken = dict.fromkeys(row.constraint for row in self.system.constraints.rows if row.status == "eliminated")
+        if taken:
+            names = ", ".join(f"'{name}'" for name in taken)
+            raise UsageError(
+                f"Baumgarte's rows pull by multipliers, and {names} has none: it gives dependent coordinates",
+                fix="take the projection, or declare no coordinate dependent",
+            )
+        rows = zip(self.gamma, self.system.constraints.closing, self.phi, strict=True)
+        pulling = (g + 2 * alpha * row.velocity + (0 if phi is None else beta * beta * phi) for g, row, phi in rows)
+        return replace(self, gamma=tuple(pulling))
 
 
 def assembled(
@@ -478,3 +500,10 @@ def _combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[An
                 if not is_zero(x):
                     total[i] = total[i] + factor * x
     return tuple(total)
+
+
+def _exact(rate: float) -> Fraction:
+    """A decimal as it was written."""
+    if not 0 < rate < float("inf"):
+        raise UsageError(f"Baumgarte's rates must be positive, not {rate:g}", fix="give alpha and beta in 1/s")
+    return fraction_of(repr(float(rate)))

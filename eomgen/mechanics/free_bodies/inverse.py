@@ -25,14 +25,7 @@ from eomgen.mechanics.constraints import (
     Row,
     holds_identically,
 )
-from eomgen.mechanics.dynamics import (
-    EquationsOfMotion,
-    System,
-    assembled_by_recursion,
-    free_system_of,
-    inverse_residual,
-    system_of,
-)
+from eomgen.mechanics.dynamics import EquationsOfMotion, System, assembled_by_recursion, inverse_residual, system_of
 from eomgen.mechanics.free_bodies.friction import SystemFriction
 from eomgen.mechanics.free_bodies.reactions import Reactions
 from eomgen.mechanics.start import begun_state
@@ -257,7 +250,7 @@ class DrivingForces:
                 ),
             )
             over_all = self.system.free is None and self.system.scope.dependent
-            self.system.found[key] = (free_system_of if over_all else system_of)(
+            self.system.found[key] = (System.free_of if over_all else system_of)(
                 model, self.system.modes, begun_as=self.system
             )
         free: System = self.system.found[key]

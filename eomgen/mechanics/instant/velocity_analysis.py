@@ -19,7 +19,7 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
-from eomgen.mechanics.dynamics import System, free_system_of
+from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.mechanics.start import Start, values_where_at_rest
 from eomgen.model import Model, WrittenEquation, freed, is_node
@@ -274,7 +274,7 @@ class InstantKinematics:
         Raises:
             DerivationError: constraints that do not close at the start.
         """
-        free = free_system_of(freed(model))
+        free = System.free_of(freed(model))
         places, numbers = _places(free)
         located = {q: numbers[q.name] for q in free.constraints.fixed_by_position if numbers and q not in places}
         exact = by_coordinates or not located

@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, OpenConstraints, UsageError
 from eomgen.frozen import dataclass
-from eomgen.mechanics.constraints import Assembly, Closure, Fork, Row, open_at, open_by, tiers_of
+from eomgen.mechanics.constraints import Assembly, Closure, Fork, Row, open_at, open_by
 from eomgen.mechanics.dynamics import System, Valueless, mass
 from eomgen.mechanics.state import Doubles, Numbers
 from eomgen.model import (
@@ -162,7 +162,7 @@ def _with_rates_closed(
 def _tiers(system: System, called: frozenset[str]) -> tuple[list[Node], ...]:
     """Speeds in the order in which they are changed: those that follow from the others first."""
     follow = following_rates(system)
-    return follow, *tiers_of(system.scope.model, [u for u in system.symbols.u if u not in follow], called)
+    return follow, *Assembly(system.constraints).tiers([u for u in system.symbols.u if u not in follow], called)
 
 
 def following_rates(system: System) -> list[Node]:

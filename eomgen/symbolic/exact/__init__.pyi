@@ -15,11 +15,11 @@ from eomgen.symbolic.exact.book_forms import book_form as book_form
 # True for sqrt(a + b), not for sqrt(2) and sqrt(x^2)
 from eomgen.symbolic.exact.book_forms import is_root_of_sum as is_root_of_sum
 
-# x multiplied out but for what is divided by the symbols `roots`: k*(1 - l0/r)*(x2 - x1)
-from eomgen.symbolic.exact.book_forms import readable_over as readable_over
-
 # The expressions with a symbol for each square root r of a sum in them, and for each rate (...)/r
 from eomgen.symbolic.exact.book_forms import rooted as rooted
+
+# x multiplied out but for what is divided by the symbols `roots`, where that has few terms
+from eomgen.symbolic.exact.book_forms import short_over as short_over
 
 # Groups that need one another, each after the groups that it needs (Tarjan's strongly connected components)
 from eomgen.symbolic.exact.cramer import components as components
@@ -100,9 +100,6 @@ from eomgen.symbolic.exact.normal_forms import legible as legible
 
 # True if x is positive, or negative, wherever it has a value, for positive constants: M + m*sin(alpha)^2
 from eomgen.symbolic.exact.normal_forms import never_vanishes as never_vanishes
-
-# The normal form of x
-from eomgen.symbolic.exact.normal_forms import normal_form as normal_form
 
 # x multiplied out and written shortly: 27/2*M*R^2*cos(theta)^2*theta'^2, cos(theta1 - theta2)
 from eomgen.symbolic.exact.normal_forms import readable as readable

@@ -16,7 +16,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion, expanded
-from eomgen.symbolic.exact.normal_forms import in_whole_numbers, quotients, readable
+from eomgen.symbolic.exact.normal_forms import in_whole_numbers, normal_form, quotients, readable
 from eomgen.symbolic.exact.quotient import by_parameters, in_half_angles, reduced
 from eomgen.symbolic.exact.sums import LARGEST_RATIO, MOST_NESTED, CollectedSums, SumParts
 from eomgen.symbolic.exact.terms import (
@@ -327,6 +327,17 @@ def _over(x: Scalar, divisors: Sequence[Node], limit: int) -> Scalar:
         return readable_over(x, divisors, limit)
     except TooLarge:
         return x
+
+
+def short_over(x: Scalar, roots: Sequence[Node], most: int, positive: Collection[Node] = ()) -> Scalar:
+    """x multiplied out but for what is divided by the symbols `roots`, where that has few terms.
+
+    Raises:
+        TooLarge: it has more than `most` terms, or takes too much work.
+    """
+    if len(normal_form(x, Work.ENTRY).terms) > most:
+        raise TooLarge(f"more than {most} terms")
+    return readable_over(x, roots, Work.ENTRY, positive)
 
 
 def readable_over(x: Scalar, roots: Sequence[Node], limit: int, positive: Collection[Node] = ()) -> Scalar:
