@@ -14,11 +14,11 @@ import eomgen
 from eomgen.cli import main
 from eomgen.documents.json_form import as_dict
 from eomgen.documents.proven_documents import shown
+from eomgen.mechanics.kinematics import principal_axes as rows
 from eomgen.mechanics.kinematics import symbols as composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.proof.masses import FILLED
 from eomgen.results.mass_properties import result, steps
-from eomgen.results.mass_properties import steps as rows
 from eomgen.results.mass_properties.result import inertia as verb
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"

@@ -34,11 +34,11 @@ from eomgen.mechanics.kinematics.motion import spin_between as spin_between
 # A state in numbers, by which exact values are recognised, never made
 from eomgen.mechanics.kinematics.places import Located as Located
 
+# Rows taken as one body: mass, mass centre, inertia about a point
+from eomgen.mechanics.kinematics.principal_axes import InertiaSum as InertiaSum
+
 # The principal moments and axes of a tensor
 from eomgen.mechanics.kinematics.principal_axes import Principal as Principal
-
-# x in readable form, the magnitudes of constants by their sign; a long sum as it is
-from eomgen.mechanics.kinematics.principal_axes import short_form as short_form
 
 # State of one contact
 from eomgen.mechanics.kinematics.scene import ContactMode as ContactMode

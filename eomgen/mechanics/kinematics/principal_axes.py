@@ -1,20 +1,26 @@
-"""Inertia tensor -> principal moments and axes, exact wherever they have a closed form."""
+"""Inertia tensor -> principal moments and axes, exact wherever they have a closed form; tensors of several bodies."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
-from functools import cached_property, cmp_to_key
+from collections.abc import Callable, Collection, Sequence
+from functools import cache, cached_property, cmp_to_key, partial
 
 from eomgen.frozen import dataclass
+from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.model import MassProperties, matrix_times
 from eomgen.symbolic.exact import common_factor, roots, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
     IDENTITY,
+    ZERO,
     Fraction,
     Matrix,
     Node,
+    Pose,
     Scalar,
+    State,
     Vector,
+    added,
     cos,
     cross,
     dot,
@@ -23,10 +29,13 @@ from eomgen.symbolic.expression import (
     matrix_of,
     order,
     over,
+    plus,
+    product,
     sqrt,
     substituted,
     symbols_of,
     times,
+    transposed,
     vector_of,
 )
 from eomgen.symbolic.numeric import Work, number_of
@@ -339,3 +348,114 @@ def _with_signs(x: Scalar) -> Scalar:
             (inside,) = node.args
             known[node] = inside if number_of(inside) > 0 else -inside
     return substituted((x,), known)[0] if known else x
+
+
+# -------- sums of inertia -------------------------------------------------------------------------------------
+# System -> what bodies and their pieces add up to, in one set of axes, about one point.
+
+
+@dataclass(frozen=True)
+class InertiaRow:
+    """A body, or a piece of one.
+
+    Args:
+        label: its name.
+        sign: -1 for a hole, which takes away.
+        mass: its mass (positive), mass centre and inertia about it.
+    """
+
+    label: str
+    sign: int
+    mass: MassProperties
+
+    def own(self) -> Matrix:
+        """Its inertia about its own mass centre, as it counts."""
+        return matrix_times(self.sign, self.mass.I)
+
+    def shift(self, point: Vector) -> Matrix:
+        """m (d.d 1 - d d^T), the parallel-axis term, with the sign of the piece."""
+        without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
+        return matrix_times(self.sign, without.about(point))
+
+
+@dataclass(frozen=True)
+class InertiaSum:
+    """Rows taken as one body: mass, mass centre, inertia about a point.
+
+    Args:
+        motion: whose formulas they are.
+        rows: in one set of axes.
+        start: values of the coordinates for the numbers (empty: moving bodies have no numbers).
+    """
+
+    motion: Motion
+    rows: tuple[InertiaRow, ...]
+    start: State
+
+    @staticmethod
+    def of_body(motion: Motion, body: str, start: State) -> InertiaSum:
+        """One body in its own axes: its pieces, or itself."""
+        return InertiaSum(motion, _rows(motion, body, Pose()), start)
+
+    @staticmethod
+    def of_bodies(motion: Motion, bodies: Sequence[str], start: State) -> InertiaSum:
+        """Several bodies where they are, ground axes."""
+        rows = [row for body in bodies for row in _rows(motion, body, motion.link(body).pose, body)]
+        return InertiaSum(motion, tuple(rows), start)
+
+    def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
+        """Values of scalars at the start, new ones evaluated together; None where one has no value."""
+        fresh = [x for x in dict.fromkeys(scalars) if x not in self._value]
+        found = self.motion.scope.numbers(fresh, self.start) if fresh else []
+        if found is None:
+            return None
+        self._value.update(zip(fresh, found, strict=True))
+        return [self._value[x] for x in scalars]
+
+    @cached_property
+    def _value(self) -> dict[Scalar, float]:
+        return {}
+
+    @cached_property
+    def short(self) -> Callable[[Scalar], Scalar]:
+        """x in readable form; what was read once is not read again."""
+        return cache(partial(short_form, positive=self.motion.scope.positive))
+
+    @cached_property
+    def m(self) -> Scalar:
+        return self.short(sum(row.sign * row.mass.m for row in self.rows))
+
+    @cached_property
+    def com(self) -> Vector:
+        """The mass centre (without mass, the origin)."""
+        if is_zero(self.m):
+            return ZERO
+        first: Vector = ZERO
+        for row in self.rows:
+            first = plus(first, times(row.sign * row.mass.m, row.mass.com))
+        return vector_of(self.short(over(x, self.m)) for x in first)
+
+    def tensor(self, point: Vector) -> Matrix:
+        """The inertia about a point, axes of the rows."""
+        total: Matrix = (ZERO, ZERO, ZERO)
+        for row in self.rows:
+            total = added(total, added(row.own(), row.shift(point)))
+        return matrix_of((self.short(x) for x in line) for line in total)
+
+
+def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:
+    """The pieces of a body, or itself, seen from where `pose` leads."""
+    if motion.scope.model.bodies[body].parts is None:
+        return (InertiaRow(body, 1, _seen(motion.scope.mass_properties(body), pose)),)
+    pieces = motion.scope.made_of(body).pieces
+    begin = f"{of}, " if of else ""
+    return tuple(
+        InertiaRow(
+            f"{begin}part {k}: {p.piece.shape.kind}" + (" (hole)" if p.piece.hole else ""), p.sign, _seen(p.mass, pose)
+        )
+        for k, p in enumerate(pieces, start=1)
+    )
+
+
+def _seen(mass: MassProperties, pose: Pose) -> MassProperties:
+    return MassProperties(mass.m, pose.point(mass.com), product(product(pose.R, mass.I), transposed(pose.R)))

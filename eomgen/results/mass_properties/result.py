@@ -33,7 +33,7 @@ from eomgen.documents import (
 from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.kinematics import SystemInertia
+from eomgen.mechanics.kinematics import InertiaSum, SystemInertia
 from eomgen.mechanics.start import Start
 from eomgen.model import ModelOrPath, Values, model_at, nearest
 from eomgen.proof import Certificate, Stated, mass_checks
@@ -41,7 +41,6 @@ from eomgen.resources import doing
 from eomgen.results.mass_properties.steps import (
     LONGEST,
     InertiaEntry,
-    InertiaSum,
     Section,
     axis_results,
     conventions_grid,
@@ -50,11 +49,9 @@ from eomgen.results.mass_properties.steps import (
     masses_grid,
     moments_grid,
     named_results,
-    own_sum,
     polar_results,
     principal_statements,
     tensor_results,
-    together,
 )
 from eomgen.scene import scene_of_inertia
 from eomgen.study import study_of
@@ -212,7 +209,7 @@ class _Report:
         sections = [self._own(body) for body in bodies]
         made = [self._step(f"Body '{s.of}'", f"inertia_{s.of}", s) for s in sections]
         if len(bodies) > 1:
-            whole = together(self.system.motion, bodies, self.start)
+            whole = InertiaSum.of_bodies(self.system.motion, bodies, self.start)
             section = self._centroidal(whole, "", bodies)
             made.append(self._step("The bodies together, ground axes", "inertia_together", section))
         if self.about is not None or self.axis is not None:
@@ -236,7 +233,7 @@ class _Report:
         }
 
     def _own(self, body: str) -> Section:
-        return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))
+        return self._centroidal(InertiaSum.of_body(self.system.motion, body, self.start), body, (body,))
 
     def _centroidal(self, sum: InertiaSum, of: str, bodies: tuple[str, ...]) -> Section:
         motion = self.system.motion
@@ -288,7 +285,9 @@ class _Report:
                 "give 'inertia' (0 for a point), or a shape; or leave it out: --body",
             )
         flat = bool(SystemInertia(self.system.motion).flat(bodies))
-        section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False, (), bodies)
+        section = Section(
+            InertiaSum.of_bodies(self.system.motion, bodies, self.start), point, name, flat, False, (), bodies
+        )
         title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
         return self._step(title, "inertia_about", section, axis)
 
@@ -323,7 +322,7 @@ class _Report:
 
 def together_mass(system: System, body: str) -> Any:
     """The mass of a body, its pieces added up."""
-    return own_sum(system.motion, body, {}).m
+    return InertiaSum.of_body(system.motion, body, {}).m
 
 
 def _conventions() -> Step:

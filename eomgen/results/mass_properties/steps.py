@@ -5,36 +5,26 @@ Sums of rows -> the steps of a report of inertia: masses, parallel axes, both co
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from functools import cache, cached_property, partial
+from collections.abc import Iterator, Sequence
+from functools import cached_property
 
 import numpy as np
 
 from eomgen.documents import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.frozen import dataclass
-from eomgen.mechanics.kinematics import Motion, Principal, short_form
-from eomgen.model import MassProperties, about_axis, matrix_times, polar, second_moments
+from eomgen.mechanics.kinematics import InertiaSum, Principal
+from eomgen.model import about_axis, polar, second_moments
 from eomgen.symbolic.expression import (
-    ZERO,
     Matrix,
     Node,
-    Pose,
     Scalar,
-    State,
     Vector,
-    added,
     holds_many_digits,
     is_zero,
-    matrix_of,
     order,
     over,
-    plus,
-    product,
     sqrt,
     symbols_of,
-    times,
-    transposed,
-    vector_of,
 )
 from eomgen.symbolic.print import text_size
 
@@ -294,114 +284,3 @@ def axes_in_numbers(section: Section, found: Principal) -> list[list[float]] | N
 def named_results(results: Sequence[InertiaEntry]) -> dict[str, InertiaEntry]:
     """The results by name."""
     return {result.name: result for result in results}
-
-
-# -------- rows ------------------------------------------------------------------------------------------------
-# System -> what a report of inertia adds up: bodies and their pieces, in one set of axes, about one point.
-
-
-@dataclass(frozen=True)
-class InertiaRow:
-    """A body, or a piece of one.
-
-    Args:
-        label: its name.
-        sign: -1 for a hole, which takes away.
-        mass: its mass (positive), mass centre and inertia about it.
-    """
-
-    label: str
-    sign: int
-    mass: MassProperties
-
-    def own(self) -> Matrix:
-        """Its inertia about its own mass centre, as it counts."""
-        return matrix_times(self.sign, self.mass.I)
-
-    def shift(self, point: Vector) -> Matrix:
-        """m (d.d 1 - d d^T), the parallel-axis term, with the sign of the piece."""
-        without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
-        return matrix_times(self.sign, without.about(point))
-
-
-@dataclass(frozen=True)
-class InertiaSum:
-    """Rows taken as one body: mass, mass centre, inertia about a point.
-
-    Args:
-        motion: whose formulas they are.
-        rows: in one set of axes.
-        start: values of the coordinates for the numbers (empty: moving bodies have no numbers).
-    """
-
-    motion: Motion
-    rows: tuple[InertiaRow, ...]
-    start: State
-
-    def numbers(self, scalars: Sequence[Scalar]) -> list[float] | None:
-        """Values of scalars at the start, new ones evaluated together; None where one has no value."""
-        fresh = [x for x in dict.fromkeys(scalars) if x not in self._value]
-        found = self.motion.scope.numbers(fresh, self.start) if fresh else []
-        if found is None:
-            return None
-        self._value.update(zip(fresh, found, strict=True))
-        return [self._value[x] for x in scalars]
-
-    @cached_property
-    def _value(self) -> dict[Scalar, float]:
-        return {}
-
-    @cached_property
-    def short(self) -> Callable[[Scalar], Scalar]:
-        """x in readable form; what was read once is not read again."""
-        return cache(partial(short_form, positive=self.motion.scope.positive))
-
-    @cached_property
-    def m(self) -> Scalar:
-        return self.short(sum(row.sign * row.mass.m for row in self.rows))
-
-    @cached_property
-    def com(self) -> Vector:
-        """The mass centre (without mass, the origin)."""
-        if is_zero(self.m):
-            return ZERO
-        first: Vector = ZERO
-        for row in self.rows:
-            first = plus(first, times(row.sign * row.mass.m, row.mass.com))
-        return vector_of(self.short(over(x, self.m)) for x in first)
-
-    def tensor(self, point: Vector) -> Matrix:
-        """The inertia about a point, axes of the rows."""
-        total: Matrix = (ZERO, ZERO, ZERO)
-        for row in self.rows:
-            total = added(total, added(row.own(), row.shift(point)))
-        return matrix_of((self.short(x) for x in line) for line in total)
-
-
-def own_sum(motion: Motion, body: str, start: State) -> InertiaSum:
-    """One body in its own axes: its pieces, or itself."""
-    return InertiaSum(motion, _rows(motion, body, Pose()), start)
-
-
-def together(motion: Motion, bodies: Sequence[str], start: State) -> InertiaSum:
-    """Several bodies where they are, ground axes."""
-    rows = [row for body in bodies for row in _rows(motion, body, motion.link(body).pose, body)]
-    return InertiaSum(motion, tuple(rows), start)
-
-
-def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:
-    """The pieces of a body, or itself, seen from where `pose` leads."""
-    if motion.scope.model.bodies[body].parts is None:
-        return (InertiaRow(body, 1, _seen(motion.scope.mass_properties(body), pose)),)
-    pieces = motion.scope.made_of(body).pieces
-    begin = f"{of}, " if of else ""
-    return tuple(
-        InertiaRow(
-            f"{begin}part {k}: {p.piece.shape.kind}" + (" (hole)" if p.piece.hole else ""), p.sign, _seen(p.mass, pose)
-        )
-        for k, p in enumerate(pieces, start=1)
-    )
-
-
-def _seen(mass: MassProperties, pose: Pose) -> MassProperties:
-    return MassProperties(mass.m, pose.point(mass.com), product(product(pose.R, mass.I), transposed(pose.R)))
