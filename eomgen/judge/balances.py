@@ -44,7 +44,6 @@ from eomgen.judge.fixes import Authored
 from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.judge.terms import WrongTerms, angles_in, short_text, term_text, terms_of
 from eomgen.judge.verdict import FUNCTION_KINDS
-from eomgen.mechanics.free_bodies import Reactions
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.statics import KINDS, ActingForce, CutBalance, FreeBodies, PlacedPush
 from eomgen.symbolic.expression import (
@@ -187,13 +186,14 @@ class Balances:
         return {} if self._free is None else self._free.sections
 
     @cached_property
-    def _reactions(self) -> Reactions:
-        return Quantities(self.case.system, self.place).reactions if self.place else self.case.quantities.reactions
+    def _quantities(self) -> Quantities:
+        """The values of functions, reactions among them, at the place that is judged."""
+        return Quantities(self.case.system, self.place) if self.place else self.case.quantities
 
     @cached_property
     def _values(self) -> dict[Node, Scalar]:
         """Values of all reactions that have one, and of the unknowns of loads."""
-        reactions = self._reactions
+        reactions = self._quantities.reactions
         determined, values = reactions.solution.determined, reactions.solution.constants
         own = {x: values[j] for j, x in enumerate(reactions.balance.symbols) if determined(j)}
         return {**own, **self._sections}
@@ -201,12 +201,12 @@ class Balances:
     @cached_property
     def _mine(self) -> tuple[Node, ...]:
         """The reactions, and the unknowns of loads."""
-        return self._reactions.by_components[0].balance.symbols
+        return self._quantities.reactions.by_components[0].balance.symbols
 
     @cached_property
     def _scalar(self) -> Scalar:
         """The author's left side minus his right side, over the reactions."""
-        case, (by_components, symbols) = self.case, self._reactions.by_components
+        case, (by_components, symbols) = self.case, self._quantities.reactions.by_components
         functions = Quantities(case.system, self.place, by_components)
 
         def called(call: Call) -> Scalar:
