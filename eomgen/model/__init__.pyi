@@ -3,9 +3,6 @@
 # The parameters, each after those in its expression; and the rings of those that need one another
 from eomgen.model.arithmetic import in_order as in_order
 
-# The value of an expression at these values (`pi` among them); None with other names, or without a value
-from eomgen.model.arithmetic import value_of as value_of
-
 # True if a body can have the moments: J = tr(I)/2 - I has no negative eigenvalue (by its principal minors)
 from eomgen.model.checks.bodies import possible as possible
 
@@ -196,12 +193,6 @@ from eomgen.model.outputs.base import OutputSource as OutputSource
 
 # The argument k of a call, a formula; a lone name or member reads like a reference
 from eomgen.model.outputs.base import formula_at as formula_at
-
-# The argument k of a call, a name
-from eomgen.model.outputs.base import name_at as name_at
-
-# The arguments of a call, all of them names
-from eomgen.model.outputs.base import names_of as names_of
 
 # The second argument: L-c reads like a member
 from eomgen.model.outputs.forces import distance_of as distance_of

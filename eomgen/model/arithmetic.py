@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator, Mapping
 
-from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression import Expression, Fraction
 
 AnyNumber = int | Fraction | float
@@ -33,13 +32,3 @@ def in_order(parameters: Mapping[str, Expression | None]) -> tuple[list[str], li
 def _needed(parameters: Mapping[str, Expression | None], name: str) -> Iterator[str]:
     value = parameters[name]
     return iter(sorted(value.names & parameters.keys())) if value is not None else iter(())
-
-
-def value_of(expression: Expression, values: Mapping[str, AnyNumber]) -> AnyNumber | None:
-    """The value of an expression at these values (`pi` among them); None with other names, or without a value."""
-    if not expression.names <= values.keys():
-        return None
-    try:
-        return expression.evaluate(values)
-    except ExpressionError:
-        return None

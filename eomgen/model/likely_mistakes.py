@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from itertools import pairwise
 from typing import Any
 
-from eomgen.model.arithmetic import AnyNumber, in_order, value_of
+from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
 from eomgen.model.checks.bodies import possible
 from eomgen.model.diagnostics import Diagnostic, whereabouts
@@ -74,7 +74,7 @@ def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
     values: dict[str, AnyNumber] = {"pi": math.pi}
     given = {name: part.value for name, part in catalog.table("parameters").items()}
     for name in in_order(given)[0]:
-        found = None if given[name] is None else value_of(given[name], values)
+        found = None if given[name] is None else given[name].value_at(values)
         values[name] = 1 if found is None else found
     return values
 
@@ -124,7 +124,7 @@ def _signs(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagno
     """Diagnostics of values that drive apart or give energy, where they ought to hold or take it."""
     for leaf, expression in catalog.expressions:
         law = getattr(leaf.rule, "usually", "")
-        number = value_of(expression, values) if law else None
+        number = expression.value_at(values) if law else None
         if number is not None and number < 0:
             what = f"'{leaf.path[-1]}' of {whereabouts(leaf.path[:2])} is below zero: {law}"
             yield Diagnostic(leaf.path, what, "leave out the minus, if it is meant to resist")
@@ -134,7 +134,7 @@ def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diag
     """Diagnostics of gravity upward."""
     for leaf in catalog.leaves:
         if getattr(leaf.rule, "downward", False) and not leaf.part.axis_down:
-            parts = [value_of(component, values) for component in leaf.value]
+            parts = [component.value_at(values) for component in leaf.value]
             *across, up = parts
             if up is not None and up > 0 and not any(across):
                 axis = "xyz"[len(parts) - 1]
@@ -149,7 +149,7 @@ def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[D
             continue
         if not all(x.names <= _valued(catalog) for x in body.inertia):
             continue
-        moments = [float(x) for e in body.inertia if (x := value_of(e, values)) is not None]
+        moments = [float(x) for e in body.inertia if (x := e.value_at(values)) is not None]
         if len(moments) == len(body.inertia) and not possible(moments):
             shown = ", ".join(f"{x:g}" for x in moments)
             what = f"no body has the inertia of '{name}': [{shown}] breaks the triangle inequality"
@@ -261,7 +261,7 @@ def _masses(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Diagn
             and leaf.path[0] == "bodies"
             and expression.names <= _valued(catalog)
         ):
-            number = value_of(expression, values)
+            number = expression.value_at(values)
             if number is not None and number > 0:
                 found.append((float(number), leaf))
     if not found:

@@ -18,7 +18,6 @@ import numpy as np
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.frozen import dataclass
-from eomgen.model.arithmetic import value_of
 from eomgen.model.diagnostics import Diagnostic, nearest
 from eomgen.model.driven import law_of, with_feedback
 from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation, is_mixed
@@ -130,7 +129,7 @@ def with_values(
     valued = model.altered(**changes)
     taken = tuple(taken_of(valued, each) for each in settled)
     numbers = {**valued.exact_parameters(), "pi": math.pi}
-    starts = {each.name: value_of(each.value, numbers) for each in settled if each.name in (start or {})}
+    starts = {each.name: each.value.value_at(numbers) for each in settled if each.name in (start or {})}
     return Valued(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
 
 
@@ -163,7 +162,7 @@ def taken_of(model: Model, settled: Settled) -> Taken:
     """A settled value in the unit that is declared, else as it was typed, else in SI."""
     number, unit, dimension = None, settled.unit, settled.dimension
     try:
-        number = value_of(settled.value, {**model.exact_parameters(), "pi": math.pi})
+        number = settled.value.value_at({**model.exact_parameters(), "pi": math.pi})
     except ModelError:  # a parameter without a value: reported by whoever needs it
         number = None
     if number is not None:
@@ -352,7 +351,7 @@ class TypedNumbers:
         except (ValueError, TypeError):
             typed = text.strip() if isinstance(text, str) else text
             value = Typing(self.model, self.declared).value(self.name, typed).value
-        found = value_of(value, {**self.model.exact_parameters(), "pi": math.pi})
+        found = value.value_at({**self.model.exact_parameters(), "pi": math.pi})
         if found is None:
             raise ValueError(text)
         return float(found)

@@ -33,7 +33,6 @@ from eomgen.model import (
     Typed,
     Unit,
     Values,
-    names_of,
     requested_of,
     seconds,
 )
@@ -489,7 +488,7 @@ class _Asking:
                 )
             slope = changing.eigenvalue(frequency.mode.eigenvalue).imag if changing.parameters else 0.0
             return value, slope, frequency.exact
-        modes, names = self.small.modes, names_of(call)
+        modes, names = self.small.modes, call.names
         entry, exact = modes.entry(call.name, *names)
         found = changing.entry(MATRICES[call.name], *modes.place(call.name, *names))
         return found.value, found.slope, entry if exact else None

@@ -15,7 +15,7 @@ from eomgen.mechanics.instant import mobility_of
 from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
 from eomgen.mechanics.start import Branches, Start
 from eomgen.mechanics.statics import ContactsAtStart
-from eomgen.model import Model, Table, value_of
+from eomgen.model import Model, Table
 
 
 @dataclass(frozen=True)
@@ -132,7 +132,7 @@ def _unhung(model: Model) -> Iterator[Problem]:
     """Problems with bodies that have mass and no joint in a model that moves: they stand still."""
     for name, body in model.bodies.items() if model.coordinates else ():
         mass = body.mass if body.shape is None else body.shape.mass
-        if body.joint is None and mass is not None and value_of(mass, model.exact_parameters()) != 0:
+        if body.joint is None and mass is not None and mass.value_at(model.exact_parameters()) != 0:
             what = f"body '{name}' has no joint, and stands still in the ground's frame"
             yield Problem(f"bodies.{name}", what, fix="hang it by a joint; what is to stand still needs no mass")
 

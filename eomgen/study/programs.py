@@ -27,7 +27,7 @@ from eomgen.errors import DerivationError, ExpressionError, MissingValues, Usage
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Rank
 from eomgen.mechanics.dynamics import EquationsOfMotion, Explicit, System
-from eomgen.mechanics.free_bodies import FEW, Inverse, by_independent
+from eomgen.mechanics.free_bodies import Inverse, by_independent
 from eomgen.mechanics.instant import Quantities, requests_of
 from eomgen.model import Output, OutputSource, TypedNumbers, are_several, nearest, time_law, typed_values
 from eomgen.symbolic.exact import cramer, factor_solution
@@ -367,9 +367,8 @@ def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Sc
     kept = Rank(equations.system.constraints).regular()
     if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
         return Explicit(equations).by_determinants(kept)
-    if len(symbols.a) - len(kept) <= FEW:
-        with suppress(DerivationError):
-            return by_independent(equations, kept)
+    with suppress(DerivationError):
+        return by_independent(equations, kept)
     return _by_factors(equations, kept)
 
 

@@ -9,7 +9,7 @@ from eomgen.documents import Document, Grid, Step, proven, with_constraints_clos
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
-from eomgen.model import Model, load
+from eomgen.model import Model, model_at
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
@@ -35,7 +35,7 @@ def derive_document(
     if diff is not None:
         from eomgen.verbs.derive_difference import difference_document
 
-        return difference_document(model, load(diff), method=method, certify=certify)
+        return difference_document(model, model_at(diff), method=method, certify=certify)
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document

@@ -42,6 +42,3 @@ from eomgen.mechanics.equilibrium.search import nearest_equilibrium as nearest_e
 
 # Verdict on the stability of an equilibrium, with its reason
 from eomgen.mechanics.equilibrium.stability import Stability as Stability
-
-# States near a place: terms that do not vanish at it are almost the same there, and those that vanish are not 0
-from eomgen.mechanics.equilibrium.stability import states_beside as states_beside

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from random import Random
@@ -187,6 +187,15 @@ class StaticEquations:
         """Entries as numbers at a place."""
         state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
         return Doubles(state).array(rows, len(rows[0]) if rows else len(self.q))
+
+    def states_beside(self, state: Mapping[Node, Any]) -> Iterator[dict[Node, Any]]:
+        """States near a place: terms that do not vanish there are almost the same, and those that vanish are not 0.
+
+        Args:
+            state: values of everything, with 50 digits.
+        """
+        for share in (-tolerances.BESIDE_A_PLACE, 0.7 * tolerances.BESIDE_A_PLACE):
+            yield {**state, **{q: state[q] + share * max(1, abs(state[q])) for q in self.q}}
 
 
 def static_equations(system: System) -> StaticEquations:

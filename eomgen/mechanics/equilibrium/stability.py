@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -292,7 +292,7 @@ class _Place:
     def _size_of_terms(self) -> float:
         """The largest second derivative there and near it, against which K is compared."""
         found = [0.0]
-        for state in (self.state, *states_beside(self.state, self.statics.q)):
+        for state in (self.state, *self.statics.states_beside(self.state)):
             try:
                 entries = [x for row in self._H for x in row]
                 found += [abs(float(x)) for x in evaluate(entries, state, fifty_digits())]
@@ -341,16 +341,6 @@ def by_higher_derivatives(statics: StaticEquations, state: Mapping[Node, Any]) -
     return _Way(statics, state).verdict()
 
 
-def states_beside(state: Mapping[Node, Any], coordinates: Sequence[Node]) -> Iterator[dict[Node, Any]]:
-    """States near a place: terms that do not vanish at it are almost the same there, and those that vanish are not 0.
-
-    Args:
-        state: values of everything, with 50 digits.
-    """
-    for share in (-tolerances.BESIDE_A_PLACE, 0.7 * tolerances.BESIDE_A_PLACE):
-        yield {**state, **{q: state[q] + share * max(1, abs(state[q])) for q in coordinates}}
-
-
 @dataclass(frozen=True)
 class _Way:
     statics: StaticEquations
@@ -383,7 +373,7 @@ class _Way:
     def _value(self, P: Scalar, order: int) -> float:
         """P there; 0 where it vanishes against its size near the place, and against its terms further away."""
         value = self._at(P, self.state)
-        near = max(self._at(P, state, 0.0) for state in states_beside(self.state, self.statics.q))
+        near = max(self._at(P, state, 0.0) for state in self.statics.states_beside(self.state))
         away = ({**self.state, **{q: self.state[q] + shift for q in self.statics.q}} for shift in AWAY)
         far = max(self._at(P, state, 0.0) for state in away)
         share = tolerances.COMPUTED if order < MULTIPLE else tolerances.AT_A_MULTIPLE_ROOT

@@ -27,9 +27,6 @@ from eomgen.mechanics.free_bodies.friction import equations_of_motion as equatio
 # The equations of motion, friction in Q and forcing, and the accelerations explicit; the same without friction
 from eomgen.mechanics.free_bodies.friction import with_friction as with_friction
 
-# degrees of freedom
-from eomgen.mechanics.free_bodies.inverse import FEW as FEW
-
 # Forces along what is driven, and multipliers of constraints, of given motions
 from eomgen.mechanics.free_bodies.inverse import DrivingForces as DrivingForces
 

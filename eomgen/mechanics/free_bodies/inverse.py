@@ -380,10 +380,12 @@ def by_independent(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[No
     Args:
         kept: the constraint rows that do not follow from others.
     Raises:
-        DerivationError: too many unknowns hang together.
+        DerivationError: more than FEW degrees of freedom are left, or too many unknowns hang together.
         MissingValues: the constraints do not close without values.
     """
     symbols, n = equations.symbols, len(equations.M)
+    if n - len(kept) > FEW:
+        raise DerivationError(f"the constraints leave more than {FEW} degrees of freedom")
     J = [equations.J[m] for m in kept]
     d = _dependent(equations.system, J)
     i = [k for k in range(n) if k not in d]

@@ -33,7 +33,6 @@ from eomgen.model import (
     PointForce,
     UniformField,
     distance_of,
-    name_at,
 )
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
@@ -345,7 +344,7 @@ class Quantities:
             DerivationError: a body without section forces; something acts off a beam's axis, or at no place.
         """
         sections = [
-            RequestedSection(call, self.section(name_at(call, 0)), distance_of(call).evaluate(self.names))
+            RequestedSection(call, self.section(call.name_at(0)), distance_of(call).evaluate(self.names))
             for call in calls
         ]
         return FreeBodies.of(self.system, numbers, sections)

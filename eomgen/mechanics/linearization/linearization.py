@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Assembly
 from eomgen.mechanics.dynamics import System, Valueless
-from eomgen.mechanics.equilibrium import standing_system, states_beside
+from eomgen.mechanics.equilibrium import standing_system
 from eomgen.mechanics.free_bodies import SystemFriction
 from eomgen.mechanics.kinematics import Located
 from eomgen.mechanics.linearization.first_order import (
@@ -214,7 +214,7 @@ def _stiffness_beside(small: SmallMotions) -> np.ndarray:
     largest, reference = np.zeros_like(floats(small.numbers.K)), small.reference
     if reference.place is None or reference.is_exact:
         return largest
-    for there in states_beside(reference.numbers, reference.place.statics.q):
+    for there in reference.place.statics.states_beside(reference.numbers):
         try:
             found = floats(small.over(Numbers(there)).K)
         except (DerivationError, NoValue, ZeroDivisionError, np.linalg.LinAlgError):

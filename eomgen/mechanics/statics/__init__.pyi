@@ -64,8 +64,5 @@ from eomgen.mechanics.statics.virtual_work import WorkEquation as WorkEquation
 # The virtual work of one load, not 0
 from eomgen.mechanics.statics.virtual_work import WorkTerm as WorkTerm
 
-# Every load: forces, couples, line loads, weights at the mass centres, drives and springs of joints
-from eomgen.mechanics.statics.virtual_work import loads_at_rest as loads_at_rest
-
 # One reaction, or unknown of the loads, by its virtual work alone; the other degrees of freedom are at rest
 from eomgen.mechanics.statics.virtual_work import released_in as released_in

@@ -16,7 +16,7 @@ from eomgen.mechanics.free_bodies import Axes, Balance, Component, Effect, effor
 from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
 from eomgen.mechanics.statics.member_axis import MemberAxis
-from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, is_node, name_at
+from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, is_node
 from eomgen.symbolic.exact import readable
 from eomgen.symbolic.expression import (
     ZERO,
@@ -418,7 +418,7 @@ def cut_beam(system: System, requested: RequestedSection, acting: Sequence[Actin
         DerivationError: something acts off its axis or at no place, or what it weighs is spread along it.
     """
     call, section, x = requested.call, requested.forces, requested.x
-    body, side = name_at(call, 0), name_at(call, 2) if len(call.args) > 2 else ""
+    body, side = call.name_at(0), call.name_at(2) if len(call.args) > 2 else ""
     axis, motion = section.axis, system.motion
     i, link = motion.index[body], motion.link(body)
     leg = [leg for leg in axis.legs if leg.x == 0 or axis.sizes.sign(x - leg.x) >= 0][-1]

@@ -333,6 +333,11 @@ class StaticReactions:
                 found.append(RestCondition(name, "sticks", most - function("abs", along)))
         return tuple(found)
 
+    @property
+    def loads(self) -> tuple[Acting, ...]:
+        """Every load: forces, couples, line loads, weights at the mass centres, drives and springs of joints."""
+        return loads_at_rest(self.structure)
+
 
 def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReactions:
     """Every reaction of a structure in which nothing can move; `only` as of `static_reactions_of`."""

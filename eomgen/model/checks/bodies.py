@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError
-from eomgen.model.arithmetic import AnyNumber, in_order, value_of
+from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.catalog import Catalog
 from eomgen.model.composite import Composite, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
@@ -164,7 +164,7 @@ def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, 
 def _signed_right(body: Any, values: Mapping[str, AnyNumber]) -> bool:
     """True if every mass, length and radius of a body that is known has its sign."""
     signed = [leaf for leaf in body.leaves(()) if getattr(leaf.rule, "sign", "")]
-    known = [(leaf.rule.sign, value_of(leaf.value, values)) for leaf in signed if isinstance(leaf.value, Expression)]
+    known = [(leaf.rule.sign, leaf.value.value_at(values)) for leaf in signed if isinstance(leaf.value, Expression)]
     return all(x is None or x > 0 or (x == 0 and sign == "nonnegative") for sign, x in known)
 
 
@@ -284,7 +284,7 @@ def numbers(catalog: Catalog) -> Iterator[Diagnostic]:
         yield from _value(leaf, expression, values)
         sign = getattr(leaf.rule, "sign", "")
         if sign:
-            yield from _sign(leaf, expression, value_of(expression, values))
+            yield from _sign(leaf, expression, expression.value_at(values))
     yield from _directions(catalog, values)
     yield from _crossing(catalog, values)
     yield from _positive(catalog, values)
@@ -332,7 +332,7 @@ def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diag
         if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
             continue
         named = any(component.literal is None for component in leaf.value)
-        if named and all(value_of(component, values) == 0 for component in leaf.value):
+        if named and all(component.value_at(values) == 0 for component in leaf.value):
             yield Diagnostic(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
 
 
@@ -342,7 +342,7 @@ def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagno
         axes = getattr(getattr(body, "joint", None), "axes", None)
         if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
             continue
-        a, b = (list[Any](value_of(component, values) for component in axis) for axis in axes)
+        a, b = (list[Any](component.value_at(values) for component in axis) for axis in axes)
         if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
             what = f"the two axes of the universal joint of body '{name}' are parallel"
             yield Diagnostic(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
@@ -360,7 +360,7 @@ def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagno
         if body is None or body.inertia is None:
             continue
         path: DocumentPath = ("bodies", name, "inertia")
-        moments = [value_of(e, values) for e in body.inertia]
+        moments = [e.value_at(values) for e in body.inertia]
         negative = [k for k, x in enumerate(moments[:3]) if x is not None and x < 0]
         for k in negative:
             what = f"a moment of inertia of body '{name}' is negative: {body.inertia[k].text}"

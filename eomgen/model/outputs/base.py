@@ -285,27 +285,6 @@ def component(call: Call) -> int:
     return AXES[call.name[-1]]
 
 
-def names_of(call: Call) -> tuple[str, ...]:
-    """The arguments of a call, all of them names.
-
-    Raises:
-        DerivationError: one is none.
-    """
-    return tuple(name_at(call, k) for k in range(len(call.args)))
-
-
-def name_at(call: Call, k: int) -> str:
-    """The argument k of a call, a name.
-
-    Raises:
-        DerivationError: it is none.
-    """
-    argument = call.args[k]
-    if not isinstance(argument, Reference):
-        raise DerivationError(f"'{call}': names are needed as arguments", fix="give names of the model, not formulas")
-    return argument.name
-
-
 def formula_at(call: Call, k: int) -> Expression:
     """The argument k of a call, a formula; a lone name or member reads like a reference."""
     argument = call.args[k]

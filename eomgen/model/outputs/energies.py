@@ -10,20 +10,20 @@ from __future__ import annotations
 
 from typing import Any
 
-from eomgen.model.outputs.base import OutputFunction, Trial, name_at, names_of
+from eomgen.model.outputs.base import OutputFunction, Trial
 from eomgen.symbolic.expression import Call, Node, depends_on, dot
 from eomgen.symbolic.numeric import NoValue
 
 
 def _of_particles(trial: Trial, call: Call) -> Any:
-    requested = names_of(call)
+    requested = call.names
     of_bodies = sum(m * dot(v, v) / 2 for body in requested or trial.scene.bodies for m, _, v in trial.particles(body))
     return of_bodies if requested else of_bodies + trial.given_energy()
 
 
 def _lost(trial: Trial, call: Call) -> Any:
     """-dV/dt of one force, by differences."""
-    force = names_of(call)
+    force = call.names
     if not force or force[0] in trial.scene.bodies:
         return trial.worked(*force)
     V = trial.scene.potential_energy(force[0])
@@ -39,7 +39,7 @@ KINETIC_ENERGY = OutputFunction(
     least=0,
     unit="J",
     gives="of the whole, or of one body",
-    value=lambda scene, call: scene.kinetic_energy(*names_of(call)),
+    value=lambda scene, call: scene.kinetic_energy(*call.names),
     second=_of_particles,
     moves=True,
 )
@@ -49,7 +49,7 @@ POTENTIAL_ENERGY = OutputFunction(
     least=0,
     unit="J",
     gives="of the whole, of one force, or of what belongs to one body alone",
-    value=lambda scene, call: scene.potential_energy(*names_of(call)),
+    value=lambda scene, call: scene.potential_energy(*call.names),
 )
 POWER = OutputFunction(
     names=("power",),
@@ -57,7 +57,7 @@ POWER = OutputFunction(
     least=0,
     unit="W",
     gives="of everything applied, of all that acts on one body, or of one force",
-    value=lambda scene, call: scene.power(*names_of(call)),
+    value=lambda scene, call: scene.power(*call.names),
     second=_lost,
     moves=True,
 )
@@ -100,7 +100,7 @@ GENERALIZED_FORCE = OutputFunction(
     unit="J",
     per=(0,),
     gives="Q of everything applied, along a coordinate that is free",
-    value=lambda scene, call: scene.generalized_force(name_at(call, 0)),
+    value=lambda scene, call: scene.generalized_force(call.name_at(0)),
 )
 MOMENTUM = OutputFunction(
     names=("momentum",),
@@ -109,6 +109,6 @@ MOMENTUM = OutputFunction(
     unit="J",
     per=(0,),
     gives="dT/dq' of a coordinate that is free, dT/du of a declared speed",
-    value=lambda scene, call: scene.momentum(name_at(call, 0)),
-    second=lambda trial, call: _slope_of_energy(trial, name_at(call, 0)),
+    value=lambda scene, call: scene.momentum(call.name_at(0)),
+    second=lambda trial, call: _slope_of_energy(trial, call.name_at(0)),
 )

@@ -16,8 +16,6 @@ from eomgen.model.outputs.base import (
     ValueOf,
     along,
     component,
-    name_at,
-    names_of,
 )
 from eomgen.symbolic.expression import AnyScalar, Call, Expression, Reference, parse
 
@@ -31,7 +29,7 @@ from eomgen.symbolic.expression import AnyScalar, Call, Expression, Reference, p
 
 def _placed(call: Call) -> tuple[str, str, str]:
     """(constraint or body, the side, the frame) of reaction_x(B), reaction_x(B.II), reaction_y(bar, bar)."""
-    owner, frame = (*names_of(call), "")[:2]
+    owner, frame = (*call.names, "")[:2]
     name, _, side = owner.partition(".")
     return name, side, frame
 
@@ -118,8 +116,8 @@ MULTIPLIER = OutputFunction(
     unit="J",
     per=(0,),
     gives="of a constraint of one row",
-    value=lambda scene, call: scene.multiplier(name_at(call, 0)),
-    second=lambda trial, call: trial.held(name_at(call, 0)),
+    value=lambda scene, call: scene.multiplier(call.name_at(0)),
+    second=lambda trial, call: trial.held(call.name_at(0)),
     source=OutputSource.BALANCE,
 )
 DRIVE = OutputFunction(
@@ -129,8 +127,8 @@ DRIVE = OutputFunction(
     unit="J",
     per=(0,),
     gives="force or couple that moves a driven coordinate as given",
-    value=lambda scene, call: scene.drive(name_at(call, 0)),
-    second=lambda trial, call: trial.demanded(name_at(call, 0)),
+    value=lambda scene, call: scene.drive(call.name_at(0)),
+    second=lambda trial, call: trial.demanded(call.name_at(0)),
     source=OutputSource.BALANCE,
 )
 PULL = OutputFunction(
@@ -139,8 +137,8 @@ PULL = OutputFunction(
     least=1,
     unit="N",
     gives="of a spring, a damper, a `between`: what draws its points together",
-    value=lambda scene, call: scene.effort(name_at(call, 0)),
-    second=lambda trial, call: trial.acting(name_at(call, 0)),
+    value=lambda scene, call: scene.effort(call.name_at(0)),
+    second=lambda trial, call: trial.acting(call.name_at(0)),
     moves=True,
 )
 COUPLE = OutputFunction(
@@ -149,8 +147,8 @@ COUPLE = OutputFunction(
     least=1,
     unit="N*m",
     gives="of a torsion spring or damper: on its second body, counter-clockwise",
-    value=lambda scene, call: scene.effort(name_at(call, 0)),
-    second=lambda trial, call: -trial.acting(name_at(call, 0)),
+    value=lambda scene, call: scene.effort(call.name_at(0)),
+    second=lambda trial, call: -trial.acting(call.name_at(0)),
     moves=True,
 )
 
@@ -161,7 +159,7 @@ COUPLE = OutputFunction(
 
 def _tension(scene: OutputContext, call: Call) -> AnyScalar:
     """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
-    name, strand = name_at(call, 0), call.args[1:]
+    name, strand = call.name_at(0), call.args[1:]
     if scene.is_truss(name):
         return scene.reactions.member(name, *_ends(call))
     number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
@@ -221,11 +219,11 @@ def distance_of(call: Call) -> Expression:
 
 def _section(scene: OutputContext, call: Call) -> AnyScalar:
     """bending_moment(beam, a), shear_force(beam, a, before)."""
-    sides = [name_at(call, k) for k in range(2, len(call.args))]
+    sides = [call.name_at(k) for k in range(2, len(call.args))]
     if any(name not in SIDES for name in sides):
         raise DerivationError(f"'{call}': the third argument is before or after", fix="N(body, x, before)")
     x = distance_of(call).evaluate(scene.names)
-    return scene.section(name_at(call, 0)).value(call.name, x, *sides)
+    return scene.section(call.name_at(0)).value(call.name, x, *sides)
 
 
 def _of(name: str, unit: str, gives: str, value: ValueOf) -> OutputFunction:

@@ -16,7 +16,6 @@ from eomgen.model.outputs.base import (
     ValueOf,
     along,
     component,
-    name_at,
     number_at,
 )
 from eomgen.symbolic.expression import (
@@ -43,7 +42,7 @@ from eomgen.symbolic.expression import (
 
 def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]:
     """The bodies from the argument `first` on; without any, all of them."""
-    named = tuple(name_at(call, k) for k in range(first, len(call.args)))
+    named = tuple(call.name_at(k) for k in range(first, len(call.args)))
     if len(set(named)) < len(named):
         raise DerivationError(f"'{call}' names a body twice", fix="name each once")
     if "ground" in named:
@@ -75,7 +74,7 @@ def refuse_unknown(scene: OutputContext, call: Call, bodies: Sequence[str], *, a
 
 
 def _mass(scene: OutputContext, call: Call) -> AnyScalar:
-    body = name_at(call, 0)
+    body = call.name_at(0)
     if body == "ground":
         raise DerivationError(f"'{call}': the ground has no mass", fix="name a body")
     if len(call.args) == 1:
@@ -132,19 +131,19 @@ def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = Fal
     """I_P of the bodies from the argument `first` on, at the state."""
     bodies = bodies_from(scene, call, first)
     refuse_unknown(scene, call, bodies, about_z=about_z)
-    return matrix_of(scene.placed(*scene.tensor(scene.position(name_at(call, 0)), bodies)))
+    return matrix_of(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
 
 
 def _axis_at(call: Call, k: int) -> int:
-    return AXES[name_at(call, k)]
+    return AXES[call.name_at(k)]
 
 
 def _direction(scene: OutputContext, call: Call) -> Vector:
     """Direction along x, y or z, or from the point to another one."""
-    name = name_at(call, 1)
+    name = call.name_at(1)
     if name in AXES:
         return IDENTITY[AXES[name]]
-    ((x, y, z),) = scene.placed(minus(scene.position(name), scene.position(name_at(call, 0))))
+    ((x, y, z),) = scene.placed(minus(scene.position(name), scene.position(call.name_at(0))))
     if all(is_zero(c) for c in (x, y, z)):
         raise DerivationError(
             f"'{call}': both points are in one place, so they are on no single axis",
@@ -183,7 +182,7 @@ def _principal(scene: OutputContext, call: Call) -> AnyScalar:
 
 def _from_point(trial: Trial, call: Call, first: int) -> Iterator[tuple[Any, Numbers]]:
     """(mass, place from the point) of the particles of the bodies that are meant."""
-    point = vector_of(trial.along(trial.scene.position(name_at(call, 0)))[0])
+    point = vector_of(trial.along(trial.scene.position(call.name_at(0)))[0])
     for body in bodies_from(trial.scene, call, first):
         for m, r, _ in trial.particles(body, still=True):
             yield m, minus(r, point)
@@ -274,11 +273,11 @@ def _momentum(scene: OutputContext, call: Call) -> AnyScalar:
     bodies, axis = bodies_from(scene, call, 1), component(call)
     turning = [b for b in bodies if any(not is_zero(w) for w in scene.spin(b))]
     refuse_unknown(scene, call, turning, about_z=axis == 2)
-    return scene.angular_momentum(scene.position(name_at(call, 0)), bodies)[axis]
+    return scene.angular_momentum(scene.position(call.name_at(0)), bodies)[axis]
 
 
 def _sum(trial: Trial, call: Call) -> Any:
-    point = vector_of(trial.along(trial.scene.position(name_at(call, 0)))[0])
+    point = vector_of(trial.along(trial.scene.position(call.name_at(0)))[0])
     bodies, axis = bodies_from(trial.scene, call, 1), component(call)
     return sum(m * cross(minus(r, point), v)[axis] for body in bodies for m, r, v in trial.particles(body, still=True))
 

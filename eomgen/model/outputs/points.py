@@ -6,7 +6,7 @@ from functools import partial
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.model.outputs.base import GROUND, OutputContext, OutputFunction, Trial, ValueOf, along, component, names_of
+from eomgen.model.outputs.base import GROUND, OutputContext, OutputFunction, Trial, ValueOf, along, component
 from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
     AnyScalar,
@@ -52,8 +52,8 @@ POSITION = OutputFunction(
     least=1,
     unit="m",
     gives="position; from a body: in its frame and axes, or in those of the second",
-    value=lambda scene, call: _place(scene, *names_of(call))[component(call)],
-    second=lambda trial, call: _place_seen(trial, *names_of(call))[component(call)],
+    value=lambda scene, call: _place(scene, *call.names)[component(call)],
+    second=lambda trial, call: _place_seen(trial, *call.names)[component(call)],
 )
 
 
@@ -140,8 +140,8 @@ def components(
         least=least,
         unit=unit,
         gives=gives,
-        value=lambda scene, call: law(scene, *names_of(call))[component(call)],
-        second=lambda trial, call: seen(trial, *names_of(call))[component(call)],
+        value=lambda scene, call: law(scene, *call.names)[component(call)],
+        second=lambda trial, call: seen(trial, *call.names)[component(call)],
         moves=True,
     )
 
@@ -156,8 +156,8 @@ def magnitude(
         least=least,
         unit=unit,
         gives=gives,
-        value=lambda scene, call: size(scene, law(scene, *names_of(call))),
-        second=lambda trial, call: length(trial, seen(trial, *names_of(call))),
+        value=lambda scene, call: size(scene, law(scene, *call.names)),
+        second=lambda trial, call: length(trial, seen(trial, *call.names)),
         moves=True,
     )
 
@@ -255,23 +255,23 @@ def _across(v: Vector, a: Vector) -> AnyScalar:
 
 def _of_path(law: Callable[[Vector, Vector], AnyScalar]) -> ValueOf:
     """A law of v and a at the given state."""
-    return lambda scene, call: law(*scene.here(velocity(scene, *names_of(call)), acceleration(scene, *names_of(call))))
+    return lambda scene, call: law(*scene.here(velocity(scene, *call.names), acceleration(scene, *call.names)))
 
 
 def _rate_of_speed(trial: Trial, call: Call) -> Any:
-    before, now, after = trial.around(seen_from(trial.scene, *names_of(call)))
+    before, now, after = trial.around(seen_from(trial.scene, *call.names))
     return (length(trial, minus(after, now)) - length(trial, minus(now, before))) / trial.step**2
 
 
 def _curvature(trial: Trial, call: Call) -> Any:
     """Curvature of the circle through three places: 2 sin(angle) of their triangle over the side across it."""
-    before, now, after = trial.around(seen_from(trial.scene, *names_of(call)))
+    before, now, after = trial.around(seen_from(trial.scene, *call.names))
     first, last, chord = minus(now, before), minus(after, now), minus(after, before)
     return 2 * length(trial, cross(first, last)) / (length(trial, first) * length(trial, last) * length(trial, chord))
 
 
 def _centripetal(trial: Trial, call: Call) -> Any:
-    v = differences(trial, *names_of(call), order=1)
+    v = differences(trial, *call.names, order=1)
     return dot(v, v) * _curvature(trial, call)
 
 

@@ -13,16 +13,7 @@ from functools import partial
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.model.outputs.base import (
-    GROUND,
-    OutputContext,
-    OutputFunction,
-    PartsOfMotion,
-    SecondOf,
-    Trial,
-    component,
-    names_of,
-)
+from eomgen.model.outputs.base import GROUND, OutputContext, OutputFunction, PartsOfMotion, SecondOf, Trial, component
 from eomgen.model.outputs.points import (
     SeenVector,
     VectorOf,
@@ -109,11 +100,11 @@ def _one(name: str, unit: str, gives: str, order: int) -> OutputFunction:
     """The output function of a rate of rotation: in the plane counter-clockwise positive; in space the magnitude."""
 
     def value(scene: OutputContext, call: Call) -> AnyScalar:
-        w = _spin(scene, *names_of(call), order=order)
+        w = _spin(scene, *call.names, order=order)
         return w[2] if scene.is_plane else sqrt(dot(w, w))
 
     def second(trial: Trial, call: Call) -> Any:
-        w = _turned(trial, *names_of(call), order=order)
+        w = _turned(trial, *call.names, order=order)
         return w[2] if trial.scene.is_plane else length(trial, w)
 
     return OutputFunction(
@@ -130,11 +121,11 @@ def _about_own_axes(name: str, unit: str, order: int) -> OutputFunction:
     """The components of R^T w along the axes of the body itself, 1, 2 and 3, as Euler's equations have them."""
 
     def value(scene: OutputContext, call: Call) -> AnyScalar:
-        (body,) = names_of(call)
+        (body,) = call.names
         return apply(transposed(scene.axes(body)), _spin(scene, body, order=order))[_own_axis(call)]
 
     def second(trial: Trial, call: Call) -> Any:
-        (body,) = names_of(call)
+        (body,) = call.names
         R, *_ = _rotations(trial, body, GROUND)
         return apply(transposed(R), _turned(trial, body, order=order))[_own_axis(call)]
 
@@ -156,8 +147,8 @@ ANGLE = OutputFunction(
     least=1,
     unit="rad",
     gives="angle, in the plane",
-    value=lambda scene, call: _angle(scene, *names_of(call)),
-    second=lambda trial, call: _angle_of_axes(trial, *names_of(call)),
+    value=lambda scene, call: _angle(scene, *call.names),
+    second=lambda trial, call: _angle_of_axes(trial, *call.names),
 )
 OMEGA = _one("omega", "rad/s", "angular velocity; in space its magnitude", 1)
 ANGULAR_VELOCITY = _components("omega_*", "rad/s", 1)
@@ -215,7 +206,7 @@ def _still_point(trial: Trial, order: int, body: str, other: str = GROUND) -> Nu
 
 
 def _center_by_poses(order: int) -> SecondOf:
-    return lambda trial, call: _still_point(trial, order, *names_of(call))[component(call)]
+    return lambda trial, call: _still_point(trial, order, *call.names)[component(call)]
 
 
 ROTATION_CENTER = OutputFunction(
@@ -224,7 +215,7 @@ ROTATION_CENTER = OutputFunction(
     least=1,
     unit="m",
     gives="in the plane, the point about which a body turns, against the ground or another body",
-    value=lambda scene, call: _center(scene, *names_of(call))[component(call)],
+    value=lambda scene, call: _center(scene, *call.names)[component(call)],
     second=_center_by_poses(1),
     moves=True,
 )
@@ -234,7 +225,7 @@ ACCELERATION_POLE = OutputFunction(
     least=1,
     unit="m",
     gives="the point of the body that has no acceleration, in the plane",
-    value=lambda scene, call: _pole(scene, *names_of(call))[component(call)],
+    value=lambda scene, call: _pole(scene, *call.names)[component(call)],
     second=_center_by_poses(2),
     moves=True,
 )
@@ -269,8 +260,8 @@ LEAST_SPEED = OutputFunction(
     least=2,
     unit="m/s",
     gives="of the points between two points of one body",
-    value=lambda scene, call: _least_speed(scene, *names_of(call)),
-    second=lambda trial, call: _least_by_places(trial, *names_of(call)),
+    value=lambda scene, call: _least_speed(scene, *call.names),
+    second=lambda trial, call: _least_by_places(trial, *call.names),
     moves=True,
 )
 

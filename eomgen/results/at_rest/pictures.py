@@ -38,7 +38,6 @@ from eomgen.mechanics.statics import (
     SectionForces,
     SectionPiece,
     StaticReactions,
-    loads_at_rest,
 )
 from eomgen.model import Couple, Model, PointForce, SpreadLoad
 from eomgen.results.at_rest.section_steps import Sections
@@ -90,7 +89,7 @@ class StaticScene:
     @cached_property
     def scale(self) -> Scale:
         """Scale of all forces and couples, of the loads and the reactions."""
-        loads = [acting.load for acting in loads_at_rest(self.statics.structure)]
+        loads = [acting.load for acting in self.statics.loads]
         sizes = [math.hypot(*self._vector(load.force, load.axes)) for load in loads if isinstance(load, PointForce)]
         values = self.sketch.numbers(each.value for each in self.statics.reactions if each.value is not None)
         return scale_of([*sizes, *values])
@@ -115,7 +114,7 @@ class StaticScene:
         return max((math.hypot(*force) for _, force, _, _ in self.forces), default=0.0) or 1.0
 
     def _loads(self) -> Iterable[tuple[PagePoint, PagePoint, str, str]]:
-        for acting in loads_at_rest(self.statics.structure):
+        for acting in self.statics.loads:
             load = acting.load
             if isinstance(load, PointForce) and load.place[0] is not None:
                 x, y = self._vector(load.force, load.axes)
@@ -141,7 +140,7 @@ class StaticScene:
 
     def couples(self) -> Iterable[tuple[PagePoint, float, str, str]]:
         """(place, sense, colour, label) of every couple."""
-        for acting in loads_at_rest(self.statics.structure):
+        for acting in self.statics.loads:
             load = acting.load
             if isinstance(load, Couple):
                 (size,) = self.sketch.numbers(load.couple[2:])
@@ -155,7 +154,7 @@ class StaticScene:
 
     def spreads(self) -> Iterable[tuple[SpreadLoad, str]]:
         """Line loads with their names and sizes."""
-        for acting in loads_at_rest(self.statics.structure):
+        for acting in self.statics.loads:
             if isinstance(acting.load, SpreadLoad):
                 yield acting.load, self._spread_label(acting.load, acting.name)
 

@@ -37,14 +37,7 @@ from eomgen.mechanics.linearization import (
     StateMatrices,
 )
 from eomgen.mechanics.state import Entries
-from eomgen.model import (
-    Model,
-    ModelOrPath,
-    Range,
-    Values,
-    names_of,
-    range_of,
-)
+from eomgen.model import Model, ModelOrPath, Range, Values, range_of
 from eomgen.proof import Certificate, Check, DrawnPanel, certify_small_motions, small_motions_drawn
 from eomgen.resources import doing
 from eomgen.results.small_motions.steps import linearization_steps, printed_modes
@@ -209,7 +202,7 @@ class Linearization(Result):
         """
         if call.name == "frequency":
             return self._frequency(call)
-        found, exact = self.modes.entry(call.name, *names_of(call))
+        found, exact = self.modes.entry(call.name, *call.names)
         return found if exact else self._rounded(found), exact
 
     def frequency(self, call: Call) -> Frequency:

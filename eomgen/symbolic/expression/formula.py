@@ -215,6 +215,27 @@ class Call:
     def __str__(self) -> str:
         return f"{self.name}({', '.join(a.name if isinstance(a, Reference) else a.text for a in self.args)})"
 
+    def name_at(self, k: int) -> str:
+        """The argument k of a call, a name.
+
+        Raises:
+            DerivationError: it is none.
+        """
+        argument = self.args[k]
+        if not isinstance(argument, Reference):
+            what = f"'{self}': names are needed as arguments"
+            raise DerivationError(what, fix="give names of the model, not formulas")
+        return argument.name
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The arguments of a call, all of them names.
+
+        Raises:
+            DerivationError: one is none.
+        """
+        return tuple(self.name_at(k) for k in range(len(self.args)))
+
 
 @dataclass(frozen=True, slots=True)
 class Expression:
@@ -396,6 +417,16 @@ class Expression:
 
     def scalar_cos(self) -> Expression | int:
         return 1 if self.literal == 0 else _applied("cos", self)
+
+    def value_at(self, values: Mapping[str, Number | float]) -> Number | float | None:
+        """The value of an expression at these values (`pi` among them); None with other names, or without a value."""
+        if not self.names <= values.keys():
+            return None
+        try:
+            found: Number | float = self.evaluate(values)
+        except ExpressionError:
+            return None
+        return found
 
 
 Operand = Expression | int | Fraction
