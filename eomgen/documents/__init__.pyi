@@ -223,6 +223,13 @@ from eomgen.documents.moving_picture import strip as strip
 
 # A virtual displacement to and fro, once
 from eomgen.documents.moving_picture import virtual_movie as virtual_movie
+
+# Quantities that derivations of a system name, each name once
+from eomgen.documents.names_derived import NamedQuantity as NamedQuantity
+
+# A reaction that an output names, with its meaning in words and its letter
+from eomgen.documents.names_derived import found_reaction as found_reaction
+from eomgen.documents.names_derived import named_quantities as named_quantities
 from eomgen.documents.pages_read import GREEK_LETTERS as GREEK_LETTERS
 from eomgen.documents.pages_read import PAGES as PAGES
 

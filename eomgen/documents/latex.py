@@ -199,7 +199,7 @@ def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
         way, message = (f" [{found.method}]" if found.method else ""), (f" ({found.message})" if found.message else "")
         yield prose(Code(row.name), f": {row.words}" if row.words else "", way, message)
         sides = quantity_sides(graph, found)
-        yield from [Formula(sides)] if sides else []
+        yield from [Formula((*row.letters, *sides))] if sides else []
 
 
 def quantity_sides(graph: Graph, found: Quantity) -> tuple[Side, ...]:

@@ -271,27 +271,38 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
     balance = reactions.balance
     graph = balance.system.scope.graph
     contacts = tuple(SystemFriction(balance.system).contacts(reactions.components))
-    used: set[str] = set()
+    names = names_of_components(balance, taken)
+    used = {*names}
     declared: dict[str, Symbol] = {}
+    for name, c in zip(names, balance.components, strict=True):
+        given = _declared(balance, c, c.label, _more(balance, c))
+        declared |= {} if given is None else {name: given}
 
-    def symbol(label: str, owner: str, more: tuple[str, ...], given: Symbol | None) -> Node:
-        name = reaction_name(label, owner, *more)
-        while name in taken or name in used:
-            name += "_r"
-        used.add(name)
+    def friction(label: str, owner: str, given: Symbol | None) -> Node:
+        name = _unused(reaction_name(label, owner), taken, used)
         declared.update({} if given is None else {name: given})
         return graph.symbol(name)
 
-    symbols = tuple(
-        symbol(c.label, _owner(balance, c), more := _more(balance, c), _declared(balance, c, c.label, more))
-        for c in reactions.components
-    )
     frictions = [(contact.name, reactions.components[contact.component]) for contact in contacts]
     named = tuple(
-        tuple(symbol(x.label, name, (), _declared(balance, c, x.label, ())) for x in c.friction)
-        for name, c in frictions
+        tuple(friction(x.label, name, _declared(balance, c, x.label, ())) for x in c.friction) for name, c in frictions
     )
-    return Lettered(reactions, symbols, contacts, named, declared)
+    return Lettered(reactions, tuple(map(graph.symbol, names)), contacts, named, declared)
+
+
+def names_of_components(balance: Balance, taken: Container[str]) -> tuple[str, ...]:
+    """The name of every component in a derivation, none of them a name of the model."""
+    used: set[str] = set()
+    return tuple(
+        _unused(reaction_name(c.label, _owner(balance, c), *_more(balance, c)), taken, used) for c in balance.components
+    )
+
+
+def _unused(name: str, taken: Container[str], used: set[str]) -> str:
+    while name in taken or name in used:
+        name += "_r"
+    used.add(name)
+    return name
 
 
 def reaction_name(label: str, owner: str, *more: str) -> str:

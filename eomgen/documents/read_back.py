@@ -152,7 +152,7 @@ def _of_row(row: Found) -> Iterator[Wanted]:
     way, message = (f"[{found.method}]" if found.method else ""), (f"({found.message})" if found.message else "")
     yield Wanted("words", (row.name, f": {row.words}" if row.words else "", way, message))
     if found.exact is not None or found.value is not None:
-        yield Wanted("formula", sides=(found,))
+        yield Wanted("formula", sides=(*row.letters, found))
 
 
 def columns_of(table: Table) -> Grid:
@@ -292,8 +292,10 @@ class PageComparison:
         if self.read > READ_BACK:
             self.left.setdefault("the page is too long to be read back whole", []).append(_reported(want))
             return
-        if isinstance(want.sides[0], Quantity):
-            self._quantity(want.sides[0], list(block.sides), _reported(want))
+        *before, last = want.sides
+        if isinstance(last, Quantity):
+            self._sides(before, list(block.sides[: len(before)]), _reported(want))
+            self._quantity(last, list(block.sides[len(before) :]), _reported(want))
         else:
             self._sides(want.sides, list(block.sides), _reported(want))
 

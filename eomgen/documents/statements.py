@@ -179,11 +179,22 @@ def narrow_grid(head: Sequence[Cell], rows: Sequence[tuple[Cell, ...]], kept: Se
 
 @dataclass(frozen=True)
 class Found:
-    """A quantity by its name, and its meaning in words."""
+    """A quantity by its name, and its meaning in words.
+
+    Args:
+        letter: a name under which formulas have it; "" where that is its own.
+    """
 
     name: str
     quantity: Quantity
     words: str = ""
+    letter: str = ""
+
+    @property
+    def letters(self) -> tuple[Law, ...]:
+        """The letter that formulas have for it; none where it has none."""
+        name = self.letter or self.name
+        return (Law.of_letter(name),) if name.isidentifier() else ()
 
 
 @dataclass(frozen=True)

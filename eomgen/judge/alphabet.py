@@ -31,16 +31,18 @@ class Vocabulary:
         names: of the model, without primes.
         functions: that can be requested of it: speed, T, Q.
         set_as: how names are set in LaTeX, by name.
+        derived: names of quantities as derivations set them, {LaTeX: name}; they stand with their whole index alone.
     """
 
     names: frozenset[str]
     functions: frozenset[str]
     set_as: Mapping[str, str]
+    derived: Mapping[str, str]
 
     @cached_property
     def _by_key(self) -> dict[str, str]:
         found: dict[str, str] = {}
-        for name in sorted(self.names):
+        for name in sorted(self.names - {*self.derived.values()}):
             found.setdefault(key(name), name)
         for name, latex in self.set_as.items():
             found.setdefault(key(latex), name)
@@ -51,6 +53,17 @@ class Vocabulary:
         if letters in self.names:
             return letters
         return self._by_key.get(key(letters))
+
+    @cached_property
+    def _derived_by_key(self) -> dict[str, str]:
+        found: dict[str, str] = {}
+        for written, name in self.derived.items():
+            found.setdefault(key(written), name)
+        return found
+
+    def indexed(self, letters: str, index: str) -> str | None:
+        """The name for letters with an index that is written as one: x_{bob}; None where there is none."""
+        return self.known(letters + index) or (self._derived_by_key.get(key(letters + index)) if index else None)
 
     @property
     def rates(self) -> Container[str]:
@@ -104,7 +117,13 @@ def spelled_command(command: str) -> str:
     return bare
 
 
-def vocabulary(names: Iterable[str], functions: Iterable[str], set_as: Mapping[str, str]) -> Vocabulary:
-    """Names without their primes, functions, and how names are set."""
-    bare = frozenset(name.rstrip("'") for name in names)
-    return Vocabulary(bare, frozenset(functions), set_as)
+def vocabulary(
+    names: Iterable[str],
+    functions: Iterable[str],
+    set_as: Mapping[str, str],
+    derived: Mapping[str, str] | None = None,
+) -> Vocabulary:
+    """Names without their primes, functions, how names are set, and how derivations set their quantities."""
+    derived = derived or {}
+    bare = frozenset(name.rstrip("'") for name in (*names, *derived.values()))
+    return Vocabulary(bare, frozenset(functions), set_as, {x: name.rstrip("'") for x, name in derived.items()})

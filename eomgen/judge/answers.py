@@ -6,6 +6,7 @@ of the values of the file, and is right if it is rounded rightly.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Sequence
 from contextlib import suppress
@@ -23,13 +24,15 @@ from eomgen.judge.implied import Instant, implied_by, simplest_explanation
 from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.truth import other_models
-from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
-from eomgen.model import with_values
+from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of, kind_of_equation
+from eomgen.judge.written_pages import Measured
+from eomgen.model import Output, Unit, with_values
 from eomgen.questions import Answer
 from eomgen.symbolic.expression import Expression, Node, Scalar, is_zero, parse
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
+ROUNDED = 1.000001  # of half of the last digit: a number that was rounded lies within
 SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing else is looked at
 
 
@@ -40,6 +43,52 @@ def requested(case: Case, written: HandEquation, kind: str, at: Instant) -> Verd
     if kind == "frequency" and FREQUENCY.match(written.left.text):
         return _of_letter(case, written, at)
     return _answered(case, written, kind, at)
+
+
+def of_output(case: Case, written: HandEquation, at: Instant) -> Verdict | None:
+    """The verdict on an output of the file by its name, at the instant that the file says; None: it is none of these.
+
+    A number is compared with the value there, of what has no instant with that at the start.
+    """
+    output = case.model.outputs.get(written.name)
+    if at is not None:
+        return None
+    number = written.measured
+    if number is not None and (output is not None or (number.unit and len(written.left.code) == 1)):
+        return _measured(case, written, number, output)
+    if output is None or output.at is None or output.event is not None:
+        return None
+    placed = case if output.from_ != "rest" else replace(case, at_rest=True)
+    meant = replace(written, left=output.value)
+    return requested(placed, meant, kind_of_equation(meant, case.model), output.at)
+
+
+def _measured(case: Case, written: HandEquation, number: Measured, output: Output | None) -> Verdict | None:
+    """The verdict on a number: it is that of the output, or at the start; None: it is no output, and another number."""
+    requests = output or Output(value=written.left)
+    kind = kind_of_equation(replace(written, left=requests.value), case.model)
+    try:
+        answer = case.answer(requests)
+    except EomgenError:
+        return None
+    if answer.value is None:
+        reason = answer.message or "it has no value"
+        return None if output is None else Verdict(written.given, kind, UNDECIDED, reason=reason)
+    unit = Unit.parse(answer.unit or "1")
+    value = answer.value * float(unit.factor) * math.pi**unit.pi_power
+    where = "" if requests.at is not None or requests.from_ is not None else "its value at the start"
+    fits = number.dimension in (None, unit.dimension)
+    apart, noise = abs(value - number.value), tolerances.NINE_DIGITS * abs(value)
+    if fits and apart <= max(number.half * ROUNDED, noise):
+        rounding = f"the rounding of {written.given.rpartition('=')[2].strip()}" if apart > noise else ""
+        return Verdict(written.given, kind, RIGHT, " and ".join(filter(None, (where, rounding))))
+    if output is None:
+        return None
+    text = f"it is {written.name} = {answer.number}{' at the start' if where else ''}"
+    if not fits:
+        text = f"it is given in {number.unit}, and is in {answer.unit or 'no unit'}"
+    cause = Cause("other" if fits else "unit", text, quantity="the value" if fits else "the unit")
+    return Verdict(written.given, kind, WRONG, causes=(cause,))
 
 
 def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:

@@ -13,7 +13,7 @@ from eomgen.frozen import dataclass
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
 from eomgen.judge.mistakes import Mistakes
 from eomgen.judge.model_edits import ModelEdit, edited_models
-from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
+from eomgen.judge.reading import DERIVED, MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.judge.terms import Edits
 from eomgen.mechanics.dynamics import Contributions, EquationsOfMotion, Extent, System
 from eomgen.mechanics.equilibrium import Equilibrium
@@ -195,13 +195,15 @@ class Case:
         return edited_models(self.model, self.parts)
 
     @cached_property
-    def _mistakes(self) -> dict[tuple[str, tuple[str, ...]], Mistakes]:
+    def _found(self) -> dict[Any, Any]:
+        """Mistakes by what they are in, answers by what is requested: each found once."""
         return {}
 
     def mistakes(self, what: str, of: tuple[str, ...] = (), start: Mapping[Node, Scalar] | None = None) -> Mistakes:
         """Possible mistakes in equations, energies or forces, found once for all equations that are judged."""
         found = Mistakes(self.parts, what, of, start or {})
-        return self._mistakes.setdefault((what, of), found)
+        kept: Mistakes = self._found.setdefault((what, of), found)
+        return kept
 
     @property
     def rows(self) -> ScalarRow:
@@ -296,6 +298,8 @@ class Case:
             return multiplier
         if call.name == SLOPE:
             return self._slope(call)
+        if call.name == DERIVED:
+            return self._derived(call)
         try:
             found = self.quantities.value(call)
         except (DerivationError, ModelError, KeyError, StopIteration, ValueError, IndexError, AssertionError) as error:
@@ -316,6 +320,15 @@ class Case:
         held = [p for p in self.system.symbols.unknowns.values() if depends_on(x, (p,))]
         known = {p: self.quantities.reactions.unknown(p.name) for p in held}
         return substituted((x,), known)[0] if held else x
+
+    def _derived(self, call: Call) -> Scalar:
+        """A quantity that derivations name; with every coordinate free where that is meant."""
+        name, *free = call.args
+        assert isinstance(name, Reference)
+        value = self.reading.derived.quantities[name.name].value
+        assert value is not None
+        system = self.system.free if free and self.system.free else self.system
+        return self.solved(self.own(value(self.phase, system)))
 
     def _slope(self, call: Call) -> Scalar:
         """dT/du, or dT/dq as Lagrange's equations have it: N^T dT/dq; of the free system by the speeds of this."""
@@ -418,6 +431,14 @@ class Case:
         found = solve(_asking(self.model, requested))
         return found["left"], found["right"]
 
+    def answer(self, output: Output) -> Answer:
+        """The answer to an output, found once."""
+        key = f"{output.value.text} at {output.at} from {output.from_} {output.side} {output.event} {output.unit}"
+        if key not in self._found:
+            self._found[key] = solve(_asking(self.model, {"asked": output}))["asked"]
+        answer: Answer = self._found[key]
+        return answer
+
     def exact(self, answer: Answer) -> Scalar | None:
         """The exact value of an answer over the symbols; None where it has none."""
         if answer.exact is None:
@@ -433,7 +454,7 @@ class Case:
         Raises:
             ExpressionError: one does.
         """
-        for call in (call for call in written.calls if call.name not in (MULTIPLIER, SLOPE)):
+        for call in (call for call in written.calls if call.name not in (MULTIPLIER, SLOPE, DERIVED)):
             value = Expression(str(call), (("call", call),), (max(call.column, 0),))
             _asking(self.model, {"asked": Output(value=value)})
 

@@ -54,6 +54,7 @@ _WHOLE = re.compile(r"\s*(?:\\(?:left|[bB]igg?l?)\s*)?[(\[{]|\s*\\left\s*\\lbrac
 _UNIT = re.compile(r"\s*([A-Za-zµ]+)(?![\w(])")
 _INDEX_GROUP = re.compile(r"\{([^{}]*)\}")
 _OF_TIME = re.compile(r"\s*\{?\s*(?:\\left)?\s*\(\s*t\s*(?:\\right)?\s*\)\s*\}?")
+_LETTER = re.compile(r"\\(?:mathrm|mathit|text|alpha|beta|gamma|eta|theta|phi|varphi|psi|xi|chi|omega|rho|sigma|tau)\b")
 _REFERENCES = re.compile(r"\(\s*[\w.]+(?:\s*[,-]\s*[\w.]+)*\s*\)")
 _ORNAMENT = re.compile(
     r"\$\$?|\\\[|\\\]|\\\(|\\\)|\\(?:begin|end)\s*\{(?:equation|align|aligned|gather|split)\*?\}|(?<!\\)&|\\\\\s*$"
@@ -501,9 +502,9 @@ class _Reader:
         index = self.index()
         dots += self.dots()
         index = index or self.index()
-        found = self.known.known(letters + index)
+        found = self.known.indexed(letters, index)
         if found is None and letters == "ell":
-            found = self.known.known("l" + index)
+            found = self.known.indexed("l", index)
         if found is None:
             index = re.sub(r"\W", "_", index)
             found = letters + (index if index[:1].isdigit() or not index else f"_{index}")
@@ -555,6 +556,14 @@ class _Reader:
             self.at = found.end()
             inside, _ = self.group()
             return re.sub(r"[\s{}\\]", "", inside), 0
+        if command == "delta" and self.known.known("delta") is None:  # a virtual displacement
+            self.at = found.end()
+            self.skip_space()
+            behind = self.text[self.at : self.at + 1]
+            if behind.isalpha() or (behind == "\\" and _LETTER.match(self.text, self.at)):
+                letters, dots = self.letters()
+                return f"delta{letters}", dots
+            return "delta", 0
         letter = "ell" if command == "ell" else spelled_command(command)
         if not letter:
             raise self.strange(f"unknown command '\\{command}'", length=len(command) + 1)
@@ -658,7 +667,7 @@ class _Reader:
             self.at -= 1
             self.after(base, start)
             return
-        found = self.known.known(bare) or self.known.known(base + index)
+        found = self.known.known(bare) or self.known.indexed(base, index)
         found = found or meant_name(bare, self.known.rates) or "".join(spelled(c) or c for c in bare)
         self.after(found, start)
 
@@ -668,7 +677,7 @@ class _Reader:
         dots = self.dots()
         index = index or self.index()
         if index:
-            name = self.known.known(name + index) or name + (index if index[0].isdigit() else f"_{index}")
+            name = self.known.indexed(name, index) or name + (index if index[0].isdigit() else f"_{index}")
         of_time = _OF_TIME.match(self.text, self.at)
         if of_time and (name in self.known.names or name not in self.known.functions):
             self.at = of_time.end()

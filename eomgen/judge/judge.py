@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
-from eomgen.judge.answers import of_unknown, requested
+from eomgen.judge.answers import of_output, of_unknown, requested
 from eomgen.judge.balances import Balances, requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess, remainder
@@ -24,7 +24,7 @@ from eomgen.judge.implied import (
     implied_by_rest,
     simplest_explanation,
 )
-from eomgen.judge.reading import HandEquation, along_ground_axes, of_free_coordinates
+from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
 from eomgen.judge.renaming import Renaming, renamings
 from eomgen.judge.truth import (
     CONSTANT,
@@ -64,6 +64,7 @@ from eomgen.judge.verdict import (
     causes_of,
     kind_of_equation,
 )
+from eomgen.judge.written_pages import matrix_of
 from eomgen.mechanics.dynamics import System
 from eomgen.model import AtRest, Model, ModelOrPath, Values, equation_in, with_values
 from eomgen.proof import Certificate, JudgedEquation, certify, verdicts_again
@@ -71,6 +72,7 @@ from eomgen.resources import doing
 from eomgen.study import model_to_study
 from eomgen.symbolic.expression import (
     SLOPE,
+    Expression,
     Node,
     Reference,
     Scalar,
@@ -106,6 +108,11 @@ CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
 
 BEGUN = ("the first piece of the path", "contacts that slide as they do at the start")
 GROUND = "the joint's forces along the ground's axes"
+MATRICES = {"M": "mass", "C": "damping", "K": "stiffness"}
+"""letter of a matrix of small motions -> the function of its entries"""
+AT_REST = "an equilibrium"
+VIRTUAL = "delta"
+NAMED = "names of outputs as derivations have them"
 FREE = "energies over all coordinates, as if none followed from others"
 SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong that hold whatever the system does
 
@@ -117,26 +124,99 @@ class Judge:
     case: Case
 
     @doing("the verdict")
-    def verdict(self, equation: Any, *, at: Any = None, kind: str | None = None) -> Verdict:
+    def verdict(
+        self,
+        equation: Any,
+        *,
+        at: Any = None,
+        kind: str | None = None,
+        defined: Mapping[str, Expression] | None = None,
+    ) -> Verdict:
         """The verdict on one equation.
 
+        Args:
+            defined: letters of the author's own, and what they stand for.
         Raises:
             ExpressionError: it cannot be read.
             UsageError: no such kind.
         """
         if kind is not None and kind not in KINDS:
             raise UsageError(f"there is no kind '{kind}' of equations", fix=f"one of {', '.join(KINDS)}")
-        written = self.case.reading.read(equation)
+        if (matrix := matrix_of(equation) if isinstance(equation, str) else None) is not None:
+            return self._of_matrix(equation, *matrix)
+        written = self.case.reading.read(equation, defined)
         known = kind or kind_of_equation(written, self.case.model)
-        found, along_ground = self._of_axes(written, known, at), along_ground_axes(written)
-        if found or along_ground is written:
-            return found
-        other = self._of_axes(along_ground, known, at)
-        return replace(other, up_to=" and ".join(filter(None, (GROUND, other.up_to)))) if other else found
+        found = self._of_virtual_work(written, known, at) or self._of_axes(written, known, at)
+        answered = of_output(self.case, written, at) if not found else None
+        if answered:
+            return answered
+        for reported, other in self._other_readings(equation, written, defined) if not found else ():
+            with suppress(ExpressionError):
+                if so := self._of_axes(other, kind or kind_of_equation(other, self.case.model), at):
+                    return replace(so, up_to=" and ".join(filter(None, (reported, so.up_to))))
+        if not found and at is None and self._may_be_of_rest(written):
+            with suppress(ExpressionError):
+                if so := self._of_axes(written, "equilibrium", None):
+                    return replace(so, up_to=" and ".join(filter(None, (AT_REST, so.up_to))))
+        return answered if answered is not None and found.verdict == UNDECIDED else found
+
+    def _of_matrix(self, given: str, letter: str, rows: list[list[str]]) -> Verdict:
+        """The verdict on M, C or K of the small motions, entry by entry.
+
+        Raises:
+            ExpressionError: another matrix, or one of another size.
+        """
+        names = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
+        if letter not in MATRICES:
+            raise ExpressionError(f"'{letter}' is no matrix that is judged", 0, f"one of {', '.join(MATRICES)}")
+        if [len(row) for row in rows] != [len(names)] * len(names):
+            raise ExpressionError(f"{letter} has {len(names)} rows and columns: {', '.join(names)}", 0)
+        verdict = Verdict(given, "frequency", RIGHT)
+        for name, row in zip(names, rows, strict=True):
+            for other, entry in zip(names, row, strict=True):
+                verdict = self.verdict(f"{MATRICES[letter]}({name}, {other}) = {entry}", kind="frequency")
+                if not verdict:
+                    return replace(verdict, given=given)
+        return replace(verdict, given=given)
+
+    def _may_be_of_rest(self, written: HandEquation) -> bool:
+        """True if it is the condition Q = 0 of equilibrium, or a stiffness there."""
+        left = written.left.code[0]
+        if len(written.left.code) > 1 or left[0] != "call":
+            return False
+        if left[1].name == DERIVED:
+            return str(left[1]).startswith(f"{DERIVED}(K_")
+        return left[1].name == "generalized_force" and written.right.literal == 0
+
+    def _of_virtual_work(self, written: HandEquation, kind: str, at: Any) -> Verdict | None:
+        """The verdict on a sum of virtual works: each virtual displacement by itself; None: there is none in it."""
+        unknown = self.case.unknown_names(written)
+        virtual = [name for name in unknown if name.startswith(VIRTUAL) and len(name) > len(VIRTUAL)]
+        if not virtual or virtual != unknown:
+            return None
+        verdict: Verdict | None = None
+        for name in virtual:
+            meant = {each: Expression.number(int(each == name)) for each in virtual}
+            verdict = self._of_axes(written.with_names(meant), kind, at)
+            if not verdict:
+                break
+        return None if verdict is None or not verdict else replace(verdict, up_to="any virtual displacement")
+
+    def _other_readings(
+        self, given: Any, written: HandEquation, defined: Mapping[str, Expression] | None
+    ) -> Iterator[tuple[str, HandEquation]]:
+        """(how, the equation) of ways in which it may be meant, too."""
+        along_ground = along_ground_axes(written)
+        if along_ground is not written:
+            yield GROUND, along_ground
+        if (with_unit := self.case.reading.with_unit(given, defined)) is not None:
+            yield "", with_unit
+        if (derived := self.case.reading.as_derived(given, defined)) is not None:
+            yield NAMED, derived
 
     def _of_axes(self, written: HandEquation, known: str, at: Any) -> Verdict:
         """Verdict on an equation whose reactions are along known axes."""
-        if self.case.system.free is None or not any(call.name == SLOPE for call in written.calls):
+        if self.case.system.free is None or not any(call.name in (SLOPE, DERIVED) for call in written.calls):
             return self._of_reading(written, known, at)
         free = of_free_coordinates(written)
         with suppress(ExpressionError):  # it is differentiated by what follows from others
@@ -151,7 +231,7 @@ class Judge:
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, kind, UNDECIDED, reason=error.what)
 
-    def said(self, verdict: Verdict) -> JudgedEquation | None:
+    def said(self, verdict: Verdict, defined: Mapping[str, Expression] | None = None) -> JudgedEquation | None:
         """A verdict as it is decided again by numbers; None of what is undecided, or wrong because it says nothing."""
         empty = any(cause.quantity in SAYS_NOTHING for cause in verdict.causes)
         if verdict.verdict == UNDECIDED or empty:
@@ -160,9 +240,11 @@ class Judge:
         equations = (begun or self.case).equations
         if equations is None:
             return None
-        written = self.case.reading.read(verdict.given)
+        written = self.case.reading.read(verdict.given, defined)
         if GROUND in verdict.up_to:
             written = along_ground_axes(written)
+        if NAMED in verdict.up_to:
+            written = self.case.reading.as_derived(verdict.given, defined) or written
         if equations.system.free is not None and (verdict.verdict == WRONG or FREE in verdict.up_to):
             written = of_free_coordinates(written)
         names = [name for name in self.case.unknown_names(written) if name not in verdict.substitution]

@@ -7,17 +7,18 @@ T(rod) and the letters of reactions (B_x, N_floor) stand for functions of the ou
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents import RequestedReaction, notation_of, requested_reactions
+from eomgen.documents import NamedQuantity, RequestedReaction, named_quantities, notation_of, requested_reactions
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
+from eomgen.judge.written_pages import Measured, in_one_formula, measured
 from eomgen.mechanics.dynamics import System
 from eomgen.model import FUNCTIONS
 from eomgen.symbolic.expression import SLOPE, Call, Expression, Instruction, Reference, Scalar, parse, parse_equation
@@ -27,6 +28,7 @@ LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_for
 FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
 """the letter of a frequency of small motions"""
 MULTIPLIER = "lam"  # of a constraint row: lam(constraint, 1)
+DERIVED = "derived"  # what a derivation names and no output is: derived(Q_theta_motor)
 
 
 @dataclass(frozen=True)
@@ -37,12 +39,16 @@ class HandEquation:
         given: as it was written.
         left, right: its sides, letters replaced by the functions that they stand for.
         letters: those in it that stand for one function, by its text.
+        name: the letter that is its left side; "" where that is a formula.
+        measured: its right side, where that is a number, with a unit or without.
     """
 
     given: str
     left: Expression
     right: Expression
     letters: Mapping[str, str] = field(default_factory=dict)
+    name: str = ""
+    measured: Measured | None = None
 
     @property
     def difference(self) -> Expression:
@@ -56,6 +62,19 @@ class HandEquation:
     def calls(self) -> tuple[Call, ...]:
         """The functions of the motion in it, those whose rate is taken too."""
         return (*calls_in(self.left), *calls_in(self.right))
+
+    def with_names(self, meanings: Mapping[str, Expression]) -> HandEquation:
+        """The same, formulas in the place of names."""
+
+        def meant(side: Expression) -> Expression:
+            code = [
+                x
+                for kind, what in side.code
+                for x in (meanings[what].code if kind == "name" and what in meanings else ((kind, what),))
+            ]
+            return Expression(side.text, tuple(code), (-1,) * len(code))
+
+        return replace(self, left=meant(self.left), right=meant(self.right))
 
     @property
     def takes_rates(self) -> bool:
@@ -81,7 +100,7 @@ def of_free_coordinates(written: HandEquation) -> HandEquation:
     def called(call: Call) -> Call:
         if call.name == RATE:
             return replace(call, args=tuple(freed(x) if isinstance(x, Expression) else x for x in call.args))
-        if call.name != SLOPE:
+        if call.name not in (SLOPE, DERIVED):
             return call
         other = replace(call, args=(*call.args, Reference("free")))
         letters[str(other)] = letters[str(call)]
@@ -132,6 +151,59 @@ def side_value(
 
 
 @dataclass(frozen=True)
+class DerivedNames:
+    """Names that derivations have for quantities.
+
+    Args:
+        quantities: all of them by name.
+        taken: names of the model, and letters: of these the model's meaning comes first.
+        meanings: what each name stands for.
+        pattern: of names that text alone has, Q(x, joint of cart); None where there is none.
+        texts: {such a name without blanks: its name of the grammar}.
+    """
+
+    quantities: Mapping[str, NamedQuantity]
+    taken: frozenset[str]
+    meanings: Mapping[str, Expression]
+    pattern: re.Pattern[str] | None
+    texts: Mapping[str, str]
+
+    @classmethod
+    def of(cls, system: System, taken: Iterable[str]) -> DerivedNames:
+        """The names of a system, beside those that are taken."""
+        quantities, known = {x.name: x for x in named_quantities(system)}, frozenset(taken)
+        meanings = {
+            name: parse(x.call, references=True) if x.call else _called(DERIVED, Reference(name))
+            for name, x in quantities.items()
+        }
+        texts = {_flat(x.text): name for name, x in quantities.items() if x.text and name not in known}
+        spaced = [r"\s*".join(map(re.escape, re.findall(r"\w+|\S", quantities[name].text))) for name in texts.values()]
+        longest = "|".join(sorted(spaced, key=len, reverse=True))
+        pattern = re.compile(rf"(?<![\w.])(?:{longest})(?!\w)") if texts else None
+        return cls(quantities, known, meanings, pattern, texts)
+
+    @property
+    def typeset(self) -> dict[str, str]:
+        """{as derivations set it: name}, of what is not taken."""
+        free = [x for name, x in self.quantities.items() if name not in self.taken]
+        return {x.typeset: x.name for x in free if x.typeset} | {x.name: x.name for x in free}
+
+    def shown(self, name: str) -> str:
+        """A letter as its author has it: of a derivation its own text."""
+        return (self.quantities[name].text or name) if name in self.quantities and name not in self.taken else name
+
+    def named_in(self, text: str, c_is_taken: bool) -> str:
+        """The text with names of the grammar; beside more c(x') is a product where c is a name of the model."""
+
+        def named(found: re.Match[str]) -> str:
+            alone = not text[: found.start()].strip() and text[found.end() :].lstrip().startswith("=")
+            may_be_product = found[0].startswith("c") and c_is_taken and not alone
+            return found[0] if may_be_product else self.texts.get(_flat(found[0]), found[0])
+
+        return text if self.pattern is None else self.pattern.sub(named, text)
+
+
+@dataclass(frozen=True)
 class Reading:
     """Reads equations about one system."""
 
@@ -145,7 +217,29 @@ class Reading:
         own = [name for name in self.system.scope.names if "'" not in name]
         letters = [letter for letter in LETTERS if letter not in self.system.scope.names]
         set_as = {name: notation.latex(name) for name in own}
-        return vocabulary(names, (*FUNCTIONS, *letters, MULTIPLIER), set_as)
+        return vocabulary(names, (*FUNCTIONS, *letters, MULTIPLIER), set_as, self.derived.typeset)
+
+    @cached_property
+    def derived(self) -> DerivedNames:
+        """Names that derivations of the model have for its quantities."""
+        return DerivedNames.of(self.system, {*self.system.scope.names, *self.letters})
+
+    def as_derived(self, given: Any, defined: Mapping[str, Expression] | None = None) -> HandEquation | None:
+        """The same equation, names of outputs taken for what derivations name so: omega_disc; None where none is."""
+        outputs = self.system.scope.model.outputs
+        doubly = {name: formula for name, formula in self.derived.meanings.items() if name in outputs}
+        doubly |= {letter: formula for letter, formula in self._energies.items() if letter in outputs}
+        if not doubly or not isinstance(given, str):
+            return None
+        sides = self._sides(self._plain(given))
+        if not any(name in doubly for side in sides for name in side.names):
+            return None
+        return self._read_sides(given, *sides, {**(defined or {}), **doubly})
+
+    def _plain(self, given: str) -> str:
+        """The text with names of the grammar for those that stand in texts of derivations alone."""
+        given = in_one_formula(given)
+        return given if "\\" in given else self.derived.named_in(given, "c" in self.system.scope.names)
 
     @cached_property
     def letters(self) -> dict[str, Expression]:
@@ -156,9 +250,7 @@ class Reading:
         found = {name: output.value for name, output in model.outputs.items() if output.at is None and not output.from_}
         for letter, call in self._declared_letters():
             found.setdefault(letter, _called(call.name, *call.args))
-        T, V = (_called(LETTERS[letter]) for letter in ("T", "V"))
-        for letter, formula in (("T", T), ("V", V), ("L", T - V)):
-            found.setdefault(letter, formula)
+        found = {**self._energies, **found}
         for letter, call in self._reactions():
             found.setdefault(letter, _called(call.name, *call.args))
         normal = [letter for letter in found if letter in {f"N_{constraint}" for constraint in model.constraints}]
@@ -167,6 +259,11 @@ class Reading:
         points = model.named_points if model.space == "plane" and model.bodies else ()
         found |= {f"{letter}_{x}": _called("inertia_point", Reference(x)) for x in points for letter in "JI"} | found
         return {letter: formula for letter, formula in found.items() if letter not in own}
+
+    @property
+    def _energies(self) -> dict[str, Expression]:
+        T, V = (_called(LETTERS[letter]) for letter in ("T", "V"))
+        return {"T": T, "V": V, "L": T - V}
 
     @cached_property
     def _requested(self) -> tuple[tuple[RequestedReaction, Call], ...]:
@@ -202,27 +299,59 @@ class Reading:
             letter = name if symbol is None or symbol.letter is None else symbol.letter.text
             for axis in ("x", "y", "z") if model.space == "space" else ("x", "y"):
                 yield f"{letter}_{axis}", self._as_derived(Call(f"reaction_{axis}", (Reference(name),)), name)
-            yield f"M_{letter}", Call("reaction_couple", (Reference(name),))
+            if model.space == "plane":
+                yield f"M_{letter}", Call("reaction_couple", (Reference(name),))
         for row in self.system.constraints.closing:
             multiplier = Call(MULTIPLIER, (Reference(row.constraint), Expression.number(row.number)))
             yield f"lambda_{row.constraint}_{row.number}", multiplier
 
-    def read(self, given: Any) -> HandEquation:
+    def read(self, given: Any, defined: Mapping[str, Expression] | None = None) -> HandEquation:
         """Both sides of an equation.
 
+        Args:
+            defined: letters of the author's own, and what they stand for.
         Raises:
             ExpressionError: it cannot be read; column and length say where in what was given.
         """
         if not isinstance(given, str):
             given = text_of_sympy(given)
-        left, right = self._sides(given)
+        plain = self._plain(given)
+        head, sign, tail = plain.rpartition("=")
+        number = measured(tail) if sign and "=" not in head else None
+        if number is not None and not (number.unit and self._may_be_product(number.unit)):
+            plain = f"{head}= {number.exact if number.unit else number.text}"
+        found = self._read_sides(given, *self._sides(plain), defined)
+        return replace(found, measured=number)
+
+    def _may_be_product(self, unit: str) -> bool:
+        """True if what stands behind a number may be a product of names of the model: 2 m."""
+        return all(word in self.system.scope.names for word in re.findall(r"[^\W\d_]+", unit))
+
+    def with_unit(self, given: Any, defined: Mapping[str, Expression] | None = None) -> HandEquation | None:
+        """The same, what stands behind the number on the right taken for its unit; None where that is so already."""
+        if not isinstance(given, str):
+            return None
+        head, sign, tail = self._plain(given).rpartition("=")
+        number = measured(tail) if sign and "=" not in head else None
+        if number is None or not number.unit or not self._may_be_product(number.unit):
+            return None
+        return replace(self._read_sides(given, *self._sides(f"{head}= {number.exact}"), defined), measured=number)
+
+    def _read_sides(
+        self, given: str, left: Expression, right: Expression, meanings: Mapping[str, Expression] | None = None
+    ) -> HandEquation:
+        """The equation of two sides; letters by `meanings` first."""
+        name = left.code[0][1] if len(left.code) == 1 and left.code[0][0] == "name" else ""
         left = self._alone(left, right)
-        used = {name: formula for name, formula in self.letters.items() if name in left.names | right.names}
-        letters = {str(x.calls[0]): name for name, x in used.items() if len(x.code) == 1 and x.calls}
-        left, right = self._meant(left), self._meant(right)
+        known = {**self.derived.meanings, **self.letters, **(meanings or {})}
+        used = {name: formula for name, formula in known.items() if name in left.names | right.names}
+        letters = {
+            str(x.calls[0]): self.derived.shown(name) for name, x in used.items() if len(x.code) == 1 and x.calls
+        }
+        left, right = self._meant(left, known), self._meant(right, known)
         slopes = (call for side in (left, right) for call in calls_in(side) if call.name == SLOPE)
         letters |= {str(call): f"d{call.args[0]}/d{call.args[1]}" for call in slopes}
-        return HandEquation(given, left, right, letters)
+        return HandEquation(given, left, right, letters, name)
 
     def _alone(self, left: Expression, right: Expression) -> Expression:
         """A letter alone on the left that the model does not have.
@@ -258,11 +387,6 @@ class Reading:
                 return found
         except ExpressionError as error:
             plain, found = error, None
-        if found is not None and self._may_be_inertia_terms(found[0]):
-            what, product = f"'{found[0].text}' stands for terms of inertia in a derivation", self._is_known("c")
-            what += ", or is a product here" if product else ", which are not judged by themselves"
-            factors = found[0].text.replace("(", "*").rstrip(")")
-            raise ExpressionError(what, 0, f"write {factors} for the product" if product else "judge T, or the motion")
         try:
             written = transcript(given, self.vocabulary)
             return self._parsed(written)
@@ -290,11 +414,6 @@ class Reading:
         what = "two equality signs" if len(parts) > 2 else "a side is missing beside '='"
         raise ExpressionError(what, written.column(at), "write one equation, left = right")
 
-    def _may_be_inertia_terms(self, left: Expression) -> bool:
-        """True if a side is c(q'), as `derive` names them."""
-        calls = left.calls if len(left.code) == 1 else ()
-        return any(x.name == "c" and all(self._is_known(str(a)) for a in x.args) for x in calls)
-
     def _is_of_time(self, call: Call) -> bool:
         """x(t): a coordinate, and no function of a point."""
         return call.name in self.system.scope.names and call.args == (Reference("t"),)
@@ -309,15 +428,16 @@ class Reading:
         formula = {"T": T, "V": V, "L": T - V}.get(written.text) or self._meant(written)
         return Expression(written.text, formula.code, formula.columns)
 
-    def _meant(self, side: Expression) -> Expression:
+    def _meant(self, side: Expression, known: Mapping[str, Expression] | None = None) -> Expression:
         """A side with letters replaced by the functions that they stand for."""
         own = self.system.scope.names
+        known = {**self.derived.meanings, **self.letters} if known is None else known
         code: list[Instruction] = []
         for kind, what in side.code:
-            if kind == "name" and what not in own and what in self.letters:
-                code += self.letters[what].code
+            if kind == "name" and what not in own and what in known:
+                code += known[what].code
             elif kind == "call" and what.name == RATE:
-                args = tuple(self._meant(x if isinstance(x, Expression) else parse(x.name)) for x in what.args)
+                args = tuple(self._meant(x if isinstance(x, Expression) else parse(x.name), known) for x in what.args)
                 code.append(("call", replace(what, args=args)))
             elif kind == "call" and what.name == SLOPE:
                 code.append(("call", replace(what, args=(self._energy(what.args[0]), _formula(what.args[1])))))
@@ -327,6 +447,10 @@ class Reading:
                 code.append((kind, what))
         columns = side.columns if len(code) == len(side.code) else (-1,) * len(code)
         return Expression(side.text, tuple(code), columns)
+
+
+def _flat(text: str) -> str:
+    return "".join(text.split())
 
 
 def _formula(argument: Reference | Expression) -> Expression:

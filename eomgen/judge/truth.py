@@ -78,6 +78,8 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
     undecided = found.holds is None
     if kind == "energy" and _is_constant_of_potential(case, scalar):
         return Decided(True, OF_ENERGIES[-1])
+    if (of_positions := _integral_of_positions(case, scalar)) is not None:
+        return of_positions
     if case.equations is None:
         return Decided(None if undecided else False)
     if depends_on(scalar, case.forced):
@@ -258,6 +260,20 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
     if begins:
         return Decided(True, f"the first integral from the start{while_(held)}")
     return Decided(False, while_(held).removeprefix(", "), CONSTANT)
+
+
+def _integral_of_positions(case: Case, scalar: Scalar) -> Decided | None:
+    """The decision on a function of positions and time whose rate vanishes by the constraints; None: it is none."""
+    symbols = case.system.symbols
+    if not depends_on(scalar, symbols.q) or depends_on(scalar, (*symbols.u, *case.forced)):
+        return None
+    try:
+        (rate,) = case.system.scope.time_derivative((scalar,))
+    except DerivationError:
+        return None
+    if not is_zero_everywhere(case.system, rate).holds or not case.starts_at_zero(scalar):
+        return None
+    return Decided(True, "the constraints, integrated from the start")
 
 
 def stays_constant(case: Case, scalar: Scalar) -> Extent:

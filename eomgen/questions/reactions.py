@@ -18,6 +18,7 @@ from eomgen.documents import (
     PrintedReactions,
     Quantity,
     Statement,
+    found_reaction,
     listed,
     listing_markdown,
     nearest_name,
@@ -25,7 +26,6 @@ from eomgen.documents import (
     prose,
     proven,
     run_picture,
-    said,
     with_start_reported,
 )
 from eomgen.equations import Equations
@@ -330,7 +330,7 @@ def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str
         answer = found[named.name]
         if below and OPEN in (answer.message or ""):
             answer = replace(answer, message=f"{OPEN}, see below")
-        rows.append(Found(named.name, answer, said(balance, named)))
+        rows.append(found_reaction(balance, named, answer))
     return Listing(tuple(rows))
 
 
