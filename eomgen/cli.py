@@ -355,8 +355,9 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     "answers",
     multiple=True,
     type=click.Path(exists=True, allow_dash=True),
-    help="Equations in a file, one a line; all files of a folder.",
+    help="Equations in a file, one a line; a derivation in .tex, .md, .ipynb; all files of a folder.",
 )
+@click.option("--derivation", is_flag=True, help="Each --file is a derivation, whatever its ending.")
 @AT(help='The instant at which they hold: "theta=pi/2"; or "equilibrium".')
 @FROM_REST(
     is_flag=False,

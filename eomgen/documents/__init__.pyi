@@ -227,9 +227,15 @@ from eomgen.documents.moving_picture import virtual_movie as virtual_movie
 # Quantities that derivations of a system name, each name once
 from eomgen.documents.names_derived import NamedQuantity as NamedQuantity
 
+# A reaction that outputs can request by one name, with the letters that it has in derivations
+from eomgen.documents.names_derived import RequestedReaction as RequestedReaction
+
 # A reaction that an output names, with its meaning in words and its letter
 from eomgen.documents.names_derived import found_reaction as found_reaction
 from eomgen.documents.names_derived import named_quantities as named_quantities
+
+# Reactions of a system, without those that need the name of a body too
+from eomgen.documents.names_derived import requested_reactions as requested_reactions
 from eomgen.documents.pages_read import GREEK_LETTERS as GREEK_LETTERS
 from eomgen.documents.pages_read import PAGES as PAGES
 
@@ -282,17 +288,11 @@ from eomgen.documents.reaction_steps import letters_of as letters_of
 # The reactions of equations of motion as they are printed
 from eomgen.documents.reaction_values import PrintedReactions as PrintedReactions
 
-# A reaction that outputs can request by one name, with the letters that it has in derivations
-from eomgen.documents.reaction_values import RequestedReaction as RequestedReaction
-
 # A symbol for every reaction, none of them a name of the model
 from eomgen.documents.reaction_values import lettered as lettered
 
 # Name of a reaction: B_x, R_stick_x, N_wall, T_rope_2, M_E
 from eomgen.documents.reaction_values import reaction_name as reaction_name
-
-# Reactions of a system, without those that need the name of a body too
-from eomgen.documents.reaction_values import requested_reactions as requested_reactions
 
 # Meaning in words of a reaction that an output names
 from eomgen.documents.reaction_values import said as said

@@ -15,19 +15,27 @@ from eomgen.documents.document import notation_of
 from eomgen.documents.energy_steps import JACOBI
 from eomgen.documents.latex import side_latex
 from eomgen.documents.motion_steps import axes, moved_coordinates, points_of_forces
-from eomgen.documents.reaction_values import AXES, LETTERS, names_of_components, reaction_name, said, shown_system
+from eomgen.documents.reaction_values import (
+    AXES,
+    LETTERS,
+    names_of_components,
+    own_symbol,
+    reaction_name,
+    said,
+    shown_system,
+)
 from eomgen.documents.statements import Entry, Found, Law, Name, Quantity, Rate, Side
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Row
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Balance, NamedReaction
+from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import Applied, SystemInertia
 from eomgen.model import Couple, PointForce
 from eomgen.study import Study
 from eomgen.symbolic.expression import Node, Scalar, derivative, gradient, inner, is_zero
-from eomgen.symbolic.print import Setter
+from eomgen.symbolic.print import Setter, Symbol
 
 Value = Callable[[Study, System], Scalar]
 
@@ -319,3 +327,40 @@ def _letter_of(balance: Balance, named: NamedReaction) -> str:
     if found is None or label not in (*AXES, *LETTERS) or along_ground or label == "drive":
         return ""
     return reaction_name(label, found["owner"], *filter(None, (found["side"], found["number"])))
+
+
+@dataclass(frozen=True)
+class RequestedReaction:
+    """A reaction that outputs can request by one name, with the letters that it has in derivations.
+
+    Args:
+        function, argument, number: of the request, tension(rope, 2); number is "" where there is none.
+        owner: the constraint, or the body whose joint it is.
+        letters: B_x; of the tension of the only strand T_rope and T_rope_1; () of a couple about an axis.
+        declared: the symbol that the joint or the constraint gives it.
+    """
+
+    function: str
+    argument: str
+    number: str
+    owner: str
+    letters: tuple[str, ...]
+    declared: Symbol | None
+
+
+def requested_reactions(system: System) -> Iterator[RequestedReaction]:
+    """Reactions of a system, without those that need the name of a body too.
+
+    Raises:
+        DerivationError: something acts at no place.
+    """
+    balance = Balance.of(system)
+    for each in named_reactions(balance):
+        function, _, arguments = each.name.removesuffix(")").partition("(")
+        argument, _, number = arguments.partition(", ")
+        if number and not (function == "tension" and number.isdigit()):
+            continue
+        label = function.removeprefix("reaction_")
+        numbers = () if label.startswith("couple_") else ("", "1") if label == "tension" and not number else (number,)
+        letters = tuple(reaction_name(label, each.owner, x) for x in numbers)
+        yield RequestedReaction(function, argument, number, each.owner, letters, own_symbol(balance, each))

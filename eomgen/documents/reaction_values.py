@@ -9,7 +9,7 @@ few equations as can be, or by all of them, projected on the reaction. The short
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -338,44 +338,7 @@ def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[st
     return Symbol(label, LETTERS[kind], ",".join([given.letter.tex, *index]))
 
 
-@dataclass(frozen=True)
-class RequestedReaction:
-    """A reaction that outputs can request by one name, with the letters that it has in derivations.
-
-    Args:
-        function, argument, number: of the request, tension(rope, 2); number is "" where there is none.
-        owner: the constraint, or the body whose joint it is.
-        letters: B_x; of the tension of the only strand T_rope and T_rope_1; () of a couple about an axis.
-        declared: the symbol that the joint or the constraint gives it.
-    """
-
-    function: str
-    argument: str
-    number: str
-    owner: str
-    letters: tuple[str, ...]
-    declared: Symbol | None
-
-
-def requested_reactions(system: System) -> Iterator[RequestedReaction]:
-    """Reactions of a system, without those that need the name of a body too.
-
-    Raises:
-        DerivationError: something acts at no place.
-    """
-    balance = Balance.of(system)
-    for each in named_reactions(balance):
-        function, _, arguments = each.name.removesuffix(")").partition("(")
-        argument, _, number = arguments.partition(", ")
-        if number and not (function == "tension" and number.isdigit()):
-            continue
-        label = function.removeprefix("reaction_")
-        numbers = () if label.startswith("couple_") else ("", "1") if label == "tension" and not number else (number,)
-        letters = tuple(reaction_name(label, each.owner, x) for x in numbers)
-        yield RequestedReaction(function, argument, number, each.owner, letters, _own_symbol(balance, each))
-
-
-def _own_symbol(balance: Balance, named: NamedReaction) -> Symbol | None:
+def own_symbol(balance: Balance, named: NamedReaction) -> Symbol | None:
     """The symbol that a joint or a constraint gives a reaction of its own; None of sums, and where it gives none."""
     if len(named.combination) != 1 or not is_zero(named.given):
         return None

@@ -1,10 +1,10 @@
 """Door of the room: what other rooms may import from `eomgen.judge`."""
 
 # One equation to be judged
-from eomgen.judge.judge import Answered as Answered
+from eomgen.judge.derivations import Answered as Answered
 
 # The verdicts on equations, each with the relations used or the reason why it is wrong
-from eomgen.judge.judge import judged as judged
+from eomgen.judge.derivations import judged as judged
 
 # Whether an equation of somebody is right for a model, up to what, and if not, why
 from eomgen.judge.judge import verify as verify

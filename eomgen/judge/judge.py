@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -52,12 +52,10 @@ from eomgen.judge.truth import (
     with_values_of_file,
 )
 from eomgen.judge.verdict import (
-    EXIT_CODES,
     FUNCTION_KINDS,
     KINDS,
     RIGHT,
     UNDECIDED,
-    UNREADABLE,
     WRONG,
     Cause,
     Verdict,
@@ -65,9 +63,8 @@ from eomgen.judge.verdict import (
     kind_of_equation,
 )
 from eomgen.judge.written_pages import matrix_of
-from eomgen.mechanics.dynamics import System
-from eomgen.model import AtRest, Model, ModelOrPath, Values, equation_in, with_values
-from eomgen.proof import Certificate, JudgedEquation, certify, verdicts_again
+from eomgen.model import AtRest, ModelOrPath, equation_in
+from eomgen.proof import JudgedEquation
 from eomgen.resources import doing
 from eomgen.study import model_to_study
 from eomgen.symbolic.expression import (
@@ -230,6 +227,10 @@ class Judge:
             return self._judged(written, kind, _instant(self.case, at)).in_letters(written.letters)
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, kind, UNDECIDED, reason=error.what)
+
+    def is_right(self, written: HandEquation, kind: str) -> bool:
+        """True if an equation that was read is right."""
+        return bool(self._of_axes(written, kind, None))
 
     def said(self, verdict: Verdict, defined: Mapping[str, Expression] | None = None) -> JudgedEquation | None:
         """A verdict as it is decided again by numbers; None of what is undecided, or wrong because it says nothing."""
@@ -541,114 +542,6 @@ def _instant(case: Case, at: Any) -> Instant:
         return equation_in(case.model, str(at))
     except ExpressionError as error:
         raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
-
-
-# -------- several equations ------------------------------------------------------------------------------------
-
-
-@dataclass(frozen=True)
-class Answered:
-    """One equation to be judged.
-
-    Args:
-        text: the equation as it was written.
-        file, line: its place; "" and 0 for a typed one.
-    """
-
-    text: str
-    file: str = ""
-    line: int = 0
-
-
-@dataclass(frozen=True)
-class Judgements:
-    """Verdicts on several equations of one model, in words, for machines, and as an exit code.
-
-    Args:
-        judge: of the model.
-        found: the verdicts.
-        entries: of each, for machines.
-        lines: of all, in words; the last counts them, where there are several.
-        exit_code: 0 where all are right.
-    """
-
-    judge: Judge
-    found: tuple[Verdict, ...]
-    entries: tuple[Mapping[str, Any], ...]
-    lines: tuple[str, ...]
-    exit_code: int
-
-    @property
-    def system(self) -> System | None:
-        """The system whose equations others are held against; None of a model that has none."""
-        equations = self.judge.case.equations
-        return None if equations is None else equations.system
-
-    def certify(self, *, again: bool = True) -> Certificate:
-        """The proof of the equations against which others are held, and of the verdicts by another decision.
-
-        Args:
-            again: the verdicts are decided again, which those at an instant are not.
-        """
-        equations = self.judge.case.equations
-        if equations is None:
-            return Certificate(())
-        said = [each for verdict in self.found if again and (each := self.judge.said(verdict)) is not None]
-        return certify(equations) + verdicts_again(said)
-
-
-def judged(
-    model: Model,
-    requested: Sequence[Answered],
-    *,
-    at: Any = None,
-    from_rest: Values | None = None,
-    kind: str | None = None,
-    hint: int | None = None,
-) -> Judgements:
-    """The verdicts on equations, each with the relations used or the reason why it is wrong.
-
-    Args:
-        at, kind: as of `verify`.
-        from_rest: positions from which the motion starts with all speeds 0; None: its own start.
-        hint: how much is said about what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
-    Raises:
-        UsageError: the only equation cannot be read.
-    """
-    placed = with_values(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
-    judge = Judge(Case(placed, from_rest is not None))
-    found: list[Verdict] = []
-    entries: list[dict[str, Any]] = []
-    lines: list[str] = []
-    codes: list[int] = []
-    for each in requested:
-        verdict, entry, reported, code = _judged(judge, each, at, kind, hint, alone=len(requested) == 1)
-        found += [verdict]
-        entries.append(entry | ({"file": each.file, "line": each.line} if each.file else {}))
-        lines += [f"{each.file}:{each.line}: {reported[0]}" if each.file else reported[0], *reported[1:]]
-        codes.append(code)
-    if len(requested) > 1:
-        count = {name: sum(entry["verdict"] == name for entry in entries) for name in EXIT_CODES}
-        lines.append(f"{count[RIGHT]} right, {count[WRONG]} wrong, {count[UNDECIDED]} undecided")
-    code = next((c for c in (EXIT_CODES[WRONG], UNREADABLE, EXIT_CODES[UNDECIDED]) if c in codes), 0)
-    return Judgements(judge, tuple(found), tuple(entries), tuple(lines), code)
-
-
-def _judged(
-    judge: Judge, each: Answered, at: Any, kind: str | None, hint: int | None, *, alone: bool
-) -> tuple[Verdict, dict[str, Any], tuple[str, ...], int]:
-    """(the verdict, for machines, for people, exit code) of one equation."""
-    try:
-        verdict = judge.verdict(each.text, at=at, kind=kind)
-    except ExpressionError as error:
-        where = f"{each.file}:{each.line}:{error.column + 1}" if each.file else ""
-        if alone:
-            caret = " " * error.column + "^" * max(1, min(error.length, len(each.text) - error.column))
-            raise UsageError(f"{error.what}\n    {each.text}\n    {caret}", where, error.fix) from error
-        reported = Verdict(each.text, kind or "", UNDECIDED, reason=f"it cannot be read: {error.what}")
-        problem = {"what": error.what, "column": error.column + 1, "fix": error.fix}
-        return reported, reported.as_dict() | {"error": problem}, reported.lines(), UNREADABLE
-    return verdict, verdict.as_dict(hint), verdict.lines(hint), verdict.exit_code
 
 
 # -------- targets ---------------------------------------------------------------------------------------------

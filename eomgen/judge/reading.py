@@ -76,6 +76,23 @@ class HandEquation:
 
         return replace(self, left=meant(self.left), right=meant(self.right))
 
+    def with_calls(self, meanings: Mapping[str, Expression]) -> HandEquation:
+        """The same, formulas in the place of functions by their texts, also where one is differentiated."""
+
+        def meant(side: Expression) -> Expression:
+            code: list[Instruction] = []
+            for kind, what in side.code:
+                if kind == "call" and str(what) in meanings:
+                    code += meanings[str(what)].code
+                elif kind == "call" and what.name in (SLOPE, RATE):
+                    args = tuple(meant(x) if isinstance(x, Expression) else x for x in what.args)
+                    code.append((kind, replace(what, args=args)))
+                else:
+                    code.append((kind, what))
+            return Expression(side.text, tuple(code), (-1,) * len(code))
+
+        return replace(self, left=meant(self.left), right=meant(self.right))
+
     @property
     def takes_rates(self) -> bool:
         """True if the rate of something else than a coordinate stands in it."""

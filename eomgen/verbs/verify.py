@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -14,6 +15,7 @@ from eomgen.judge import Answered, judged
 from eomgen.model import AtRest, Model, WrittenEquation
 
 LARGEST = 1_000_000  # bytes of a file of answers
+PAGES = (".tex", ".md", ".ipynb")  # endings of derivations
 
 
 def verify_document(
@@ -25,13 +27,15 @@ def verify_document(
     from_rest: Mapping[str, Any] | None = None,
     kind: str | None = None,
     hint: int | None = None,
+    derivation: bool = False,
     certify: bool = True,
 ) -> Document:
     """The verdicts, each with the relations used or the reason why it is wrong.
 
     Args:
         equations: as they were typed; "-" reads them from stdin, one a line.
-        answers: files of equations, one a line, or folders of such files.
+        answers: files of equations, one a line, or folders of such files; .tex, .md and .ipynb are derivations.
+        derivation: each file is a derivation, whatever its ending.
         at, from_rest, kind: as of `verify`.
         hint: how much is said about what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
     Raises:
@@ -39,14 +43,15 @@ def verify_document(
     """
     requested = [
         *(each for text in equations for each in _typed(text)),
-        *(each for path in answers for each in _of_path(path)),
+        *(each for path in answers for each in _of_path(path, derivation)),
     ]
     if not requested:
         raise UsageError("there is no equation to judge", fix="write one behind the model, or --file FILE")
     found = judged(model, requested, at=at, from_rest=from_rest, kind=kind, hint=hint)
+    skipped = {"skipped": list(found.skipped)} if any(each.is_page for each in requested) else {}
     document = plain_document(
         model,
-        lambda: {"name": model.name, "equations": list(found.entries)},
+        lambda: {"name": model.name, "equations": list(found.entries), **skipped},
         Lines(found.lines),
         answer_code=found.exit_code,
     )
@@ -64,8 +69,11 @@ def _typed(text: str) -> Iterator[Answered]:
     yield from _lines(sys.stdin.read(LARGEST), "<stdin>")
 
 
-def _of_path(path: str) -> Iterator[Answered]:
-    """The equations of a file, or of every file of a folder."""
+def _of_path(path: str, derivation: bool) -> Iterator[Answered]:
+    """The equations of a file, or of every file of a folder; a derivation as a whole."""
+    if path == "-" and derivation and sys.stdin is not None:
+        yield Answered(sys.stdin.read(LARGEST), "<stdin>", is_page=True)
+        return
     if path == "-":
         yield from _typed(path)
         return
@@ -76,9 +84,26 @@ def _of_path(path: str) -> Iterator[Answered]:
     for each in found:
         data = files.read(each, LARGEST)
         try:
-            yield from _lines(data.decode("utf-8-sig"), str(each))
+            text = data.decode("utf-8-sig")
+            if derivation or each.suffix.lower() in PAGES:
+                yield Answered(_cells(text, str(each)) if each.suffix == ".ipynb" else text, str(each), is_page=True)
+            else:
+                yield from _lines(text, str(each))
         except UnicodeDecodeError as error:
             raise UsageError(f"{each} is no text in UTF-8", fix="save it as UTF-8") from error
+
+
+def _cells(text: str, name: str) -> str:
+    """The cells of words of a notebook, one below the other.
+
+    Raises:
+        UsageError: it is no notebook.
+    """
+    try:
+        cells = json.loads(text)["cells"]
+        return "\n\n".join("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
+    except (ValueError, KeyError, TypeError) as error:
+        raise UsageError(f"{name} is no notebook", fix="save it as .ipynb") from error
 
 
 def _lines(text: str, name: str) -> Iterator[Answered]:
