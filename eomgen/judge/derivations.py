@@ -15,6 +15,7 @@ from typing import Any
 from eomgen.errors import EomgenError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
+from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.judge import Judge
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict, kind_of_equation
@@ -22,7 +23,7 @@ from eomgen.judge.written_pages import PageEquation, equations_of, matrix_of
 from eomgen.mechanics.dynamics import Contribution, System
 from eomgen.model import Model, Values, with_values
 from eomgen.proof import Certificate, certify, verdicts_again
-from eomgen.symbolic.expression import Expression, Scalar, ScalarRow, depends_on
+from eomgen.symbolic.expression import Call, Expression, Scalar, ScalarRow, depends_on
 
 GENERAL = re.compile(r"\\sum\b|\bsum\b|_\{?(?:[ijk]|ik|ij)\}?(?![\w])")
 """a sum, or an index that stands for each of several"""
@@ -114,7 +115,7 @@ def _line(judge: Judge, equation: PageEquation, defined: dict[str, Expression]) 
 
 
 class Believed:
-    """What an author takes for true after wrong lines: quantities by their letters, energies, equations."""
+    """Beliefs of an author after wrong lines: quantities by their letters, energies, equations."""
 
     def __init__(self, judge: Judge) -> None:
         self.judge = judge
@@ -298,7 +299,7 @@ def judged(
 
 
 def _counted(entries: Sequence[Mapping[str, Any]], skipped: int) -> str:
-    """How many are right, wrong, undecided, how many define a letter, and how many were skipped."""
+    """Numbers of the right, the wrong, the undecided, of those that define a letter, and of the skipped."""
     judged = [entry for entry in entries if not entry.get("defines")]
     count = {name: sum(entry["verdict"] == name for entry in judged) for name in EXIT_CODES}
     text = f"{count[RIGHT]} right, {count[WRONG]} wrong, {count[UNDECIDED]} undecided"
