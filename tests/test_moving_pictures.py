@@ -21,12 +21,12 @@ import eomgen
 from eomgen.cli import main
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.documents import moving_picture
-from eomgen.documents.moving_picture import FINE, frame_times, mode_movies, movie_of
 from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.mechanics.dynamics.system import system_of
 from eomgen.page import animation as animate
+from eomgen.page import moving_picture
 from eomgen.page.animation import released
+from eomgen.page.moving_picture import FINE, frame_times, mode_movies, movie_of
 from eomgen.results.small_motions.result import linearize
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm

@@ -13,8 +13,9 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.documents.moving_picture import Movie, drawing_at_rest, movie_of
+from eomgen.documents.space_drawing import drawing_at_rest
 from eomgen.page.animation import movie_read_back
+from eomgen.page.moving_picture import Movie, movie_of
 from eomgen.page.player import (
     PlayedRun,
     PlayerOptions,

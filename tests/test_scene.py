@@ -18,8 +18,7 @@ from slow_run import usual, usual_models
 import eomgen
 from eomgen.documents.figures import Picture
 from eomgen.documents.letters import NamesArtist, PageBox, room_for
-from eomgen.documents.moving_picture import rest_picture
-from eomgen.documents.space_drawing import sight
+from eomgen.documents.space_drawing import rest_picture, sight
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.scene import ROLES, Mark, Scene, drawn_start, frame_at, plain_number
 from eomgen.scene.space_strokes import space_drawing

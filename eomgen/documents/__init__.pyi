@@ -71,6 +71,9 @@ from eomgen.documents.equation_steps import sides_of as sides_of
 # of lines of one colour
 from eomgen.documents.figures import KINDS as KINDS
 
+# Settings of matplotlib with which every picture is drawn
+from eomgen.documents.figures import STYLE as STYLE
+
 # A picture that is drawn when it is saved, or shown in a notebook
 from eomgen.documents.figures import Picture as Picture
 
@@ -175,55 +178,6 @@ from eomgen.documents.motion_steps import listed_symbols as listed_symbols
 # Statement that names the contacts that are open where the system rests; none where all are closed
 from eomgen.documents.motion_steps import open_at_rest as open_at_rest
 
-# places of a trail in a frame
-from eomgen.documents.moving_picture import FINE as FINE
-
-# of a mode as it is shown, and how long it is [s]
-from eomgen.documents.moving_picture import PERIOD as PERIOD
-
-# Frames of one scene
-from eomgen.documents.moving_picture import Movie as Movie
-from eomgen.documents.moving_picture import Progress as Progress
-
-# A scene at the start of its model, with its dimensions
-from eomgen.documents.moving_picture import drawing_at_rest as drawing_at_rest
-
-# The path of ffmpeg: the system's, else that of the package imageio-ffmpeg
-from eomgen.documents.moving_picture import ffmpeg as ffmpeg
-
-# The instants of the frames of a motion from 0: speed / fps apart [s]
-from eomgen.documents.moving_picture import frame_times as frame_times
-
-# A GIF that runs for ever, all frames with one palette
-from eomgen.documents.moving_picture import gif as gif
-
-# The slowest modes about their reference, each over one period, all shown equally fast
-from eomgen.documents.moving_picture import mode_movies as mode_movies
-
-# A run at some instants; states between its rows are interpolated, each phase is drawn by its own system
-from eomgen.documents.moving_picture import movie_of as movie_of
-
-# An MP4 (H.264), made by ffmpeg
-from eomgen.documents.moving_picture import mp4 as mp4
-
-# Progress as one line on a terminal's stderr
-from eomgen.documents.moving_picture import on_stderr as on_stderr
-
-# A scene at the start of its model
-from eomgen.documents.moving_picture import picture_of_scene as picture_of_scene
-
-# Refuses frames a second, and a speed, that no moving picture has
-from eomgen.documents.moving_picture import refuse_rates as refuse_rates
-
-# The scene of a model at its start; a parameter without a value is drawn as 1
-from eomgen.documents.moving_picture import rest_picture as rest_picture
-
-# The frames of a movie side by side, with their times, as a PNG
-from eomgen.documents.moving_picture import strip as strip
-
-# A virtual displacement to and fro, once
-from eomgen.documents.moving_picture import virtual_movie as virtual_movie
-
 # Quantities that derivations of a system name, each name once
 from eomgen.documents.names_derived import NamedQuantity as NamedQuantity
 
@@ -322,6 +276,21 @@ from eomgen.documents.result import Result as Result
 
 # The document in one of the formats of ALL: text, latex, markdown, json
 from eomgen.documents.result import rendered as rendered
+
+# A scene in space on matplotlib axes; `show` sets it to another of its frames
+from eomgen.documents.space_drawing import SpacePicture as SpacePicture
+
+# A scene at the start of its model, with its dimensions
+from eomgen.documents.space_drawing import drawing_at_rest as drawing_at_rest
+
+# A scene at the start of its model
+from eomgen.documents.space_drawing import picture_of_scene as picture_of_scene
+
+# The scene of a model at its start; a parameter without a value is drawn as 1
+from eomgen.documents.space_drawing import rest_picture as rest_picture
+
+# The rotation from the ground to the page: right, up, towards the eye
+from eomgen.documents.space_drawing import sight as sight
 from eomgen.documents.statements import Cell as Cell
 
 # Something that a user types

@@ -10,10 +10,37 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
+from eomgen.documents.document import notation_of
+from eomgen.documents.drawing import (
+    BODY,
+    FILLS,
+    FINE,
+    INK,
+    LINES,
+    MARGIN,
+    NARROWEST,
+    RANKS,
+    SMALLEST,
+    draw,
+    limits,
+    written,
+)
+from eomgen.documents.figures import Picture
 from eomgen.documents.letters import PlacedName
 from eomgen.frozen import dataclass
-from eomgen.scene import Drawing, Stroke, corners_of
+from eomgen.model import Model
+from eomgen.scene import (
+    Drawing,
+    Scene,
+    SceneNumbers,
+    Stroke,
+    corners_of,
+    drawn_start,
+    frame_at,
+    plane_drawing,
+    scene_of,
+    space_drawing,
+)
 from eomgen.symbolic.print import Notation
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
@@ -278,3 +305,39 @@ def draw_space(panel: Any, drawing: Drawing, notation: Notation) -> SpacePicture
     picture.show(0)
     panel.add_artist(NamesArtist(tuple(picture.names(0, notation)), picture.lines(0)))
     return picture
+
+
+# -------- at rest --------------------------------------------------------------------------------------------
+# Model -> a picture of it where it starts, with its coordinates and lengths.
+
+
+WIDTHS_AT_REST, HEIGHT_AT_REST, TITLE_AT_REST = (3.4, 8.0), 4.2, 0.4  # [inches]
+
+
+def rest_picture(model: Model) -> Picture:
+    """The scene of a model at its start; a parameter without a value is drawn as 1.
+
+    Raises:
+        DerivationError, NotYet: what cannot be derived is not drawn either.
+    """
+    return picture_of_scene(scene_of(model))
+
+
+def drawing_at_rest(scene: Scene) -> Drawing:
+    """A scene at the start of its model, with its dimensions."""
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    return (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
+
+
+def picture_of_scene(scene: Scene) -> Picture:
+    """A scene at the start of its model."""
+    drawing = drawing_at_rest(scene)
+    low, high = limits(drawing) if scene.plane else page_limits(drawing)
+    ratio = float(high[0] - low[0]) / float(high[1] - low[1])
+    width = min(max(HEIGHT_AT_REST * ratio, WIDTHS_AT_REST[0]), WIDTHS_AT_REST[1])
+    height = min(HEIGHT_AT_REST, width / ratio + TITLE_AT_REST)
+
+    def fill(figure: Any) -> None:
+        (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
+
+    return Picture((width, height), fill, scene.name)

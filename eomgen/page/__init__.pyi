@@ -12,6 +12,9 @@ from eomgen.page.animation import refuse_ending as refuse_ending
 # A model and the results for it
 from eomgen.page.contents import Report as Report
 
+# The path of ffmpeg: the system's, else that of the package imageio-ffmpeg
+from eomgen.page.moving_picture import ffmpeg as ffmpeg
+
 # A model's page
 from eomgen.page.playing import Played as Played
 

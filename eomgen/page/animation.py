@@ -10,10 +10,17 @@ from pathlib import Path
 import numpy as np
 
 from eomgen import files, pipeline
-from eomgen.documents import (
+from eomgen.documents import Document, plain_document, prose, with_start_reported
+from eomgen.equations import Equations
+from eomgen.errors import UsageError
+from eomgen.frozen import dataclass
+from eomgen.mechanics.dynamics import system_of
+from eomgen.mechanics.free_bodies import Structure
+from eomgen.mechanics.statics import ContactsAtStart, released_in
+from eomgen.model import Model, ModelOrPath, Typed, Values
+from eomgen.page.moving_picture import (
     FINE,
     PERIOD,
-    Document,
     Movie,
     Progress,
     frame_times,
@@ -22,20 +29,10 @@ from eomgen.documents import (
     movie_of,
     mp4,
     on_stderr,
-    plain_document,
-    prose,
     refuse_rates,
     strip,
     virtual_movie,
-    with_start_reported,
 )
-from eomgen.equations import Equations
-from eomgen.errors import UsageError
-from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import system_of
-from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.statics import ContactsAtStart, released_in
-from eomgen.model import Model, ModelOrPath, Typed, Values
 from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof import Check, pictures_reported, states_shown
 from eomgen.results import virtual_work_step

@@ -9,8 +9,9 @@ from importlib import metadata
 
 from eomgen.codegen import compiler
 from eomgen.disk_cache import cache_folder
-from eomgen.documents import Document, ffmpeg, lines_document
+from eomgen.documents import Document, lines_document
 from eomgen.errors import ToolMissing
+from eomgen.page import ffmpeg
 from eomgen.version import __version__
 
 EXTRAS = {"formulas": "math-core", "PDF": "typst", "space": "jupyter-threejs-sage", "notebooks": "nbclient"}

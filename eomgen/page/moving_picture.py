@@ -21,15 +21,18 @@ from typing import Any
 import numpy as np
 
 from eomgen import files
-from eomgen.documents.document import notation_of
-from eomgen.documents.drawing import artist_of, draw, limits
-from eomgen.documents.figures import STYLE, Picture
-from eomgen.documents.space_drawing import SpacePicture, draw_space, page_limits, sight
+from eomgen.documents import (
+    STYLE,
+    SpacePicture,
+    artist_of,
+    limits,
+    sight,
+)
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import Mode, Modes
-from eomgen.model import Model, nearest
+from eomgen.model import nearest
 from eomgen.scene import (
     Drawing,
     DrawnState,
@@ -38,13 +41,10 @@ from eomgen.scene import (
     SceneNumbers,
     VirtualDisplacement,
     corners_of,
-    drawn_start,
-    frame_at,
     frames_along,
     named_points,
     phase_frames,
     plane_drawing,
-    scene_of,
     scene_of_system,
     space_drawing,
     swing_of,
@@ -434,39 +434,3 @@ def virtual_movie(found: VirtualDisplacement, frames: int) -> Movie:
     times = PERIOD * np.arange(frames) / frames
     numbers = found.along(2 * np.pi * times / PERIOD)
     return replace(_movie(numbers, times, {}, f"{found.reaction.name} released"), timed=False)
-
-
-# -------- at rest --------------------------------------------------------------------------------------------
-# Model -> a picture of it where it starts, with its coordinates and lengths.
-
-
-WIDTHS_AT_REST, HEIGHT_AT_REST, TITLE_AT_REST = (3.4, 8.0), 4.2, 0.4  # [inches]
-
-
-def rest_picture(model: Model) -> Picture:
-    """The scene of a model at its start; a parameter without a value is drawn as 1.
-
-    Raises:
-        DerivationError, NotYet: what cannot be derived is not drawn either.
-    """
-    return picture_of_scene(scene_of(model))
-
-
-def drawing_at_rest(scene: Scene) -> Drawing:
-    """A scene at the start of its model, with its dimensions."""
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
-    return (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
-
-
-def picture_of_scene(scene: Scene) -> Picture:
-    """A scene at the start of its model."""
-    drawing = drawing_at_rest(scene)
-    low, high = limits(drawing) if scene.plane else page_limits(drawing)
-    ratio = float(high[0] - low[0]) / float(high[1] - low[1])
-    width = min(max(HEIGHT_AT_REST * ratio, WIDTHS_AT_REST[0]), WIDTHS_AT_REST[1])
-    height = min(HEIGHT_AT_REST, width / ratio + TITLE_AT_REST)
-
-    def fill(figure: Any) -> None:
-        (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
-
-    return Picture((width, height), fill, scene.name)
