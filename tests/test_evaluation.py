@@ -10,6 +10,7 @@ from hypothesis import given
 from random_expressions import POINT, on_graph, polynomials, smooth, values_at
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.exact.equality import evaluate_once
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.traversal import Count, operations, order
 from eomgen.symbolic.numeric.evaluation import (
@@ -20,7 +21,6 @@ from eomgen.symbolic.numeric.evaluation import (
     NoMeaning,
     NoValue,
     evaluate,
-    evaluate_once,
     fifty_digits,
 )
 

@@ -20,7 +20,7 @@ from reference import PLACE as REFERENCE
 from reference import REGION, SEAMS, fields_table, gist, prose, safe
 
 import eomgen
-from eomgen.mechanics.free_bodies.wrenches import Axes, components_of
+from eomgen.mechanics.free_bodies.wrenches import Axes
 from eomgen.model import outputs
 from eomgen.model.outputs.base import OutputFunction, OutputSource
 from eomgen.page.figure import rest_figure
@@ -74,7 +74,7 @@ def counted(kind: str, model: eomgen.Model) -> str:
     if section == "Joints" and not class_of(kind).carries_reaction:
         return "It says where the body is, and carries no reaction."
     system = model.scene().system
-    every = components_of(system, Axes(system.motion))
+    every = Axes(system.motion).components_of(system)
     if section == "Joints":
         links = [x for x in system.motion.links if x.joint is not None and x.joint.kind == kind]
         owner, free = links[0].name, len(links[0].s)

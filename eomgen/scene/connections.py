@@ -12,7 +12,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Component, components_of
+from eomgen.mechanics.free_bodies import Axes, Component
 from eomgen.mechanics.kinematics import GROUND, BodyLink, Motion, SystemScene
 from eomgen.model import (
     ArcForm,
@@ -510,7 +510,7 @@ def resultants(system: System, names: Container[str]) -> Iterator[Resultant]:
     motion = system.motion
     along = "xy" if system.scope.model.space == "plane" else "xyz"
     owners: dict[str, list[Component]] = {}
-    for component in components_of(system, Axes(motion)):
+    for component in Axes(motion).components_of(system):
         if component.kind != "drive":
             owners.setdefault(component.owner, []).append(component)
     for owner, components in owners.items():

@@ -75,9 +75,6 @@ from eomgen.mechanics.free_bodies.wrenches import Component as Component
 # Force and couple of a unit of a reaction on one body, at a place, in the axes of the body's equations
 from eomgen.mechanics.free_bodies.wrenches import Effect as Effect
 
-# All components: those of the joints, of the drives of given motions, and of the constraints
-from eomgen.mechanics.free_bodies.wrenches import components_of as components_of
-
 # Effects of drive, spring, damper and rotor of a body's joint, on the body first; () for a constraint
 from eomgen.mechanics.free_bodies.wrenches import efforts_of as efforts_of
 

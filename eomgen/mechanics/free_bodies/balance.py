@@ -13,7 +13,6 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies.wrenches import (
     Axes,
     Component,
-    components_of,
     joint_effects,
     placements_of,
     seen_by_carriers,
@@ -138,7 +137,7 @@ class Balance:
 def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
     refuse_placeless(system)
     axes = Axes(system.motion)
-    components = components_of(system, axes)
+    components = axes.components_of(system)
     components += placements_of(system, axes, components)
     inertia, applied, on_bodies = _inertia(axes), _applied(system, axes), _coefficients(components)
     equations = []

@@ -131,6 +131,10 @@ class Axes:
             return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1], beyond),)
         return (Effect(i, vector, ZERO, self.arm(i, load.place[1]), load.place[1], beyond),)
 
+    def components_of(self, system: System) -> tuple[Component, ...]:
+        """All components: those of the joints, of the drives of given motions, and of the constraints."""
+        return (*_joint_components(system, self), *_constraint_components(system, self))
+
 
 def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) -> list[Effect]:
     """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
@@ -283,11 +287,6 @@ class Component:
         """Unit of a component: FORCE, or COUPLE if it has no force on any body."""
         forces = any(not is_zero(x) for effect in self.effects for x in effect.force)
         return FORCE if forces else COUPLE
-
-
-def components_of(system: System, axes: Axes) -> tuple[Component, ...]:
-    """All components: those of the joints, of the drives of given motions, and of the constraints."""
-    return (*_joint_components(system, axes), *_constraint_components(system, axes))
 
 
 # -- of joints -------------------------------------------------------------------------------------
@@ -459,7 +458,7 @@ def seen_by_carriers(system: System) -> dict[int, tuple[str, Component]]:
         if row.carrier is not None and row.component in ("x", "y", "z"):
             effects = _constraint_effects(Axes(motion.seen_from(row.carrier)), row)
             seen[row.constraint, row.number] = (row.carrier, _of_constraint(system, row, effects, ()))
-    rows = [(c.owner, c.number) if c.kind == "constraint" else ("", 0) for c in components_of(system, Axes(motion))]
+    rows = [(c.owner, c.number) if c.kind == "constraint" else ("", 0) for c in Axes(motion).components_of(system)]
     return {j: seen[row] for j, row in enumerate(rows) if row in seen}
 
 

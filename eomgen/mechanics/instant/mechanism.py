@@ -13,7 +13,7 @@ from itertools import combinations
 from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import Axes, Component, components_of
+from eomgen.mechanics.free_bodies import Axes, Component
 from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node
@@ -257,7 +257,7 @@ class _Search:
         """The lines along which constraints and joints push two blocks."""
         found: dict[PointPair, list[LineOf]] = {}
         axes = Axes(self.mechanism.system.motion)
-        for component in components_of(self.mechanism.system, axes):
+        for component in axes.components_of(self.mechanism.system):
             if component.kind == "drive" or self._wanders(component):
                 continue
             pair, line = self._line(axes, component)

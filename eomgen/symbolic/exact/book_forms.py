@@ -16,7 +16,7 @@ from typing import Any
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.exact.expansion import Expansion, expanded
-from eomgen.symbolic.exact.normal_forms import in_whole_numbers, normal_form, quotients, readable
+from eomgen.symbolic.exact.normal_forms import in_whole_numbers, normal_form, quotients, readable, rebuilt_as_written
 from eomgen.symbolic.exact.quotient import by_parameters, in_half_angles, reduced
 from eomgen.symbolic.exact.sums import LARGEST_RATIO, MOST_NESTED, CollectedSums, SumParts
 from eomgen.symbolic.exact.terms import (
@@ -47,16 +47,7 @@ from eomgen.symbolic.expression import (
     tidy,
 )
 from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import (
-    Product,
-    decimal_of,
-    has_nested_quotient,
-    length_of,
-    rebuilt_as_written,
-    terms,
-    text_size,
-    to_text,
-)
+from eomgen.symbolic.print import Product, decimal_of, has_nested_quotient, length_of, terms, text_size, to_text
 
 LONGEST = 3000  # characters of a quotient that is written anew
 AGAIN = 3  # times that a quotient is written anew, until it stays as it is

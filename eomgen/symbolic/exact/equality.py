@@ -15,6 +15,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
+from eomgen.resources import check_patience
 from eomgen.symbolic.expression import Fraction, Node, Number, Scalar, linear_terms, order, united
 from eomgen.symbolic.numeric import (
     PRIME,
@@ -25,7 +26,6 @@ from eomgen.symbolic.numeric import (
     NoValue,
     balls,
     evaluate,
-    evaluate_once,
     fifty_digits,
     tolerances,
 )
@@ -558,3 +558,22 @@ def _sure_states(
 def _entries(row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> tuple[Scalar, ...]:
     """All entries, of one graph."""
     return tuple(united([x for each in (row, *rows) for x in each])[1])
+
+
+def evaluate_once(
+    outputs: Sequence[Scalar], nodes: Sequence[Node], values: Mapping[Node, Any], arithmetic: Arithmetic
+) -> list[Any]:
+    """The same for a state or two, for which no plan is made.
+
+    Args:
+        nodes: all that the outputs need, arguments before results; values of their symbols are given.
+    """
+    check_patience()
+    number, functions, known = arithmetic.number, arithmetic.functions, dict(values)
+    for x in nodes:
+        if x not in known:
+            try:
+                known[x] = functions[x.op](*[known[a] if type(a) is Node else number(a) for a in x.args])
+            except (ValueError, ZeroDivisionError, OverflowError):
+                known[x] = arithmetic.failed(x)
+    return [known[x] if type(x) is Node else number(x) for x in outputs]

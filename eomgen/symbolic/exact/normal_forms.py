@@ -33,7 +33,7 @@ from eomgen.symbolic.expression import (
     vector_of,
 )
 from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import has_nested_quotient, rebuilt_as_written, text_size
+from eomgen.symbolic.print import has_nested_quotient, products_of, text_size
 
 __all__ = [
     "Legibly",
@@ -409,3 +409,19 @@ def never_vanishes(x: Node) -> bool:
     except TooLarge:
         return False
     return any(expansion.is_positive({key: sign * c for key, c in terms.items()}) for sign in (1, -1))
+
+
+def rebuilt_as_written(x: Scalar) -> Scalar:
+    """x made anew as it is printed: sin(theta)^2/sin(theta), which is printed as sin(theta), is sin(theta)."""
+    if not isinstance(x, Node):
+        return x
+    total: Scalar = 0
+    for product in products_of(x):
+        above: Any = product.coefficient
+        for base, power in product.numerator:
+            above = above * base**power
+        below: Any = 1
+        for base, power in product.denominator:
+            below = below * base**power
+        total = total + (above if type(below) is int else above / below)
+    return total

@@ -64,9 +64,6 @@ from eomgen.symbolic.numeric.evaluation import digits_at as digits_at
 # The outputs' values
 from eomgen.symbolic.numeric.evaluation import evaluate as evaluate
 
-# The same for a state or two, for which no plan is made
-from eomgen.symbolic.numeric.evaluation import evaluate_once as evaluate_once
-
 # Real numbers with 50 decimal digits; a function outside its real domain raises NoValue
 from eomgen.symbolic.numeric.evaluation import fifty_digits as fifty_digits
 

@@ -101,25 +101,6 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
     return [known[i] for i in way.outputs]
 
 
-def evaluate_once(
-    outputs: Sequence[Scalar], nodes: Sequence[Node], values: Mapping[Node, Any], arithmetic: Arithmetic
-) -> list[Any]:
-    """The same for a state or two, for which no plan is made.
-
-    Args:
-        nodes: all that the outputs need, arguments before results; values of their symbols are given.
-    """
-    check_patience()
-    number, functions, known = arithmetic.number, arithmetic.functions, dict(values)
-    for x in nodes:
-        if x not in known:
-            try:
-                known[x] = functions[x.op](*[known[a] if type(a) is Node else number(a) for a in x.args])
-            except (ValueError, ZeroDivisionError, OverflowError):
-                known[x] = arithmetic.failed(x)
-    return [known[x] if type(x) is Node else number(x) for x in outputs]
-
-
 def floats_of(values: Iterable[Any]) -> list[float]:
     """Numbers of many digits as floats.
 

@@ -31,9 +31,6 @@ from eomgen.symbolic.print.layout import number_text as number_text
 # x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)
 from eomgen.symbolic.print.layout import products_of as products_of
 
-# x made anew as it is printed: sin(theta)^2/sin(theta), which is printed as sin(theta), is sin(theta)
-from eomgen.symbolic.print.layout import rebuilt_as_written as rebuilt_as_written
-
 # x as a sum of number * term, the term None for a plain number
 from eomgen.symbolic.print.layout import terms as terms
 

@@ -241,22 +241,6 @@ def _made_of(base: Node) -> tuple[list[Node], tuple[str, ...]]:
     return [found[k] for k in sorted(found)], (str(len(rest)), *sorted(rest))
 
 
-def rebuilt_as_written(x: Scalar) -> Scalar:
-    """x made anew as it is printed: sin(theta)^2/sin(theta), which is printed as sin(theta), is sin(theta)."""
-    if not isinstance(x, Node):
-        return x
-    total: Scalar = 0
-    for product in products_of(x):
-        above: Any = product.coefficient
-        for base, power in product.numerator:
-            above = above * base**power
-        below: Any = 1
-        for base, power in product.denominator:
-            below = below * base**power
-        total = total + (above if type(below) is int else above / below)
-    return total
-
-
 def is_part_of_turn(product: Product) -> bool:
     """True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4."""
     lone = len(product.numerator) == 1 and not product.denominator and product.numerator[0][1] == 1
