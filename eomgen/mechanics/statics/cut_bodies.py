@@ -464,7 +464,7 @@ class _Cutting:
         """The forces and couples on the parts."""
         mine = [push for push in acting.pushes if push.part == body]
         if mine and (acting.kind == "inertia" or acting.name.startswith("the weight")):
-            raise DerivationError("what a beam weighs is spread along it")
+            raise DerivationError("what a beam weighs is spread along it", fix="declare its weight as a line load")
         if mine and acting.spread:
             for part in (self.part, self.part + 1):
                 lines = [push for line in acting.spread for push in self._of_line(line, body, part)]
@@ -472,7 +472,7 @@ class _Cutting:
             return
         for push in mine:
             if push.place is None:
-                raise DerivationError("a couple acts at no place")
+                raise DerivationError("a couple acts at no place", fix="give it a point")
             where = apply(transposed(self.link.pose.R), minus(push.place, self.link.pose.p))
             after = self.axis.sizes.sign(self._far(where) - self.x) >= (1 if self.side == "after" else 0)
             yield replace(push, part=self.part + after)
@@ -481,7 +481,7 @@ class _Cutting:
         """Distance of a place of the body along the beam."""
         far = self.axis.distance(where)
         if far is None:
-            raise DerivationError("something acts off the axis")
+            raise DerivationError("something acts off the axis", fix="let it act on the axis of the beam")
         return far
 
     def _of_line(self, line: SpreadLoad, body: int, part: int) -> Iterator[PlacedPush]:
