@@ -11,7 +11,7 @@ from eomgen import documents
 from eomgen.documents.document import Document
 from eomgen.documents.result import ALL as FORMATS
 from eomgen.mechanics.instant.motion_kind import Kinds
-from eomgen.results.at_instant.plots import centrode_panel
+from eomgen.results.at_instant.result import centrode_panel
 from eomgen.results.at_instant.steps import field_payload, field_steps, relative_payload, relative_steps
 from eomgen.study import MotionFromStart, Study
 from eomgen.symbolic.exact.normal_forms import equal

@@ -18,11 +18,11 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, ModelError, ToolMissing
 from eomgen.exported import urdf_of
+from eomgen.proof import imported as importing
 from eomgen.proof.imported import imported_otherwise, sdf_otherwise, unsaid_otherwise, without_units
 from eomgen.proof.imported_mjcf import OTHER_THINGS, mjcf_otherwise
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.verbs import importing
 from tests.helpers.sdf_of_urdf import sdf_of_urdf
 from tests.helpers.tools import needs
 from tests.helpers.urdf_by_hand import ByHand, random_robot
@@ -691,7 +691,6 @@ def test_a_robot_that_comes_through_a_pipe_is_read_once_and_looked_at_as_a_file_
     for name in ("imported_otherwise", "sdf_otherwise", "mjcf_otherwise"):
         real = getattr(importing, name)
         monkeypatch.setattr(importing, name, lambda *given, real=real: (looked.append(given), real(*given))[1])
-    monkeypatch.setattr(importing, "OTHERWISE", {"robot": importing.imported_otherwise, "sdf": importing.sdf_otherwise})
     writer = threading.Thread(target=pipe.write_text, args=(text,))
     writer.start()
     result = CliRunner().invoke(main, ["import", str(pipe)])

@@ -86,17 +86,11 @@ from eomgen.proof.emitted_code import unwritten as unwritten
 # Message that names a body which differs from the file; "" where all that have the same name in both agree
 from eomgen.proof.imported import imported_otherwise as imported_otherwise
 
-# Message that names a body which differs from the SDF file; "" too for what is not read
-from eomgen.proof.imported import sdf_otherwise as sdf_otherwise
+# First difference between a robot's file, read in another way, and the model; "" if there is none
+from eomgen.proof.imported import robot_otherwise as robot_otherwise
 
 # Message for a declared part of a model that its URDF neither contains nor reports as left out; ""
 from eomgen.proof.imported import unsaid_otherwise as unsaid_otherwise
-
-# Message that names a parameter of the weight, or a coordinate of a joint's spring, without a unit; ""
-from eomgen.proof.imported import without_units as without_units
-
-# Message that names a body which differs from MuJoCo's; "" where all that have the same name in both agree
-from eomgen.proof.imported_mjcf import mjcf_otherwise as mjcf_otherwise
 
 # Checks of a printed kinematic state
 from eomgen.proof.instant import instant_checks as instant_checks

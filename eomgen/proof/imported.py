@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.model import Joint, Model, PushOfMass
 from eomgen.proof.check import first_wrong
+from eomgen.proof.imported_mjcf import mjcf_otherwise
 from eomgen.proof.posed_model import (
     FloatPose,
     PosedModel,
@@ -23,6 +25,7 @@ from eomgen.proof.posed_model import (
     turn_about,
     turn_by_three,
 )
+from eomgen.robots import ImportedRobot, first_element
 from eomgen.symbolic.numeric import tolerances
 
 if TYPE_CHECKING:
@@ -44,6 +47,27 @@ FELT = (("damping", "damping"), ("spring_stiffness", "stiffness"))
 SHAPES = ("box", "cylinder", "sphere")
 WATER, YES = 1000.0, ("true", "1")  # kg/m^3, the density of SDF where none is given
 FIXED: FloatPose = (np.eye(3), np.zeros(3))
+
+
+MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared
+
+
+def robot_otherwise(file: str, robot: ImportedRobot, equations: Callable[[], EquationsOfMotion]) -> str:
+    """First difference between a robot's file, read in another way, and the model; "" if there is none.
+
+    Args:
+        equations: derives those of the model, where few bodies move.
+    """
+    model, root = robot.model, first_element(robot.source)
+    if bare := without_units(model):
+        return bare
+    if root == "mujoco":
+        small = 0 < len(model.coordinates) <= MOST_COMPARED
+        left = [(each.what, each.where) for each in robot.left_out if each.nearest is not None]
+        return mjcf_otherwise(file, robot.source, model, equations() if small else None, left)
+    if root == "robot":
+        return imported_otherwise(robot.source, model)
+    return sdf_otherwise(robot.source, model) if root == "sdf" else ""
 
 
 def sdf_otherwise(text: str | bytes, model: Model) -> str:

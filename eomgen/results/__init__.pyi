@@ -24,6 +24,9 @@ from eomgen.results.at_rest.steps import virtual_work_step as virtual_work_step
 # The model's parts and its degrees of freedom, by rank and by the counting formula
 from eomgen.results.check import check_document as check_document
 
+# Differences of the second of two models from the first, not proven yet
+from eomgen.results.difference import difference_document as difference_document
+
 # Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes
 from eomgen.results.mass_properties.result import inertia as inertia
 

@@ -207,6 +207,15 @@ class Study:
         return tuple(named_reactions(Balance.of(self.system)))
 
     @property
+    def units(self) -> dict[str, dict[str, str]]:
+        """{"names", "equations", "reactions", "outputs": {name: unit}}; no reactions where none are determined."""
+        found = self.model.units_of_everything(u.name for u in self.derived.symbols.u)
+        try:
+            return {**found, "reactions": {named.name: named.unit for named in self.named_reactions}}
+        except DerivationError:
+            return {**found, "reactions": {}}
+
+    @property
     def reactions_at_start(self) -> dict[str, float]:
         """The reactions that have a single value at the start, in numbers.
 

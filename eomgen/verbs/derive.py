@@ -7,9 +7,9 @@ from dataclasses import replace
 from eomgen import pipeline
 from eomgen.documents import Document, Grid, Step, proven, with_constraints_closed
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError
-from eomgen.mechanics.free_bodies import Balance, NamedReaction, named_reactions
-from eomgen.model import Model, model_at
+from eomgen.model import Model
+from eomgen.proof import Certificate
+from eomgen.results import difference_document
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
@@ -33,9 +33,9 @@ def derive_document(
         data: the texts for machines are proven, too.
     """
     if diff is not None:
-        from eomgen.verbs.derive_difference import difference_document
-
-        return difference_document(model, model_at(diff), method=method, certify=certify)
+        first, second = pipeline.derive(model, method), pipeline.derive(diff, method)
+        document = difference_document(first.graph, second.graph)
+        return proven(document, _both(first.certify(), second.certify()) if certify else None)
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document
@@ -43,19 +43,16 @@ def derive_document(
     return equations.proven(document, data=data) if certify else proven(document, None)
 
 
+def _both(first: Certificate, second: Certificate) -> Certificate:
+    """Checks of two models, each under the model's own heading."""
+    reported = (("this model", first), ("the other", second))
+    return Certificate(tuple(replace(c, name=f"{whose}: {c.name}") for whose, each in reported for c in each.checks))
+
+
 def _with_units(equations: Equations, document: Document) -> Document:
     """Adds a section of units to a document, for people and for machines."""
-    found = equations.model.units_of_everything(equations.speeds)
-    found = {**found, "reactions": {named.name: named.unit for named in _reacting(equations)}}
+    found = equations.study.units
     grids = tuple(Grid((HEADS[key], "unit"), tuple(found[key].items())) for key in HEADS if found[key])
     entries = document.entries
     steps = (*document.steps, Step("units", "Units", grids))
     return replace(document, steps=steps, entries=lambda: {**entries(), "units": found})
-
-
-def _reacting(equations: Equations) -> tuple[NamedReaction, ...]:
-    """The reactions; () where forces act at no place, or a body is unsupported."""
-    try:
-        return tuple(named_reactions(Balance.of(equations.system)))
-    except DerivationError:
-        return ()

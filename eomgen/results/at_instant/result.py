@@ -2,14 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents import Cell, Document, Law, Picture, Piece, Prose, Quantity, Result, Step, data_step, document_of
+import numpy as np
+
+from eomgen.codegen import compiled, program_of
+from eomgen.documents import (
+    ARROW,
+    REACTION,
+    Cell,
+    Document,
+    Law,
+    PagePoint,
+    Picture,
+    Piece,
+    Prose,
+    Quantity,
+    Result,
+    Sketch,
+    Step,
+    arrow,
+    data_step,
+    document_of,
+    draw_model,
+    name_beside,
+)
+from eomgen.errors import MissingValues, RunFailed
 from eomgen.frozen import dataclass
-from eomgen.mechanics.instant import Kinds, KinematicState, RotationCenter, body_motions
+from eomgen.mechanics.dynamics import System
+from eomgen.mechanics.instant import FIXED, Centrodes, Kinds, KinematicState, Mechanism, RotationCenter, body_motions
 from eomgen.model import ModelOrPath, Values, WrittenEquation, model_at
 from eomgen.proof import Certificate, certify, instant_checks
 from eomgen.resources import doing
@@ -26,7 +51,8 @@ from eomgen.results.at_instant.steps import (
     relative_steps,
 )
 from eomgen.study import kinematic_state
-from eomgen.symbolic.expression import Node, Scalar, Vector
+from eomgen.symbolic.expression import Node, Scalar, State, Vector, depends_on, order, substituted, symbols_of
+from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import readable_text, text_size
 
 LINE = 80  # characters of a formula among the fields
@@ -116,8 +142,6 @@ class Kinematics(Result):
             RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
-        from eomgen.results.at_instant.plots import mechanism_picture
-
         return mechanism_picture(self.state, () if self.kinds is None else self.kinds.centrodes())
 
     # -- for machines --------------------------------------------------------------------------------
@@ -212,3 +236,293 @@ def kinematics(
     moves = model.given is None and not given and bool(model.coordinates)
     kinds = Kinds(state.system, {} if state.symbol is not None else state.moving) if moves else None
     return Kinematics(state, kinds, tuple(relative))
+
+
+# -------- the mechanism, drawn --------------------------------------------------------------------------------
+
+
+# -------- centrode plot ---------------------------------------------------------------------------------------
+# Centrodes, an instant -> a panel: the curve in the ground, and the body's own that rolls on it, as it lies then.
+
+
+STEPS = 240  # to each side
+FAR = 8.0  # sizes of the mechanism beyond which a centre is not drawn
+FIXED_CURVE, MOVING = "#2f5d8a", "#b03a2e"
+
+
+def centrode_panel(panel: Any, system: System, centrodes: Centrodes, values: State) -> None:
+    """Draw both centrodes of a body.
+
+    Args:
+        panel: matplotlib axes.
+        values: numbers of t, the coordinates, speeds and parameters at the instant.
+    """
+    way = _configurations(system, centrodes.body, values)
+    size = _size(system, values)
+    fixed = _cut(_places(centrodes.fixed, way), size)
+    moving = _cut(_in_ground(system, centrodes.body, _places(centrodes.moving, way), values), size)
+    panel.plot(*fixed.T, color=FIXED_CURVE, linewidth=1.6, label="fixed centrode")
+    panel.plot(*moving.T, color=MOVING, linewidth=1.3, linestyle="--", label="moving centrode")
+    now = _places(centrodes.fixed, [values])[0]
+    if np.all(np.isfinite(now)):
+        panel.plot(*now, "o", color="black", markersize=4)
+    panel.set_aspect("equal", adjustable="datalim")
+    panel.set_title(f"centrodes of {centrodes.body}".replace("$", r"\$"), fontsize=10)
+    panel.legend(fontsize=8)
+
+
+def _places(place: tuple[Scalar, ...], way: list[State]) -> np.ndarray:
+    """A place in the plane at each of the configurations."""
+    return np.array([evaluate(place[:2], values, FLOAT) for values in way], dtype=float)
+
+
+def _in_ground(system: System, body: str, places: np.ndarray, values: State) -> np.ndarray:
+    """Places of a body, where they are in the ground at the instant."""
+    pose = system.motion.link(body).pose
+    turn = np.array(evaluate([x for row in pose.R[:2] for x in row[:2]], values, FLOAT), dtype=float).reshape(2, 2)
+    moved: np.ndarray = places @ turn.T + np.array(evaluate(pose.p[:2], values, FLOAT), dtype=float)
+    return moved
+
+
+def _cut(places: np.ndarray, size: float) -> np.ndarray:
+    """Places of a line with nan for those too far away, so that the line breaks there."""
+    near = places[np.isfinite(places).all(axis=1)]
+    middle = np.median(near, axis=0) if len(near) else np.zeros(2)
+    far = ~np.isfinite(places).all(axis=1) | (np.abs(places - middle).max(axis=1) > FAR * size)
+    return np.where(far[:, None], np.nan, places)
+
+
+def _size(system: System, values: State) -> float:
+    """The size of the mechanism: the largest distance of a point from its body's origin."""
+    points = [x for body in system.motion.points.values() for place in body.values() for x in place]
+    found = [abs(x) for x in evaluate(points, values, FLOAT) if math.isfinite(x)]
+    return max(found, default=0.0) or 1.0
+
+
+def _configurations(system: System, body: str, values: State) -> list[State]:
+    """Configurations before and after the instant, of the one freedom, or in time."""
+    symbols, scope = system.symbols, system.scope
+    if symbols.u:
+        rates, length = (0, *(row[0] for row in scope.N)), _reach(system, values)
+    else:
+        spin = abs(float(evaluate((system.motion.field(body).w[2],), values, FLOAT)[0]))
+        rates, length = (1, *scope.rates), math.pi / spin if spin > tolerances.COMPUTED else 1.0
+    slope = _slope(system, rates, values)
+    before, after = (_followed(system, slope, values, sign * length / STEPS) for sign in (-1, 1))
+    return [*reversed(before), values, *after]
+
+
+def _reach(system: System, values: State) -> float:
+    """Range to each side over which the one degree of freedom is followed: half a turn, or twice the size."""
+    symbols = system.symbols
+    leading = next(q for q, rate in zip(symbols.q, system.scope.rates, strict=True) if rate is symbols.u[0])
+    poses = [x for link in system.motion.links for row in link.pose.R for x in row]
+    turns = any(node.op in ("sin", "cos") and depends_on(node, (leading,)) for node in order(poses))
+    return math.pi if turns else 2 * _size(system, values)
+
+
+PlaneSlope = Callable[[np.ndarray], np.ndarray]
+
+
+def _slope(system: System, rates: tuple[Scalar, ...], values: State) -> PlaneSlope:
+    """The rates as functions of t and the coordinates."""
+    symbols = system.symbols
+    function = compiled(program_of(rates, symbols), "numpy")
+    p = np.array([values[node] for node in symbols.parameters.values()])
+    speeds = np.ones(len(symbols.u))
+    return lambda x: np.asarray(function(float(x[0]), np.append(x[1:], speeds), p), dtype=float)
+
+
+def _followed(system: System, slope: PlaneSlope, values: State, step: float) -> list[State]:
+    """Configurations one after the other, by Runge and Kutta's method, as far as there are any."""
+    moving = (system.symbols.t, *system.symbols.q)
+    x = np.array([values[node] for node in moving], dtype=float)
+    found: list[State] = []
+    with np.errstate(all="ignore"):
+        for _ in range(STEPS):
+            k1 = slope(x)
+            k2 = slope(x + step / 2 * k1)
+            k3 = slope(x + step / 2 * k2)
+            x = x + step / 6 * (k1 + 2 * k2 + 2 * k3 + slope(x + step * k3))
+            if not np.all(np.isfinite(x)):
+                break
+            found.append({**values, **dict(zip(moving, map(float, x), strict=True))})
+    return found
+
+
+# -------- mechanism plot --------------------------------------------------------------------------------------
+# KinematicState -> a picture: the mechanism with velocities and centres of rotation, and the diagrams of projections.
+#
+# In a plane motion v_x of the points of a body changes along y alone, v_y along x alone:
+#
+#     v_x = - w (y - y_c),   v_y = w (x - x_c)
+#
+# so that over the lines on which the mechanism is projected each body has a straight piece, which is zero at its
+# centre.
+
+
+SIZE, BELOW = (11.0, 8.0), 4.5  # of the mechanism, and the height of a row of centrodes below it [inches]
+MOST_CENTRODES = 6
+COLORS = ("#2f5d8a", "#b03a2e", "#2e7d4f", "#8e5ea2", "#c77c11", "#3b8ea5", "#7a5c3e", "#5a5a5a")
+CENTER = "#8e44ad"
+FAR_OUT = 1.6  # how far outside the mechanism a centre is still drawn, of its extent
+
+
+def mechanism_picture(state: KinematicState, centrodes: Sequence[Centrodes] = ()) -> Picture:
+    """A plane mechanism; a rate that was left as a symbol is 1 there.
+
+    Args:
+        centrodes: drawn below it, a panel each.
+    Raises:
+        RunFailed: it is in space.
+        MissingValues: parameters without a value.
+    """
+    if state.mechanism is None:
+        raise RunFailed("only plane mechanisms are drawn", fix="ask for the pages of a run: eomgen animate, or play")
+    shown = tuple(centrodes[:MOST_CENTRODES])
+    size = (SIZE[0], SIZE[1] + BELOW * ((len(shown) + 1) // 2))
+    return Picture(size, _Panels(state, state.mechanism, shown).fill, state.system.scope.model.name)
+
+
+class _Panels:
+    """The numbers of a picture, and its panels."""
+
+    def __init__(self, state: KinematicState, mechanism: Mechanism, centrodes: Sequence[Centrodes]) -> None:
+        self.state, self.mechanism, self.centrodes = state, mechanism, centrodes
+        self.one: Mapping[Node, Scalar] = {} if state.symbol is None else {state.symbol: 1}
+        symbols = state.system.symbols
+        places = {node: self.number(state.moving.get(node, 0)) for node in (*symbols.q, symbols.t)}
+        known = {node: self.number(node) for node in symbols.parameters.values()}
+        self.sketch = Sketch(state.system, {**places, **known})
+        self.points = [(names, self.numbers(r), self.numbers(v)) for names, r, v, _ in state.points]
+
+    def number(self, x: Scalar) -> float:
+        """A scalar as a number, the rate that was left open being 1."""
+        found = self.state.number(substituted((x,), self.one)[0])
+        if found is None:
+            parameters = self.state.system.symbols.parameters
+            known = self.state.number
+            raise MissingValues(tuple(n for n, p in parameters.items() if p in symbols_of((x,)) and known(p) is None))
+        return found
+
+    def numbers(self, v: Sequence[Scalar]) -> PagePoint:
+        return self.number(v[0]), self.number(v[1])
+
+    # -- panels --------------------------------------------------------------------------------------
+
+    def fill(self, figure: Any) -> None:
+        rooms, ratios = [["mechanism", "x"], ["y", "words"]], (2.2, 1)
+        if self.centrodes:
+            figure, below = figure.subfigures(2, 1, height_ratios=(SIZE[1], BELOW * ((len(self.centrodes) + 1) // 2)))
+            self._centrodes(below)
+        panels = figure.subplot_mosaic(rooms, width_ratios=ratios, height_ratios=ratios)
+        main = panels["mechanism"]
+        draw_model(main, self.sketch, colors={body: color for color, _, bodies in self._blocks() for body in bodies})
+        main.set_adjustable("datalim")  # the projections stand exactly below it and to its side
+        self._velocities(main)
+        far = self._centers(main)
+        figure.canvas.draw()
+        self._along_x(panels["y"], main.get_xlim())
+        self._along_y(panels["x"], main.get_ylim())
+        self._words(panels["words"], far)
+
+    def _centrodes(self, figure: Any) -> None:
+        """The curves of the centres of rotation, two in a row."""
+        system, symbols = self.state.system, self.state.system.symbols
+        speeds = {node: self.number(self.state.moving.get(node, 0)) for node in symbols.u}
+        panels = list(figure.subplots((len(self.centrodes) + 1) // 2, 2, squeeze=False).flat)
+        for panel, centrodes in zip(panels, self.centrodes, strict=False):
+            centrode_panel(panel, system, centrodes, {**self.sketch.values, **speeds})
+        for panel in panels[len(self.centrodes) :]:
+            panel.axis("off")
+
+    def _velocities(self, panel: Any) -> None:
+        fastest = max((float(np.hypot(*v)) for _, _, v in self.points), default=0.0)
+        scale = ARROW * self.sketch.extent / fastest if fastest else 0.0
+        for _, at, (x, y) in self.points:
+            arrow(panel, at, (scale * x, scale * y), color=REACTION, outward=True)
+
+    def _centers(self, panel: Any) -> list[str]:
+        """Centres in sight as crosses; words on the others."""
+        places: dict[tuple[float, float], list[str]] = {}
+        far = []
+        for center in self.mechanism.centers.values():
+            x, y = self.numbers(center.point)
+            if center.at_infinity:
+                far.append(f"{center.name}: at infinity along ({x:.4g}, {y:.4g})")
+            elif self._is_far((x, y)):
+                far.append(f"{center.name}: ({x:.4g}, {y:.4g})")
+            else:
+                places.setdefault((round(x, 9), round(y, 9)), []).append(center.name)
+        for place, names in places.items():
+            panel.plot(*place, marker="x", markersize=8, color=CENTER, zorder=8)
+            name_beside(panel, " ".join(names).replace("$", r"\$"), place, CENTER)
+        return far
+
+    def _is_far(self, place: PagePoint) -> bool:
+        """True if a place is well outside the mechanism."""
+        corners = np.array([at for _, at, _ in self.points])
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        reach = FAR_OUT * self.sketch.extent
+        return bool(np.any(np.array(place) < low - reach) or np.any(np.array(place) > high + reach))
+
+    def _along_x(self, panel: Any, limits: tuple[float, float]) -> None:
+        """v_y of every body over x; thin to where it is zero."""
+        for color, (start, end), slope, offset in self._pieces(axis=0):
+            for ends, style in ((_to_zero(start, end, slope, offset, limits), ":"), ((start, end), "-")):
+                _line(panel, ends, [slope * x + offset for x in ends], color, style)
+        panel.axhline(0, color="#505050", linewidth=0.8)
+        panel.set(xlim=limits, xlabel="x [m]", ylabel="$v_y$ [m/s]")
+
+    def _along_y(self, panel: Any, limits: tuple[float, float]) -> None:
+        """v_x of every body over y, y upwards; thin to where it is zero."""
+        for color, (start, end), slope, offset in self._pieces(axis=1):
+            for ends, style in ((_to_zero(start, end, slope, offset, limits), ":"), ((start, end), "-")):
+                _line(panel, [slope * y + offset for y in ends], ends, color, style)
+        panel.axvline(0, color="#505050", linewidth=0.8)
+        panel.set(ylim=limits, ylabel="y [m]", xlabel="$v_x$ [m/s]")
+
+    def _pieces(self, axis: int) -> list[tuple[str, PagePoint, float, float]]:
+        """(colour, extent along the axis, slope, value at 0) of the velocity across the axis, of every moving block."""
+        found = []
+        for color, block, bodies in self._blocks():
+            places = [
+                at[axis]
+                for names, at, _ in self.points
+                if any(each.partition(".")[0] in bodies for each in names.split(", "))
+            ]
+            c = self.mechanism.fields[block]
+            w = self.number(c[2])
+            line = (-w, self.number(c[1])) if axis else (w, -self.number(c[0]))
+            found.append((color, (min(places), max(places)), *line))
+        return found
+
+    def _blocks(self) -> list[tuple[str, str, tuple[str, ...]]]:
+        """(colour, name, bodies) of the moving blocks."""
+        moved = [(name, bodies) for name, bodies in self.mechanism.blocks.items() if name != FIXED]
+        return [(COLORS[k % len(COLORS)], name, bodies) for k, (name, bodies) in enumerate(moved)]
+
+    def _words(self, panel: Any, far: list[str]) -> None:
+        """The legend, centres out of sight, the unit rate."""
+        panel.axis("off")
+        for color, name, _ in self._blocks():
+            panel.plot([], [], color=color, linewidth=2, label=name.replace("$", r"\$"))
+        if self.mechanism.moved:
+            panel.legend(loc="upper left", ncols=2, fontsize=9)
+        rate = [] if self.state.symbol is None else [f"for {self.state.rate} = 1"]
+        lines = [*rate, *(["centres out of sight:", *far] if far else [])]
+        panel.text(0.02, 0.05, "\n".join(lines).replace("$", r"\$"), fontsize=8, va="bottom", transform=panel.transAxes)
+
+
+def _line(panel: Any, x: Sequence[float], y: Sequence[float], color: str, style: str) -> None:
+    """The velocities of a body; of one that is a point in this direction, a dot."""
+    dot = "o" if style == "-" and x[0] == x[1] and y[0] == y[1] else ""
+    panel.plot(x, y, color=color, linestyle=style, linewidth=1.8, marker=dot, markersize=6)
+
+
+def _to_zero(start: float, end: float, slope: float, offset: float, limits: tuple[float, float]) -> tuple[float, ...]:
+    """Line from a piece to its zero, where that lies within the limits; () where it does not."""
+    zero = -offset / slope if slope else float("inf")
+    if not limits[0] <= zero <= limits[1] or start <= zero <= end:
+        return ()
+    return (zero, start if zero < start else end)

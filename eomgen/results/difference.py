@@ -1,4 +1,4 @@
-"""eomgen derive --diff: the differences between two models, down to their equations of motion."""
+"""Equations of two models -> Difference: what is declared otherwise, and which equations of motion differ."""
 
 from __future__ import annotations
 
@@ -6,13 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
-from eomgen import pipeline
-from eomgen.documents import Document, Formula, Grid, Statement, Step, document_of, prose, proven, sides_of
-from eomgen.equations import Equations
+from eomgen.documents import Document, Formula, Grid, Statement, Step, document_of, prose, sides_of
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import EquationsOfMotion
 from eomgen.model import Model
-from eomgen.proof import Certificate
 from eomgen.symbolic.exact import book_form, equal_at_random_states
 from eomgen.symbolic.expression import Graph, Scalar, symbols_of
 from eomgen.symbolic.numeric import Work, transplanted
@@ -53,8 +50,8 @@ class Difference:
         equations: every equation of motion and every row that closes a constraint, of either.
     """
 
-    first: Equations
-    second: Equations
+    first: Model
+    second: Model
     declared: Mapping[str, tuple[list[str], list[str]]]
     values: Mapping[str, tuple[float | None, float | None]]
     equations: tuple[Compared, ...]
@@ -62,8 +59,8 @@ class Difference:
     def entries(self) -> Mapping[str, Any]:
         """Entries of the JSON document."""
         return {
-            "name": self.first.model.name,
-            "other": self.second.model.name,
+            "name": self.first.name,
+            "other": self.second.name,
             "same": not (self.declared or self.values or any(x.status != "same" for x in self.equations)),
             "declared": {table: {"added": new, "removed": old} for table, (new, old) in self.declared.items()},
             "values": {name: list(pair) for name, pair in self.values.items()},
@@ -113,14 +110,12 @@ class Difference:
         return reported or [prose("Nothing is free to move in either.")]
 
 
-def difference_of(first: Equations, second: Equations) -> Difference:
+def difference_of(first: EquationsOfMotion, second: EquationsOfMotion) -> Difference:
     """The equations of motion of two models, compared."""
-    pair, graph = (first, second), Graph()
-    rows = [_rows(e.graph, graph) for e in pair]
+    own, other, graph = first.system.scope.model, second.system.scope.model, Graph()
+    rows = [_rows(e, graph) for e in (first, second)]
     equations = (_compared(name, *(row.get(name) for row in rows)) for name in dict.fromkeys((*rows[0], *rows[1])))
-    return Difference(
-        first, second, _declared(*(e.model for e in pair)), _values(first.model, second.model), tuple(equations)
-    )
+    return Difference(own, other, _declared(own, other), _values(own, other), tuple(equations))
 
 
 def _declared(first: Model, second: Model) -> dict[str, tuple[list[str], list[str]]]:
@@ -142,19 +137,11 @@ def _values(first: Model, second: Model) -> dict[str, tuple[float | None, float 
     }
 
 
-def difference_document(model: Model, other: Model, *, method: str, certify: bool) -> Document:
-    """Differences between this model and another, with the proofs of both."""
-    found = difference_of(pipeline.derive(model, method), pipeline.derive(other, method))
-    document = replace(document_of(model, f"difference from {other.name}", found.steps), entries=found.entries)
-    return proven(document, _both(found.first.certify(), found.second.certify()) if certify else None)
-
-
-def _both(first: Certificate, second: Certificate) -> Certificate:
-    reported = (
-        ((f"this model: {c.name}", c) for c in first.checks),
-        ((f"the other: {c.name}", c) for c in second.checks),
-    )
-    return Certificate(tuple(replace(check, name=name) for part in reported for name, check in part))
+def difference_document(first: EquationsOfMotion, second: EquationsOfMotion) -> Document:
+    """Differences of the second of two models from the first, not proven yet."""
+    found = difference_of(first, second)
+    model, other = found.first, found.second
+    return replace(document_of(model, f"difference from {other.name}", found.steps), entries=found.entries)
 
 
 def _rows(equations: EquationsOfMotion, graph: Graph) -> dict[str, Scalar]:
