@@ -12,7 +12,7 @@ from typing import Any
 from eomgen.documents import nearest_name
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
-from eomgen.model import Coordinate, Input, Model, Table, assignments, samples
+from eomgen.model import Coordinate, Model, Table, assignments, samples
 from eomgen.symbolic.expression import Expression
 
 EXAMPLE = "--follow theta=run.csv"
@@ -38,7 +38,7 @@ def following(model: Model, given: Sequence[str]) -> Model:
         else:
             fix = nearest_name(name, [*coordinates, *inputs])
             raise UsageError(f"--follow: there is no coordinate or input '{name}'", fix=fix)
-    changes: dict[str, Any] = {"coordinates": Table[Coordinate](coordinates), "inputs": Table[Input](inputs)}
+    changes: dict[str, Any] = {"coordinates": Table(coordinates), "inputs": Table(inputs)}
     try:
         replace(model, **changes)  # what is wrong with a model is wrong with this one
     except ModelError as error:
