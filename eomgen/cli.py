@@ -372,6 +372,10 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     ),
     help="Their subject.  [default: by their contents]",
 )
+@click.option("--to-first-order", is_flag=True, help="Of a motion the first order is enough: small angles.")
+@click.option(
+    "--about", metavar="PLACE", help='Of --to-first-order: beside "theta=0".  [default: 0, or an equilibrium]'
+)
 @click.option("--hint", type=click.IntRange(1, 3), help="Show 1 the place, 2 the quantity, 3 the cause of an error.")
 @CERTIFY
 def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:

@@ -37,10 +37,12 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     depends_on,
+    depends_on_any,
     derivative,
     gradient,
     is_zero,
     operations,
+    order,
     over,
     substituted,
     symbols_of,
@@ -367,6 +369,43 @@ def linearized(rows: ScalarRow, place: Mapping[Node, Scalar]) -> ScalarRow:
         still, *slopes = substituted((row, *gradient(row, moving)), place)
         found.append(sum((s * (x - place[x]) for s, x in zip(slopes, moving, strict=True)), start=still))
     return tuple(found)
+
+
+def first_order_place(
+    case: Case, scalar: Scalar, about: Mapping[Node, Scalar] | None = None
+) -> Mapping[Node, Scalar] | None:
+    """The place beside which an equation is right to the first order; None: beside none, or it approximates nothing.
+
+    Only what is linear there, or holds no sine and cosine where the model has some, was meant as an approximation.
+
+    Args:
+        about: the place that is meant; None: 0, or an equilibrium.
+    """
+    symbols, rows = case.system.symbols, case.rows
+    moving = (*symbols.q, *symbols.u, *symbols.a)
+    if case.closing or not rows or not depends_on(scalar, symbols.a):
+        return None
+    plain = is_linear((scalar,), moving) or (_bent(rows, moving) and not _bent((scalar,), moving))
+    if not plain or is_linear(rows, moving):
+        return None
+    still = dict.fromkeys(moving, 0)
+    for place in ({}, *case.places_of_rest) if about is None else (about,):
+        beside = {**still, **place}
+        with suppress(DerivationError):
+            (near,) = linearized((scalar,), beside)
+            if depends_on(near, symbols.a) and case.follows(near, linearized(rows, beside)).holds:
+                return {q: beside[q] for q in symbols.q}
+    return None
+
+
+def is_linear(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:
+    """True if rows are linear in what moves."""
+    return not depends_on_any([slope for row in rows for slope in gradient(row, moving)], moving)
+
+
+def _bent(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:
+    """True if a function of an angle that moves stands in rows."""
+    return any(x.op in ("sin", "cos", "tan") and depends_on(x, moving) for x in order(rows))
 
 
 def _linearized(known: Iterable[Mistake], place: Mapping[Node, Scalar]) -> Iterator[Mistake]:

@@ -16,7 +16,7 @@ from eomgen.errors import EomgenError, ExpressionError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.judge import Judge
+from eomgen.judge.judge import Judge, place_of
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict, kind_of_equation
 from eomgen.judge.written_pages import PageEquation, equations_of, matrix_of
@@ -173,9 +173,9 @@ class Believed:
 
 def _names_something(judge: Judge, written: HandEquation) -> bool:
     """True if a name or function of the model stands in it."""
-    return bool(written.calls) or len({name.rstrip("'") for name in written.names}) > len(
-        judge.case.unknown_names(written)
-    )
+
+    unknown = {*judge.case.unknown_names(written)} - judge.case.model.outputs.keys()
+    return bool(written.calls) or len({name.rstrip("'") for name in written.names}) > len(unknown)
 
 
 def _defined_in(judge: Judge, written: HandEquation) -> str:
@@ -254,6 +254,8 @@ def judged(
     from_rest: Values | None = None,
     kind: str | None = None,
     hint: int | None = None,
+    to_first_order: bool = False,
+    about: str | None = None,
 ) -> Judgements:
     """The verdicts on equations, each with the relations used or the reason why it is wrong.
 
@@ -261,11 +263,13 @@ def judged(
         at, kind: as of `verify`.
         from_rest: positions from which the motion starts with all speeds 0; None: its own start.
         hint: how much is said about what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
+        to_first_order, about: as of `verify`.
     Raises:
         UsageError: the only equation cannot be read.
     """
     placed = with_values(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
-    judge = Judge(Case(placed, from_rest is not None))
+    case = Case(placed, from_rest is not None)
+    judge = Judge(case, to_first_order, place_of(case, about))
     found: list[Verdict] = []
     entries: list[dict[str, Any]] = []
     lines: list[str] = []

@@ -22,6 +22,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.frozen import dataclass
+from eomgen.judge.balances import Balances, requests_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
@@ -46,12 +47,14 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import WrongTerms
+from eomgen.judge.truth import directions_at_start, signs_at_start, sizes_in
 from eomgen.model import AtRest, WrittenEquation
 from eomgen.questions import Answer
 from eomgen.symbolic.exact import determinant
 from eomgen.symbolic.expression import (
     Fraction,
     Node,
+    Reference,
     Scalar,
     ScalarRow,
     depends_on,
@@ -504,3 +507,116 @@ class GivenFrequency:
         (share,) = explanation.shares
         rows = tuple(x + y for x, y in zip(self.case.rows, share.added(self.case.system.scope.graph.pi), strict=True))
         return bool(is_zero_everywhere(self.case.system, determinant(self._matrix(self._slopes(rows)))).holds)
+
+
+# -------- targets ---------------------------------------------------------------------------------------------
+# An equation of somebody -> what it is compared with, the most telling first.
+
+
+Meanings = Mapping[str, Scalar]
+_WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
+
+
+def targets_of(
+    case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None
+) -> list[Explainable]:
+    """The comparisons of an equation with the model, the most telling first."""
+    if kind in ("reaction", "motion") and not also and requests_reactions(written):
+        begun = case.as_begun or case  # it slides as the author says, not by the sign of a speed
+        balances = (Balances(begun, written), Balances(begun, written, finely=True))
+        return [balances[0], *_values_of(case, written, kind, scalar, also), balances[1]]
+    return [*_values_of(case, written, kind, scalar, also)]
+
+
+def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> list[Comparison]:
+    """Its values and the equations of motion."""
+    calls = set(written.calls)
+    if kind == "motion" or (kind in ("law", "energy") and not calls):
+        if not case.rows or not depends_on(scalar, (*case.system.symbols.u, *case.forced)):
+            return []  # of a place alone any equation without motion is some multiple
+        of_energy = _energies(case, scalar) if kind in ("law", "energy") else []
+        of_law = () if depends_on(scalar, case.forced) else _rates(case, scalar)
+        sizes = {**signs_at_start(case, sizes_in(case, written, scalar)), **directions_at_start(case, written)}
+        rows = substituted(case.rows, sizes)
+        return of_energy + [
+            Comparison(case, each, rows, "motion", sizes=sizes) for each in substituted((*of_law, scalar), sizes)
+        ]
+    if len(calls) != 1:
+        return _sums(case, written, scalar) if calls else []
+    (call,) = calls
+    symbol = case.system.scope.graph.symbol(f"({call})")
+    left = case.evaluated(written.difference, {**case.names, **(also or {})}, lambda _: symbol)
+    slope = derivative(left, symbol)
+    if depends_on(slope, (symbol,)) or is_zero(slope):
+        return [] if is_zero(slope) else _sums(case, written, scalar)
+    (rest,) = substituted((left,), {symbol: 0})
+    author, true = over(-rest, slope), case.called(call)
+    sizes = sizes_in(case, written, author - true)
+    if sizes:  # of a speed the author wrote without its sign
+        (true,) = substituted((true,), {**sizes, **signs_at_start(case, sizes)})
+    of = tuple(x.name for x in call.args if isinstance(x, Reference))
+    found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
+    moving = (*case.system.symbols.a, *case.system.symbols.lam)
+    if depends_on(true, moving) and not depends_on(author, moving):
+        with suppress(EomgenError):
+            so = case.phase.simple(case.phase.eliminated(true))
+            if sizes := sizes_in(case, written, author - so):
+                so = case.phase.simple(substituted((so,), {**sizes, **signs_at_start(case, sizes)})[0])
+            found.append(Comparison(case, author - so, (so,), "", call, of))
+            true = so
+    if any(x.op == "sqrt" for x in order((author, true))) and not depends_on(true, moving):
+        found.append(Comparison(case, author * author - true * true, (true * true,), "", squared=True))
+    return found
+
+
+def _sums(case: Case, written: HandEquation, scalar: Scalar) -> list[Comparison]:
+    """Several functions: where all stand on one side, the other is the author's value of what is there."""
+    author, of = (written.right, written.left) if not written.right.calls else (written.left, written.right)
+    if author.calls:
+        return [Comparison(case, scalar, (0,), "")]
+    true, theirs = case.value(of), case.value(author)
+    found = [Comparison(case, theirs - true, (true,), "")]
+    with suppress(EomgenError):
+        so = case.phase.simple(case.phase.eliminated(true)) if depends_on(true, case.forced) else true
+        found = [Comparison(case, theirs - so, (so,), "")] if not depends_on(theirs, case.forced) else found
+    return found
+
+
+def loosened_targets(case: Case, written: HandEquation, kind: str) -> list[Comparison]:
+    """The same where rates of what is driven or dependent stand by their names, as the author has them."""
+    loose, coordinates = case.loosened, case.model.coordinates
+    bound = {f"{q}{dots}" for q, x in coordinates.items() if x.driven or x.dependent for dots in ("'", "''")}
+    if loose is None or "t" in written.names or kind == "reaction" or not bound & written.names:
+        return []
+    with suppress(EomgenError):
+        scalar, a = loose.value(written.difference), loose.system.symbols.a
+        found = []
+        if not written.calls and loose.system.constraints.J:
+            rows = loose.constrained_rates[depends_on(scalar, a)]
+            found = [Comparison(loose, scalar, rows, "constraints")]
+        if written.calls or not any(x.dependent for x in coordinates.values()):
+            found += _values_of(loose, written, kind, scalar, None)
+        known = {x: 0 for x in a if x.name in case.steady}
+        return [x.with_known(known) for x in found]
+    return []
+
+
+def _energies(case: Case, scalar: Scalar) -> list[Comparison]:
+    """The energy theorem, of a law with squares of speeds."""
+    u = case.system.symbols.u
+    if depends_on(scalar, case.forced) or not any(depends_on(derivative(scalar, x), (x,)) for x in u):
+        return []
+    return [] if case.gained is None else [Comparison(case, scalar, (case.gained,), "energy")]
+
+
+def _rates(case: Case, scalar: Scalar) -> tuple[Scalar, ...]:
+    """The equation of motion that a law follows from: its rate."""
+    if not depends_on(scalar, case.system.symbols.u):
+        return ()
+    with suppress(DerivationError):
+        (rate,) = case.system.scope.with_accelerations((scalar,))
+        if len(case.system.symbols.a) == 1:
+            slope = derivative(rate, case.system.symbols.a[0])
+            rate = rate if is_zero(slope) else over(rate, slope)
+        return (rate,)
+    return ()

@@ -11,18 +11,20 @@ from typing import Any
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.judge.answers import of_output, of_unknown, requested
-from eomgen.judge.balances import Balances, requests_reactions
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import Comparison, excess, remainder
+from eomgen.judge.comparison import Comparison, excess, first_order_place, remainder
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.fixes import Authored, Fixes
 from eomgen.judge.implied import (
     Explainable,
     Instant,
+    Meanings,
     beside_rest,
     implied_by_course,
     implied_by_rest,
+    loosened_targets,
     simplest_explanation,
+    targets_of,
 )
 from eomgen.judge.reading import DERIVED, HandEquation, along_ground_axes, of_free_coordinates
 from eomgen.judge.renaming import Renaming, renamings
@@ -34,15 +36,12 @@ from eomgen.judge.truth import (
     by_balance,
     by_what_is_given,
     course_of,
-    directions_at_start,
     in_its_piece,
     is_of_rest,
     of_the_start,
     on_one_side,
     other_models,
     says_nothing,
-    signs_at_start,
-    sizes_in,
     small_motions,
     stays_constant,
     truth_of,
@@ -52,6 +51,7 @@ from eomgen.judge.truth import (
     with_values_of_file,
 )
 from eomgen.judge.verdict import (
+    FIRST_ORDER,
     FUNCTION_KINDS,
     KINDS,
     RIGHT,
@@ -71,19 +71,24 @@ from eomgen.symbolic.expression import (
     SLOPE,
     Expression,
     Node,
-    Reference,
     Scalar,
     depends_on,
-    derivative,
     is_zero,
-    order,
-    over,
+    parse,
     substituted,
 )
+from eomgen.symbolic.print import readable_text
 
 
 def verify(
-    model: ModelOrPath, equation: Any, *, at: Any = None, from_rest: bool | None = None, kind: str | None = None
+    model: ModelOrPath,
+    equation: Any,
+    *,
+    at: Any = None,
+    from_rest: bool | None = None,
+    kind: str | None = None,
+    to_first_order: bool = False,
+    about: str | None = None,
 ) -> Verdict:
     """The verdict on somebody's equation for a model: right, up to what, or wrong, and why.
 
@@ -92,11 +97,34 @@ def verify(
         at: the instant that it speaks of, an equation such as "theta = pi/2", or "equilibrium".
         from_rest: the motion starts with all speeds 0.
         kind: what it is about, one of KINDS; None: what stands in it says so.
+        to_first_order: an equation of motion is right if it is so to the first order.
+        about: beside this place, "theta = 0"; None: beside 0 or an equilibrium.
     Raises:
         ExpressionError: it cannot be read; column and length say where.
     """
-    model = model_to_study(model)
-    return Judge(Case(model, bool(from_rest))).verdict(equation, at=at, kind=kind)
+    case = Case(model_to_study(model), bool(from_rest))
+    return Judge(case, to_first_order, place_of(case, about)).verdict(equation, at=at, kind=kind)
+
+
+def place_of(case: Case, about: str | None) -> Mapping[Node, Scalar] | None:
+    """The place that equations name, "theta = 0, x = l"; None: none is named.
+
+    Raises:
+        UsageError: it names no coordinate.
+    """
+    if about is None:
+        return None
+    named, found = {q.name: q for q in case.system.symbols.q}, dict[Node, Scalar]()
+    for each in about.split(","):
+        name, sign, value = (part.strip() for part in each.partition("="))
+        if name not in named or not sign:
+            known = ", ".join(f"{q} = 0" for q in named)
+            raise UsageError(f"about '{each.strip()}': no coordinate is named", fix=f"write {known}")
+        try:
+            found[named[name]] = case.value(parse(value))
+        except ExpressionError as error:
+            raise UsageError(f"about '{each.strip()}': {error.what}", fix=error.fix) from error
+    return found
 
 
 CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
@@ -116,9 +144,16 @@ SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong th
 
 @dataclass(frozen=True)
 class Judge:
-    """Judges equations of one model."""
+    """Judges equations of one model.
+
+    Args:
+        to_first_order: equations of motion need to be right to the first order alone.
+        about: beside this place; None: beside 0 or an equilibrium.
+    """
 
     case: Case
+    to_first_order: bool = False
+    about: Mapping[Node, Scalar] | None = None
 
     @doing("the verdict")
     def verdict(
@@ -155,7 +190,22 @@ class Judge:
             with suppress(ExpressionError):
                 if so := self._of_axes(written, "equilibrium", None):
                     return replace(so, up_to=" and ".join(filter(None, (AT_REST, so.up_to))))
-        return answered if answered is not None and found.verdict == UNDECIDED else found
+        if answered is not None and found.verdict == UNDECIDED:
+            return answered
+        return self._to_first_order(written, found)
+
+    def _to_first_order(self, written: HandEquation, found: Verdict) -> Verdict:
+        """A verdict on a wrong equation of motion that is right beside a place: right where that is enough."""
+        if found.verdict != WRONG or found.kind not in ("motion", "acceleration") or self.case.unknown_names(written):
+            return found
+        place = first_order_place(self.case, self.case.value(written.difference), self.about)
+        if place is None:
+            return found
+        beside = ", ".join(f"{q.name} = {readable_text(x)}" for q, x in place.items())
+        up_to = f"{FIRST_ORDER} about {beside}"
+        return (
+            replace(found, up_to=up_to) if not self.to_first_order else Verdict(written.given, found.kind, RIGHT, up_to)
+        )
 
     def _of_matrix(self, given: str, letter: str, rows: list[list[str]]) -> Verdict:
         """The verdict on M, C or K of the small motions, entry by entry.
@@ -542,116 +592,3 @@ def _instant(case: Case, at: Any) -> Instant:
         return equation_in(case.model, str(at))
     except ExpressionError as error:
         raise UsageError(f"at {at}: {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
-
-
-# -------- targets ---------------------------------------------------------------------------------------------
-# An equation of somebody -> what it is compared with, the most telling first.
-
-
-Meanings = Mapping[str, Scalar]
-_WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
-
-
-def targets_of(
-    case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None
-) -> list[Explainable]:
-    """The comparisons of an equation with the model, the most telling first."""
-    if kind in ("reaction", "motion") and not also and requests_reactions(written):
-        begun = case.as_begun or case  # it slides as the author says, not by the sign of a speed
-        balances = (Balances(begun, written), Balances(begun, written, finely=True))
-        return [balances[0], *_values_of(case, written, kind, scalar, also), balances[1]]
-    return [*_values_of(case, written, kind, scalar, also)]
-
-
-def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> list[Comparison]:
-    """Its values and the equations of motion."""
-    calls = set(written.calls)
-    if kind == "motion" or (kind in ("law", "energy") and not calls):
-        if not case.rows or not depends_on(scalar, (*case.system.symbols.u, *case.forced)):
-            return []  # of a place alone any equation without motion is some multiple
-        of_energy = _energies(case, scalar) if kind in ("law", "energy") else []
-        of_law = () if depends_on(scalar, case.forced) else _rates(case, scalar)
-        sizes = {**signs_at_start(case, sizes_in(case, written, scalar)), **directions_at_start(case, written)}
-        rows = substituted(case.rows, sizes)
-        return of_energy + [
-            Comparison(case, each, rows, "motion", sizes=sizes) for each in substituted((*of_law, scalar), sizes)
-        ]
-    if len(calls) != 1:
-        return _sums(case, written, scalar) if calls else []
-    (call,) = calls
-    symbol = case.system.scope.graph.symbol(f"({call})")
-    left = case.evaluated(written.difference, {**case.names, **(also or {})}, lambda _: symbol)
-    slope = derivative(left, symbol)
-    if depends_on(slope, (symbol,)) or is_zero(slope):
-        return [] if is_zero(slope) else _sums(case, written, scalar)
-    (rest,) = substituted((left,), {symbol: 0})
-    author, true = over(-rest, slope), case.called(call)
-    sizes = sizes_in(case, written, author - true)
-    if sizes:  # of a speed the author wrote without its sign
-        (true,) = substituted((true,), {**sizes, **signs_at_start(case, sizes)})
-    of = tuple(x.name for x in call.args if isinstance(x, Reference))
-    found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
-    moving = (*case.system.symbols.a, *case.system.symbols.lam)
-    if depends_on(true, moving) and not depends_on(author, moving):
-        with suppress(EomgenError):
-            so = case.phase.simple(case.phase.eliminated(true))
-            if sizes := sizes_in(case, written, author - so):
-                so = case.phase.simple(substituted((so,), {**sizes, **signs_at_start(case, sizes)})[0])
-            found.append(Comparison(case, author - so, (so,), "", call, of))
-            true = so
-    if any(x.op == "sqrt" for x in order((author, true))) and not depends_on(true, moving):
-        found.append(Comparison(case, author * author - true * true, (true * true,), "", squared=True))
-    return found
-
-
-def _sums(case: Case, written: HandEquation, scalar: Scalar) -> list[Comparison]:
-    """Several functions: where all stand on one side, the other is the author's value of what is there."""
-    author, of = (written.right, written.left) if not written.right.calls else (written.left, written.right)
-    if author.calls:
-        return [Comparison(case, scalar, (0,), "")]
-    true, theirs = case.value(of), case.value(author)
-    found = [Comparison(case, theirs - true, (true,), "")]
-    with suppress(EomgenError):
-        so = case.phase.simple(case.phase.eliminated(true)) if depends_on(true, case.forced) else true
-        found = [Comparison(case, theirs - so, (so,), "")] if not depends_on(theirs, case.forced) else found
-    return found
-
-
-def loosened_targets(case: Case, written: HandEquation, kind: str) -> list[Comparison]:
-    """The same where rates of what is driven or dependent stand by their names, as the author has them."""
-    loose, coordinates = case.loosened, case.model.coordinates
-    bound = {f"{q}{dots}" for q, x in coordinates.items() if x.driven or x.dependent for dots in ("'", "''")}
-    if loose is None or "t" in written.names or kind == "reaction" or not bound & written.names:
-        return []
-    with suppress(EomgenError):
-        scalar, a = loose.value(written.difference), loose.system.symbols.a
-        found = []
-        if not written.calls and loose.system.constraints.J:
-            rows = loose.constrained_rates[depends_on(scalar, a)]
-            found = [Comparison(loose, scalar, rows, "constraints")]
-        if written.calls or not any(x.dependent for x in coordinates.values()):
-            found += _values_of(loose, written, kind, scalar, None)
-        known = {x: 0 for x in a if x.name in case.steady}
-        return [x.with_known(known) for x in found]
-    return []
-
-
-def _energies(case: Case, scalar: Scalar) -> list[Comparison]:
-    """The energy theorem, of a law with squares of speeds."""
-    u = case.system.symbols.u
-    if depends_on(scalar, case.forced) or not any(depends_on(derivative(scalar, x), (x,)) for x in u):
-        return []
-    return [] if case.gained is None else [Comparison(case, scalar, (case.gained,), "energy")]
-
-
-def _rates(case: Case, scalar: Scalar) -> tuple[Scalar, ...]:
-    """The equation of motion that a law follows from: its rate."""
-    if not depends_on(scalar, case.system.symbols.u):
-        return ()
-    with suppress(DerivationError):
-        (rate,) = case.system.scope.with_accelerations((scalar,))
-        if len(case.system.symbols.a) == 1:
-            slope = derivative(rate, case.system.symbols.a[0])
-            rate = rate if is_zero(slope) else over(rate, slope)
-        return (rate,)
-    return ()

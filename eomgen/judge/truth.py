@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import Comparison, linearized
+from eomgen.judge.comparison import Comparison, is_linear, linearized
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, states_of, vanish_nearly
 from eomgen.judge.diagnosis import PLAINEST, SHORTER, TERMS, Explanation, Mistake, Share
 from eomgen.judge.model_edits import ModelEdits
@@ -29,7 +29,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     depends_on,
-    depends_on_any,
     derivative,
     gradient,
     is_zero,
@@ -683,7 +682,7 @@ def small_motions(whole: Comparison) -> Iterator[InSmallMotions]:
     moving = (*symbols.q, *symbols.u, *symbols.a)
     if whole.what != "motion" or whole.case.closing or len(whole.rows) > MOST_DEGREES_OF_FREEDOM or whole.is_long:
         return
-    if not _is_linear((whole.scalar,), moving) or _is_linear(whole.rows, moving):
+    if not is_linear((whole.scalar,), moving) or is_linear(whole.rows, moving):
         return
     still = dict.fromkeys(moving, 0)
     places = [{**still, **place} for place in ({}, *whole.case.places_of_rest)]
@@ -694,7 +693,3 @@ def small_motions(whole: Comparison) -> Iterator[InSmallMotions]:
             continue  # it has no value there
         if not any(map(is_zero, rows)):
             yield InSmallMotions(whole, replace(whole, rows=rows, near=place))
-
-
-def _is_linear(rows: ScalarRow, moving: tuple[Node, ...]) -> bool:
-    return not depends_on_any([slope for row in rows for slope in gradient(row, moving)], moving)

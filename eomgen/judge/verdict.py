@@ -94,6 +94,7 @@ class Cause:
         return f"Look at {place}." if place else f"Look at {AREAS.get(self.kind, 'the terms one by one')}."
 
 
+FIRST_ORDER = "first order"
 AREAS = {
     "sign": "the signs",
     "factor": "the numbers before the terms",
@@ -194,7 +195,9 @@ class Verdict:
     def lines(self, hint: int | None = None) -> tuple[str, ...]:
         """The verdict as lines of text."""
         found = [f"{self.verdict}: {self.given}"]
-        if self.up_to:
+        if self.verdict == WRONG and self.up_to.startswith(FIRST_ORDER):
+            found = [f"right to {self.up_to}: {self.given}", "    it is wrong of the whole motion:"]
+        elif self.up_to:
             found.append(f"    {'right' if self.verdict == WRONG else 'up to'} {self.up_to}")
         found += [f"    with {name} = {value}" for name, value in self.substitution.items()]
         if self.reason:

@@ -28,6 +28,8 @@ def verify_document(
     kind: str | None = None,
     hint: int | None = None,
     derivation: bool = False,
+    to_first_order: bool = False,
+    about: str | None = None,
     certify: bool = True,
 ) -> Document:
     """The verdicts, each with the relations used or the reason why it is wrong.
@@ -35,6 +37,7 @@ def verify_document(
     Args:
         equations: as they were typed; "-" reads them from stdin, one a line.
         answers: files of equations, one a line, or folders of such files; .tex, .md and .ipynb are derivations.
+        to_first_order, about: as of `verify`.
         derivation: each file is a derivation, whatever its ending.
         at, from_rest, kind: as of `verify`.
         hint: how much is said about what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
@@ -47,7 +50,9 @@ def verify_document(
     ]
     if not requested:
         raise UsageError("there is no equation to judge", fix="write one behind the model, or --file FILE")
-    found = judged(model, requested, at=at, from_rest=from_rest, kind=kind, hint=hint)
+    found = judged(
+        model, requested, at=at, from_rest=from_rest, kind=kind, hint=hint, to_first_order=to_first_order, about=about
+    )
     skipped = {"skipped": list(found.skipped)} if any(each.is_page for each in requested) else {}
     document = plain_document(
         model,
