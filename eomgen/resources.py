@@ -20,8 +20,6 @@ from dataclasses import field
 from itertools import pairwise
 from threading import Lock
 
-import numpy as np
-
 from eomgen.errors import EomgenError
 from eomgen.frozen import dataclass
 
@@ -259,8 +257,8 @@ def seldom() -> Iterator[None]:
 
 def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
     """(first, the one after the last) of so many parts, of one length as nearly as can be."""
-    edges = np.linspace(0, count, max(1, parts) + 1).astype(int).tolist()
-    return list(pairwise(edges))
+    parts = max(1, parts)
+    return list(pairwise(count * k // parts for k in range(parts + 1)))
 
 
 def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:

@@ -93,7 +93,7 @@ def _measured(case: Case, written: HandEquation, number: Measured, output: Outpu
 
 def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
     """Verdict on a frequency that is given by its letter: not everybody counts motions of the whole, of frequency 0."""
-    ((_, call), *_) = written.left.code
+    call = next(what for kind, what in written.left.code if kind == "call")
     number, whole = int(call.args[0].text), _motions_of_the_whole(case, written, at)
     if not whole:
         return _answered(case, written, "frequency", at)
@@ -109,9 +109,11 @@ def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
 
 def _motions_of_the_whole(case: Case, written: HandEquation, at: Instant) -> int:
     """Number of frequencies that are 0."""
+    call = next(what for kind, what in written.left.code if kind == "call")
     for whole in range(len(case.system.symbols.u)):
-        each = _with_frequency(written, whole + 1)
-        (value, _) = case.sides(replace(each, right=each.left), at)
+        numbered = replace(call, args=(Expression.number(whole + 1),))
+        frequency = Expression(str(numbered), (("call", numbered),), (0,))
+        (value, _) = case.sides(replace(written, left=frequency, right=frequency), at)
         exact = case.exact(value)
         if value.value != 0 if exact is None else not is_zero(exact):
             return whole
@@ -120,9 +122,9 @@ def _motions_of_the_whole(case: Case, written: HandEquation, at: Instant) -> int
 
 def _with_frequency(written: HandEquation, number: int) -> HandEquation:
     """The same of another frequency."""
-    (kind, call), *rest = written.left.code
-    numbered = (kind, replace(call, args=(Expression.number(number),)))
-    return replace(written, left=Expression(written.left.text, (numbered, *rest), written.left.columns))
+    numbered = Expression.number(number)
+    code = tuple((kind, replace(x, args=(numbered,)) if kind == "call" else x) for kind, x in written.left.code)
+    return replace(written, left=Expression(written.left.text, code, written.left.columns))
 
 
 def _answered(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:

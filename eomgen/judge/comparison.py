@@ -385,7 +385,8 @@ def first_order_place(
     moving = (*symbols.q, *symbols.u, *symbols.a)
     if case.closing or not rows or not depends_on(scalar, symbols.a):
         return None
-    plain = is_linear((scalar,), moving) or (_bent(rows, moving) and not _bent((scalar,), moving))
+    of_speeds = not is_linear((scalar,), symbols.u)  # who keeps their products approximates nothing
+    plain = is_linear((scalar,), moving) or (_bent(rows, moving) and not _bent((scalar,), moving) and not of_speeds)
     if not plain or is_linear(rows, moving):
         return None
     still = dict.fromkeys(moving, 0)
@@ -393,7 +394,8 @@ def first_order_place(
         beside = {**still, **place}
         with suppress(DerivationError):
             (near,) = linearized((scalar,), beside)
-            if depends_on(near, symbols.a) and case.follows(near, linearized(rows, beside)).holds:
+            rests = all(is_zero(x) for x in substituted((scalar,), beside)) or about is not None
+            if rests and depends_on(near, symbols.a) and case.follows(near, linearized(rows, beside)).holds:
                 return {q: beside[q] for q in symbols.q}
     return None
 

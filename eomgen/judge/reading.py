@@ -25,8 +25,12 @@ from eomgen.symbolic.expression import SLOPE, Call, Expression, Instruction, Ref
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
-FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
-"""the letter of a frequency of small motions"""
+FREQUENCY = re.compile("(omega|f|T|tau)(?:_?([0-9n]))?")
+"""the letter of a frequency of small motions, in radians or cycles, or of its period, and its number"""
+ALONE = {"K": "kinetic_energy", "W": "potential_energy"}
+"""letters that stand for energies where they are the left side"""
+ONLY = {"N_": ("N",), "T_": ("S", "F_S", "F_T"), "F_": ("F_f", "F_R", "R")}
+"""begin of the letter of a reaction -> letters of the only one there is"""
 MULTIPLIER = "lam"  # of a constraint row: lam(constraint, 1)
 DERIVED = "derived"  # what a derivation names and no output is: derived(Q_theta_motor)
 
@@ -270,9 +274,14 @@ class Reading:
         found = {**self._energies, **found}
         for letter, call in self._reactions():
             found.setdefault(letter, _called(call.name, *call.args))
-        normal = [letter for letter in found if letter in {f"N_{constraint}" for constraint in model.constraints}]
-        if len(normal) == 1:
-            found.setdefault("N", found[normal[0]])
+        for kinds, letters in ONLY.items():
+            only = [x for x in found if x.startswith(kinds) and x.split("_", 1)[1] in model.constraints]
+            for letter in letters if len(only) == 1 else ():
+                found.setdefault(letter, found[only[0]])
+        strands = [x for x in found if x.startswith("T_") and x.split("_", 1)[1] in model.constraints]
+        for k, name in enumerate(strands, start=1):
+            found.setdefault(f"S_{k}", found[name])
+            found.setdefault(f"S{k}", found[name])
         points = model.named_points if model.space == "plane" and model.bodies else ()
         found |= {f"{letter}_{x}": _called("inertia_point", Reference(x)) for x in points for letter in "JI"} | found
         return {letter: formula for letter, formula in found.items() if letter not in own}
@@ -280,7 +289,8 @@ class Reading:
     @property
     def _energies(self) -> dict[str, Expression]:
         T, V = (_called(LETTERS[letter]) for letter in ("T", "V"))
-        return {"T": T, "V": V, "L": T - V}
+        letters = dict.fromkeys(("E_kin", "E_k", "Ekin"), T) | dict.fromkeys(("E_pot", "E_p", "Epot", "U"), V)
+        return {"T": T, "V": V, "L": T - V, **letters}
 
     @cached_property
     def _requested(self) -> tuple[tuple[RequestedReaction, Call], ...]:
@@ -373,18 +383,22 @@ class Reading:
     def _alone(self, left: Expression, right: Expression) -> Expression:
         """A letter alone on the left that the model does not have.
 
-        omega_0 or its square is a frequency of small motions, v and a rate and acceleration of the one free coordinate.
+        omega_0 or its square, f and T are a frequency of small motions and its period, K and W energies, v and a rate
+        and acceleration of the one free coordinate.
         """
         names = self.system.scope.names
         moving = any("'" in name or name in self.system.scope.model.coordinates for name in right.names)
         letter = left.code[0][1] if left.code and left.code[0][0] == "name" else ""
         rest = left.code[1:]
-        if letter in names or letter in self.letters or rest not in ((), (("number", 2), ("^", None))):
+        if letter in names or rest not in ((), (("number", 2), ("^", None))):
             return left
-        found = FREQUENCY.fullmatch(letter)
-        if found is not None and not moving:
-            number = Expression.number(int(found[1]) if (found[1] or "").isdigit() and found[1] != "0" else 1)
-            return Expression(left.text, (("call", Call("frequency", (number,))), *rest), (0, *(-1 for _ in rest)))
+        if not moving and (code := _of_small_motions(letter, right, letter in self.letters)):
+            return Expression(left.text, (*code, *rest), (-1,) * (len(code) + len(rest)))
+        if letter in self.letters:
+            return left
+        if letter in ALONE and letter not in self.system.scope.model.outputs:
+            formula = _called(ALONE[letter])
+            return Expression(left.text, (*formula.code, *rest), (-1,) * (len(formula.code) + len(rest)))
         free = [q for q, x in self.system.scope.model.coordinates.items() if not x.driven]
         dots = {"v": "'", "a": "''"}.get(letter)
         if dots is None or len(free) != 1 or free[0] + dots not in names:
@@ -468,6 +482,24 @@ class Reading:
 
 def _flat(text: str) -> str:
     return "".join(text.split())
+
+
+def _of_small_motions(letter: str, right: Expression, taken: bool) -> tuple[Instruction, ...]:
+    """Code of the frequency, or the period, that a letter stands for beside such a right side; () where it is none.
+
+    Args:
+        taken: the letter has another meaning: T of an energy is a period where pi and a root stand behind it.
+    """
+    found = FREQUENCY.fullmatch(letter)
+    rooted = any(kind in ("call", "function") and "sqrt" in str(what) for kind, what in right.code)
+    if found is None or (found[1] != "omega" and not ("pi" in right.names and rooted)) or (taken and found[1] != "T"):
+        return ()
+    number = Expression.number(int(found[2]) if (found[2] or "").isdigit() and found[2] != "0" else 1)
+    frequency: Instruction = ("call", Call("frequency", (number,)))
+    circle: tuple[Instruction, ...] = (("number", 2), ("name", "pi"), ("*", None))
+    if found[1] == "omega":
+        return (frequency,)
+    return (frequency, *circle, ("/", None)) if found[1] == "f" else (*circle, frequency, ("/", None))
 
 
 def _formula(argument: Reference | Expression) -> Expression:

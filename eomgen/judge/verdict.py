@@ -252,6 +252,8 @@ def kind_of_equation(written: HandEquation, model: Model) -> str:
     names = written.names
     speeds = {f"{name}'" for name in model.speeds}
     accelerated = written.takes_rates or any(name.endswith("''") or name in speeds for name in names)
+    if any(call.name == "frequency" for call in written.left.calls):
+        return "frequency"
     alone = written.left.code[0] if len(written.left.code) == 1 else None
     if alone is not None and alone[0] == "call":
         return _of_call(alone[1].name, model)

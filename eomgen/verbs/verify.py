@@ -75,7 +75,7 @@ def _typed(text: str) -> Iterator[Answered]:
 
 
 def _of_path(path: str, derivation: bool) -> Iterator[Answered]:
-    """The equations of a file, or of every file of a folder; a derivation as a whole."""
+    """The equations of a file, or of every file of a folder, a line each; a derivation as a whole."""
     if path == "-" and derivation and sys.stdin is not None:
         yield Answered(sys.stdin.read(LARGEST), "<stdin>", is_page=True)
         return
@@ -90,7 +90,7 @@ def _of_path(path: str, derivation: bool) -> Iterator[Answered]:
         data = files.read(each, LARGEST)
         try:
             text = data.decode("utf-8-sig")
-            if derivation or each.suffix.lower() in PAGES:
+            if derivation or (each.suffix.lower() in PAGES and not place.is_dir()):
                 yield Answered(_cells(text, str(each)) if each.suffix == ".ipynb" else text, str(each), is_page=True)
             else:
                 yield from _lines(text, str(each))
