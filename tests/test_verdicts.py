@@ -137,7 +137,7 @@ def test_what_is_too_much_in_a_wrong_equation_is_not_zero(equation):
     ],
 )
 def test_a_letter_that_means_nothing_is_no_constant(equation, verdict, unknown):
-    """The symbol that a constraint declares for its force is that force, F_S the tension of the only rope; F_Z, Q7 are nobody's."""
+    """A symbol that a constraint declares is its force, F_S the tension of the only rope; F_Z, Q7 are nobody's."""
     found = eomgen.verify(eomgen.loads(PENDULUM), equation)
     assert (found.verdict, found.unknown) == (verdict, unknown)
 
