@@ -262,12 +262,6 @@ from eomgen.documents.read_back import wanted_of as wanted_of
 # Puts scalars into readable form, each once and with a budget of its own: none depends on those before it
 from eomgen.documents.reading import Reader as Reader
 
-# Content of a derivation, while parts of it get names
-from eomgen.documents.reading import Written as Written
-
-# r1, r2, ... for the roots of long sums, the lengths of springs, and v1, v2, ... for their rates
-from eomgen.documents.reading import with_roots_named as with_roots_named
-
 # The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x)
 from eomgen.documents.reading import without_cases as without_cases
 

@@ -144,6 +144,10 @@ class Reader:
         self.roots |= dict(over.roots)
         return over.expressions
 
+    def with_names(self, steps: tuple[Step, ...], scope: Scope) -> tuple[Step, ...]:
+        """The steps with a name for each root of a long sum that the symbols in them stand for."""
+        return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, self.roots).steps
+
     def shown(self, x: Scalar) -> Scalar | Omitted:
         """x in its readable form with a symbol for each root of a sum, or its size."""
         short = self._read(x)

@@ -24,7 +24,6 @@ from eomgen.documents import (
     Sketch,
     Statement,
     Step,
-    Written,
     count,
     data_step,
     document_of,
@@ -35,7 +34,6 @@ from eomgen.documents import (
     page,
     prose,
     said,
-    with_roots_named,
 )
 from eomgen.errors import RunFailed
 from eomgen.frozen import dataclass
@@ -238,7 +236,7 @@ def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tu
     steps: tuple[Step, ...] = (rest_balance_step(found.statics, reader), _places(found))
     if reactions:
         steps = (*steps, _stability_step(found), *_reaction_steps(found.found[0], reactions))
-    return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, reader.roots).steps
+    return reader.with_names(steps, scope)
 
 
 def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
