@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System, system_of
 from eomgen.mechanics.instant import KinematicState, Quantities, requests_of
-from eomgen.mechanics.linearization import MATRICES, Modes
+from eomgen.mechanics.linearization import Modes
 from eomgen.mechanics.start import Start
 from eomgen.model import FUNCTIONS, AtRest, Model, Output, OutputSource, WrittenEquation
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
@@ -570,7 +570,7 @@ def _by_matrices(found: Linearized, system: System, output: Output, value: float
     def second(call: Call) -> Scalar:
         if call.name != "frequency":
             row, column = found.modes.place(call.name, *call.names)
-            return Fraction(getattr(small.numbers, MATRICES[call.name])[row][column])
+            return Fraction(small.numbers.matrix(call.name)[row][column])
         return Fraction(_rates(found)[found.number_of(call) - 1])
 
     right = number_of(output.value.evaluate(system.scope.names, second), system.scope.known_exactly)

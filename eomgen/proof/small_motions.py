@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.frozen import dataclass
-from eomgen.mechanics.linearization import EQUILIBRIUM, LinearEquations, Modes, SmallMotions
+from eomgen.mechanics.linearization import LinearEquations, Modes, SmallMotions
 from eomgen.proof.certificate import certify
 from eomgen.proof.check import Certificate, Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.degrees_of_freedom import Numbers50
@@ -48,7 +48,7 @@ def certify_small_motions(modes: Modes, entries: Mapping[str, Any], printed: Pri
     """
     small = modes.small
     values = small.reference.system.scope.model.exact_parameters()
-    equations = certify(small.first.equations, begins=small.reference.about != EQUILIBRIUM)
+    equations = certify(small.first.equations, begins=not small.reference.about_equilibrium)
     valued = small.reference.valued
     reported = linear_entries(entries, small.state_matrix, small.input_matrix) if valued else ()
     printed_checks = small_motions_reported(entries, printed, values)

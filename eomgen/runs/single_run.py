@@ -6,6 +6,7 @@ It ends early at a singular position, where the constraints do not determine how
 from __future__ import annotations
 
 import csv
+import dataclasses
 import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -18,12 +19,13 @@ import numpy as np
 from eomgen.codegen import closing_accelerations, parameter_vector
 from eomgen.documents import Document, Grid, Statement, cell_text, plain_document, prose, proven
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, Problem
+from eomgen.errors import DerivationError, ExpressionError, ModelError, Problem, UsageError
 from eomgen.files import is_stream
 from eomgen.frozen import with_fields
-from eomgen.mechanics.constraints import limits_passed
 from eomgen.mechanics.dynamics import System
-from eomgen.model import Model, Typed, WrittenEquation
+from eomgen.mechanics.instant import Quantities
+from eomgen.mechanics.kinematics import Motion, Scope, SystemScene
+from eomgen.model import Model, Output, Table, Typed, WrittenEquation, equation_in
 from eomgen.proof import ReportedRun, RunProof, run_reported
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.simulation import (
@@ -37,14 +39,13 @@ from eomgen.simulation import (
     Stepping,
     Trajectory,
     WholeRun,
-    condition_of,
     formulas_of,
     instants_of,
     joined,
     refuse_bad_run,
 )
-from eomgen.symbolic.expression import Expression, is_zero, symbols_of
-from eomgen.symbolic.numeric import number_of, tolerances
+from eomgen.symbolic.expression import Expression, Scalar, is_zero, parse, symbols_of
+from eomgen.symbolic.numeric import FLOAT, evaluate, number_of, tolerances
 
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 
@@ -82,7 +83,7 @@ def run(
     """
     how, samples = how or Stepping(), SAMPLES if samples is None else samples
     model = equations.model
-    condition = None if until is None else condition_of(model, until)
+    condition = None if until is None else _condition_of(model, until)
     refuse_bad_run(0.0, time, how)
     models = models or phase_models(equations, parameter_vector(model, parameters), how, target)
     here = PhaseStart.of(models, 0.0, parameters, start)
@@ -317,7 +318,7 @@ def run_document(
 def cautions_of(model: Model, run: Trajectory) -> tuple[Problem, ...]:
     """Warnings: samples that a run goes beyond, and limits of coordinates that it passes."""
     left = model.left_tables(float(run.t[-1]) if len(run.t) else 0.0)
-    return (*left, *limits_passed(model, run.t, run.x[:, : len(run.coordinates)]))
+    return (*left, *_limits_passed(model, run.t, run.x[:, : len(run.coordinates)]))
 
 
 def _reported(statements: Sequence[Statement], payload: Mapping[str, Any], output: str | None) -> ReportedRun:
@@ -428,3 +429,53 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
 
 def _finite(x: float | None) -> float | None:
     return float(x) if x is not None and abs(x) < float("inf") else None
+
+
+LOOKED = 200  # rows of a run at which limits are looked at
+
+
+def _limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, ...]:
+    """The limits of constraints beyond which a run goes, with the first instant that is seen, of LOOKED rows.
+
+    Args:
+        t, q: instants, n; coordinates in the model's order, n x nq.
+    """
+    if not len(t) or not any(constraint.thread() for constraint in model.constraints.values()):
+        return ()
+    motion, found = Motion.of(Scope.of(model)), []
+    symbols, known = motion.scope.symbols, model.exact_parameters()
+    p = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
+    looked = np.unique(np.linspace(0, len(t) - 1, LOOKED).round().astype(int))
+    for name, constraint in model.constraints.items():
+        for limit in constraint.limits(SystemScene(motion, f"{constraint.table}.{name}")):
+            for k in looked:
+                state = p | {symbols.t: float(t[k])} | dict(zip(symbols.q, map(float, q[k]), strict=True))
+                if evaluate((limit.vanishes,), state, FLOAT)[0] < 0:
+                    what = (
+                        f"{limit.words} at t = {t[k]:.4g} s: from there on it is led straight on, which it would not be"
+                    )
+                    found.append(Problem(f"{constraint.table}.{name}", what, fix="end the run before"))
+                    break
+    return tuple(found)
+
+
+def _condition_of(model: Model, until: WrittenEquation | str) -> Callable[[System], Scalar]:
+    """Left side minus right side of an equation such as "theta = pi/2" or "reaction_n(wall) = 0".
+
+    Raises:
+        UsageError: it is no equation, or holds a name that the model does not have.
+    """
+    text = until.text if isinstance(until, WrittenEquation) else until
+    try:
+        equation = equation_in(model, until)
+        dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
+    except ExpressionError as error:
+        raise UsageError(f"until '{text}': {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
+    except ModelError as error:
+        raise UsageError(f"until '{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
+
+    def difference(system: System) -> Scalar:
+        names, value = system.scope.names, Quantities(system).value
+        return equation.left.evaluate(names, value) - equation.right.evaluate(names, value)
+
+    return difference

@@ -20,7 +20,7 @@ from eomgen.documents import Document, Found, Listing, Quantity, Result, plain_d
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
-from eomgen.mechanics.linearization import MATRICES, ParameterSlopes
+from eomgen.mechanics.linearization import ParameterSlopes
 from eomgen.mechanics.start import Seeds, Start, start_seeds
 from eomgen.mechanics.state import Numbers, Split
 from eomgen.model import (
@@ -490,7 +490,7 @@ class _Asking:
             return value, slope, frequency.exact
         modes, names = self.small.modes, call.names
         entry, exact = modes.entry(call.name, *names)
-        found = changing.entry(MATRICES[call.name], *modes.place(call.name, *names))
+        found = changing.entry(call.name, *modes.place(call.name, *names))
         return found.value, found.slope, entry if exact else None
 
     def _written(self, scalar: Scalar) -> str | None:

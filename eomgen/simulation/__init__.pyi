@@ -58,9 +58,6 @@ from eomgen.simulation.phase_models import one_phase as one_phase
 # One phase as it was run
 from eomgen.simulation.phase_run import PhaseRun as PhaseRun
 
-# Left side minus right side of an equation such as "theta = pi/2" or "reaction_n(wall) = 0"
-from eomgen.simulation.phase_run import condition_of as condition_of
-
 # The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it
 from eomgen.simulation.phase_run import joined as joined
 

@@ -8,7 +8,6 @@ holds is seen here: sliding contacts come to rest and stick, landing ones lose t
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
@@ -17,11 +16,9 @@ from types import MappingProxyType
 
 import numpy as np
 
-from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageError
+from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.instant import Quantities
-from eomgen.model import Model, Output, Table, WrittenEquation, equation_in
 from eomgen.simulation.columns import OutputColumns
 from eomgen.simulation.contacts import EventFunction, changed
 from eomgen.simulation.integration import drift_of
@@ -31,33 +28,11 @@ from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Kept, OnDemand, Phase, Trajectory
-from eomgen.symbolic.expression import Expression, Scalar, parse
+from eomgen.symbolic.expression import Expression, Scalar
 from eomgen.symbolic.numeric import tolerances
 
 SystemCondition = Callable[[System], Scalar]
 """A function that is to become 0, over the symbols, accelerations and multipliers of a system."""
-
-
-def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
-    """Left side minus right side of an equation such as "theta = pi/2" or "reaction_n(wall) = 0".
-
-    Raises:
-        UsageError: it is no equation, or holds a name that the model does not have.
-    """
-    text = until.text if isinstance(until, WrittenEquation) else until
-    try:
-        equation = equation_in(model, until)
-        dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
-    except ExpressionError as error:
-        raise UsageError(f"until '{text}': {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
-    except ModelError as error:
-        raise UsageError(f"until '{text}': {error.problems[0].what}", fix=error.problems[0].fix) from error
-
-    def difference(system: System) -> Scalar:
-        names, value = system.scope.names, Quantities(system).value
-        return equation.left.evaluate(names, value) - equation.right.evaluate(names, value)
-
-    return difference
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.constraints import Freedom, freedom_of
 from eomgen.mechanics.dynamics import WellPosed, assembled_by_recursion, system_of
 from eomgen.mechanics.free_bodies import Structure
-from eomgen.mechanics.instant import mobility_of
+from eomgen.mechanics.instant import InstantKinematics
 from eomgen.mechanics.kinematics import ContactModes, Motion, Scope, SystemScene
 from eomgen.mechanics.start import Branches, Start
 from eomgen.mechanics.statics import ContactsAtStart
@@ -93,7 +93,7 @@ def checked_model(model: Model) -> Checked:
         model,
         freedom,
         tuple(name for name, mode in modes.items() if not mode.closed),
-        mobility=mobility_of(model) if still else None,
+        mobility=_mobility_of(model) if still else None,
         structure=Structure.of(system_of(model, ContactsAtStart.at_rest(model))) if still else None,
         start=start,
         cautions=(
@@ -194,3 +194,12 @@ def _start_of_loops(model: Model, modes: ContactModes, freedom: Freedom) -> Loop
         raise
     except DerivationError as error:  # an error of the verbs that need a start
         return LoopStart(refused=error.what)
+
+
+def _mobility_of(model: Model) -> int:
+    """Number of degrees of freedom at the start by rank; bodies that only constraints hold are counted as free.
+
+    Raises:
+        DerivationError: constraints that are not satisfied at the start.
+    """
+    return InstantKinematics.of(model.altered(given=None)).velocities.degrees_of_freedom

@@ -56,8 +56,5 @@ from eomgen.mechanics.constraints.rows import hold_identically as hold_identical
 # True if the scalar is zero at all values of its symbols (exactly, at random states)
 from eomgen.mechanics.constraints.rows import holds_identically as holds_identically
 
-# The limits of constraints beyond which a run goes, with the first instant that is seen, of LOOKED rows
-from eomgen.mechanics.constraints.rows import limits_passed as limits_passed
-
 # The rows that a constraint has while it is closed, whether it is so or not: how far an open contact is open
 from eomgen.mechanics.constraints.rows import rows_of_constraint as rows_of_constraint

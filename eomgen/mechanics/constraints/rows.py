@@ -8,9 +8,7 @@ from functools import cached_property
 from random import Random
 from typing import Any
 
-import numpy as np
-
-from eomgen.errors import DerivationError, ModelError, NotYet, Problem
+from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.frozen import RECALLED, dataclass
 from eomgen.mechanics.kinematics import (
     GROUND,
@@ -18,10 +16,9 @@ from eomgen.mechanics.kinematics import (
     ContactMode,
     ContactModes,
     Motion,
-    Scope,
     SystemScene,
 )
-from eomgen.model import ConstraintRow, Model, PointForce, Push
+from eomgen.model import ConstraintRow, PointForce, Push
 from eomgen.symbolic.exact import Equality, equal_at_random_states, equal_at_real_states, equal_in_field, readable
 from eomgen.symbolic.expression import (
     Fraction,
@@ -39,7 +36,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
     times,
 )
-from eomgen.symbolic.numeric import FLOAT, PRIME_FIELD, Work, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import PRIME_FIELD, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 # -------- constraints ------------------------------------------------------------------------------------------------
@@ -409,34 +406,6 @@ def _settled(x: Scalar, verdict: Equality | None) -> bool:
 #
 # Beyond its limits a constraint continues as it was although its physical meaning ends: a run that passes them reports
 # it.
-
-
-LOOKED = 200  # rows of a run at which limits are looked at
-
-
-def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, ...]:
-    """The limits of constraints beyond which a run goes, with the first instant that is seen, of LOOKED rows.
-
-    Args:
-        t, q: instants, n; coordinates in the model's order, n x nq.
-    """
-    if not len(t) or not any(constraint.thread() for constraint in model.constraints.values()):
-        return ()
-    motion, found = Motion.of(Scope.of(model)), []
-    symbols, known = motion.scope.symbols, model.exact_parameters()
-    p = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
-    looked = np.unique(np.linspace(0, len(t) - 1, LOOKED).round().astype(int))
-    for name, constraint in model.constraints.items():
-        for limit in constraint.limits(SystemScene(motion, f"{constraint.table}.{name}")):
-            for k in looked:
-                state = p | {symbols.t: float(t[k])} | dict(zip(symbols.q, map(float, q[k]), strict=True))
-                if evaluate((limit.vanishes,), state, FLOAT)[0] < 0:
-                    what = (
-                        f"{limit.words} at t = {t[k]:.4g} s: from there on it is led straight on, which it would not be"
-                    )
-                    found.append(Problem(f"{constraint.table}.{name}", what, fix="end the run before"))
-                    break
-    return tuple(found)
 
 
 MOST_SYMBOLS = 18  # in a velocity row that is multiplied out

@@ -49,6 +49,3 @@ from eomgen.mechanics.instant.quantities import requests_of as requests_of
 
 # A system at one configuration
 from eomgen.mechanics.instant.velocity_analysis import InstantKinematics as InstantKinematics
-
-# Number of degrees of freedom at the start by rank; bodies that only constraints hold are counted as free
-from eomgen.mechanics.instant.velocity_analysis import mobility_of as mobility_of

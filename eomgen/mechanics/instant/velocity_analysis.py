@@ -330,15 +330,6 @@ def _still(system: System, state: State) -> State:
     return {node: x for node, x in state.items() if node not in moving}
 
 
-def mobility_of(model: Model) -> int:
-    """Number of degrees of freedom at the start by rank; bodies that only constraints hold are counted as free.
-
-    Raises:
-        DerivationError: constraints that are not satisfied at the start.
-    """
-    return InstantKinematics.of(model.altered(given=None)).velocities.degrees_of_freedom
-
-
 # -------- given rows ------------------------------------------------------------------------------------------
 # System, [given] -> the linear equations of velocities or accelerations at one configuration, and their solution.
 

@@ -6,7 +6,6 @@ from eomgen.mechanics.linearization.linearization import CORNERS as CORNERS
 
 # The equations of small motions about a reference
 from eomgen.mechanics.linearization.linearization import SmallMotions as SmallMotions
-from eomgen.mechanics.linearization.modes import MATRICES as MATRICES
 
 # speeds of matrices whose entries are written as a book does
 from eomgen.mechanics.linearization.modes import MOST_WRITTEN as MOST_WRITTEN
@@ -29,7 +28,6 @@ from eomgen.mechanics.linearization.reduction import NAME as NAME
 
 # M du_i' + C du_i + K dq_i = B dw, dq_i' = F dq_i + E du_i
 from eomgen.mechanics.linearization.reduction import LinearEquations as LinearEquations
-from eomgen.mechanics.linearization.reference import EQUILIBRIUM as EQUILIBRIUM
 
 # The steady motions that one belongs to
 from eomgen.mechanics.linearization.reference import Family as Family

@@ -30,7 +30,6 @@ TRIES = 12  # values of the parameters at which the order of frequencies is look
 LONGEST = 6_000  # characters of a polynomial whose roots are written
 MOST_WRITTEN = 8  # speeds of matrices whose entries are written as a book does
 MOST_STATES = 8  # of transfer functions in floats
-MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
 
 
 @dataclass(frozen=True)
@@ -170,7 +169,7 @@ class Modes:
         """
         equations = self.small.exact or self.small.numbers
         row, column = self.place(function, *names)
-        return getattr(equations, MATRICES[function])[row][column], self.small.exact is not None
+        return equations.matrix(function)[row][column], self.small.exact is not None
 
     def place(self, function: str, *names: str) -> tuple[int, int]:
         """The row and column of an entry of M, C or K.

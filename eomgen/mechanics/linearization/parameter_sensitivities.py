@@ -184,9 +184,9 @@ class ParameterSlopes:
         """M, C, K, ... of the small motions with their slopes."""
         return self.small.over(WithSlopes(self._reference.numbers, self.seeds))
 
-    def entry(self, letter: str, row: int, column: int) -> Sloped:
-        """An entry of one of the matrices."""
-        return sloped(getattr(self.equations, letter)[row][column])
+    def entry(self, function: str, row: int, column: int) -> Sloped:
+        """An entry of the matrix of an output function: mass, damping or stiffness."""
+        return sloped(self.equations.matrix(function)[row][column])
 
     @cached_property
     def state_matrix(self) -> tuple[np.ndarray, np.ndarray]:

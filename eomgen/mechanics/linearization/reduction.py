@@ -70,6 +70,10 @@ class LinearEquations:
     E: Entries
     P: Entries
 
+    def matrix(self, function: str) -> Entries:
+        """The matrix of an output function: M of mass, C of damping, K of stiffness."""
+        return {"mass": self.M, "damping": self.C, "stiffness": self.K}[function]
+
     @property
     def laplace_variable(self) -> Node:
         """A symbol s that neither the entries nor the coordinates have."""

@@ -26,7 +26,6 @@ from eomgen.documents import (
 from eomgen.errors import DerivationError, ToolMissing, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.linearization import (
-    EQUILIBRIUM,
     Family,
     Frequency,
     LinearEquations,
@@ -451,7 +450,7 @@ def linearize(
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", fix=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
-    study = study_at_rest(model) if about == EQUILIBRIUM and not model.rough_contacts else study_of(model)
+    study = study_at_rest(model) if about == "equilibrium" and not model.rough_contacts else study_of(model)
     modes = Modes(SmallMotions.of(study.system, about, wanted))
     return Linearization(model, modes, assumptions=study.assumptions)
 
