@@ -3,7 +3,7 @@
 from eomgen.codegen.batching import Batch as Batch
 
 # Options that are the same for all runs
-from eomgen.codegen.batching import Requested as Requested
+from eomgen.codegen.batching import BatchOptions as BatchOptions
 
 # Path of a compiler (the environment's, as CC, else cc, gcc, clang, or ziglang's), or None
 from eomgen.codegen.build import compiler as compiler

@@ -26,7 +26,7 @@ _SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 
 
 @dataclass(frozen=True)
-class Requested:
+class BatchOptions:
     """Options that are the same for all runs.
 
     Args:
@@ -152,7 +152,7 @@ class Batch:
         self._constants = constants_of(program)
 
     def runs(
-        self, x0: np.ndarray, p: np.ndarray, requested: Requested, *, threads: int, check: Callable[[], None]
+        self, x0: np.ndarray, p: np.ndarray, requested: BatchOptions, *, threads: int, check: Callable[[], None]
     ) -> BatchedRuns:
         """The runs from x0 (runs x n) with parameters p (runs x parameters).
 
@@ -176,7 +176,7 @@ class Batch:
         self,
         x0: np.ndarray,
         p: np.ndarray,
-        requested: Requested,
+        requested: BatchOptions,
         found: BatchedRuns,
         piece: tuple[int, int],
         stop: threading.Event,

@@ -17,7 +17,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from eomgen.codegen import Batch, Requested, in_c, order_for
+from eomgen.codegen import Batch, BatchOptions, in_c, order_for
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.frozen import dataclass
 from eomgen.resources import check_patience, in_threads, pieces_of
@@ -98,7 +98,7 @@ class ManyRuns:
             if required:
                 raise
             return None
-        requested = Requested(
+        requested = BatchOptions(
             *((0.0, self.end), self.instants, how.rtol, how.atol, how.most_steps, how.breakpoints),
             tuple(rhs.unit_quaternions),
         )
