@@ -9,7 +9,6 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from eomgen.codegen import (
     Program,
@@ -442,6 +441,7 @@ class GivenMotion:
         return values[:, 0], values[:, 1], values[:, 2]
 
     def _through(self, name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        from scipy.interpolate import CubicSpline
 
         if values.shape != self.t.shape or len(values) < 2:
             raise UsageError(
