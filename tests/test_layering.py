@@ -246,7 +246,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "simulation": 30,
     "documents": 128,
     "results": 12,
-    "study": 17,
+    "study": 16,
     "proof": 60,
     "model": 124,
     "mechanics.kinematics": 21,

@@ -262,8 +262,8 @@ from eomgen.documents.read_back import wanted_of as wanted_of
 # Puts scalars into readable form, each once and with a budget of its own: none depends on those before it
 from eomgen.documents.reading import Reader as Reader
 
-# The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x)
-from eomgen.documents.reading import without_cases as without_cases
+# Text of an exact answer, in the grammar; None where it is too long to read
+from eomgen.documents.reading import answer_text as answer_text
 
 # Result of a verb that can be shown: a derivation, entries for JSON, and a picture where it has one
 from eomgen.documents.result import Result as Result

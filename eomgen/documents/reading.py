@@ -42,7 +42,17 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import Work
-from eomgen.symbolic.print import Product, Symbol, length_of, named_parts, products_of, text_size, to_text
+from eomgen.symbolic.print import (
+    LONGEST_RESULT,
+    Product,
+    Symbol,
+    length_of,
+    named_parts,
+    products_of,
+    readable_text,
+    text_size,
+    to_text,
+)
 
 LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
@@ -247,6 +257,13 @@ def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
     while chosen := {n: n.args[1 if holds else 2] for n in order((x,)) if n.op == "select" and n.args[0] is condition}:
         (x,) = substituted((x,), chosen)
     return x
+
+
+def answer_text(scalar: Scalar, positive: Collection[Node]) -> str | None:
+    """Text of an exact answer, in the grammar; None where it is too long to read."""
+    if text_size(scalar) > LONGEST_RESULT:
+        return None
+    return readable_text(without_cases((book_form(scalar, Work.FORMULA, positive),))[0])
 
 
 def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:

@@ -13,7 +13,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents import Document, Found, Listing, Quantity, Result, listing_markdown, plain_document, without_cases
+from eomgen.documents import Document, Found, Listing, Quantity, Result, answer_text, listing_markdown, plain_document
 from eomgen.errors import (
     DerivationError,
     EomgenError,
@@ -23,7 +23,6 @@ from eomgen.errors import (
     RunFailed,
 )
 from eomgen.frozen import dataclass
-from eomgen.mechanics.dynamics import Extent, refuse_jump, signs_of_rates
 from eomgen.mechanics.instant import InstantKinematics, requests_of
 from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.model import (
@@ -40,11 +39,10 @@ from eomgen.proof import AnswerSolver, Certificate, certify_answers
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.results import Linearization, linearize, why_not_at_rest
 from eomgen.simulation import is_of_a_run
-from eomgen.study import MotionFromStart, StateAtInstant, Study, exact_numbers, model_to_study, study_at_rest
-from eomgen.symbolic.exact import book_form
+from eomgen.study import MotionFromStart, StateAtInstant, Study, model_to_study, study_at_rest
 from eomgen.symbolic.expression import Call, Expression, Graph, Node, Scalar, depends_on, order, substituted, symbols_of
-from eomgen.symbolic.numeric import FLOAT, Work, evaluate, number_of, transplanted
-from eomgen.symbolic.print import LONGEST_RESULT, readable_text, text_size
+from eomgen.symbolic.numeric import number_of, transplanted
+from eomgen.symbolic.print import LONGEST_RESULT, text_size
 
 Answer = Quantity  # of an output
 
@@ -250,17 +248,10 @@ class _Solver:
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
         without = answer.value is None and answer.message == NO_VALUE.format("at the start")
-        if without and (resting := self._friction_at_rest()):
+        if without and (resting := self.motions[False].at_rest_on()):
             what = f"on the surface of {resting} nothing slides yet at the start, and friction has no direction there"
             return replace(answer, message=f"{what}; request it at a later instant: `at`")
         return answer
-
-    def _friction_at_rest(self) -> str:
-        """Names of the contacts on surfaces that are at rest at the start, with friction."""
-        phase = self.phase
-        values = {**phase.system.scope.known_parameters, **self.motions[False].numbers}
-        rows = [row for row in phase.system.constraints.rows if row.shares and row.friction is not None]
-        return ", ".join(f"'{row.constraint}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
 
     def _regular(self, answer: Answer, output: Output) -> Answer:
         """Answer whose value is found at the start itself, where its closed form may divide by zero there."""
@@ -309,49 +300,21 @@ class _Solver:
                 fix="request it at an instant: `at`",
             )
         rates, held = found
-        self._refuse_leaving(motion, held)
+        motion.refuse_leaving(held)
         (scalar,) = substituted((scalar,), rates)
         method = "energy theorem" if held.everywhere else f"energy theorem, while {held.text}"
         answer = self._started(phase.simple(scalar), method, output)
         singular = answer.value is None and answer.message == NO_VALUE.format("at the start")
         return self._defined(answer, output, phase, motion.numbers) if singular and motion.numbers else answer
 
-    @staticmethod
-    def _refuse_leaving(motion: MotionFromStart, held: Extent) -> None:
-        """Refuses integrals of the motion that hold only in pieces which the motion leaves.
-
-        Raises:
-            DerivationError: it leaves them, or that is not known.
-        """
-        if held.everywhere:
-            return
-        what = f"the integrals of the motion give the rates only while {held.text}"
-        if not motion.numbers:
-            raise DerivationError(
-                f"{what}, and without values of all parameters it is not known whether the motion stays there",
-                fix="give the parameters values",
-            )
-        left = motion.leaves_at(held)
-        if left is not None:
-            raise DerivationError(
-                f"{what}, and the motion leaves that at t = {left:.4g} s", fix="request it at an instant: `at`"
-            )
-
     def _started(self, scalar: Scalar, method: str, output: Output) -> Answer:
         """Answer with the text of a scalar, and its value at the start in the output's unit."""
-        exact = self._written(scalar)
+        exact = answer_text(scalar, self.phase.system.scope.positive)
         message = None if exact is not None else f"the exact form is longer than {LONGEST_RESULT} characters"
         try:
             return _valued(Answer(exact, None, "", method, message), self._at_start(scalar, output), "at the start")
         except MissingValues as error:
             return Answer(exact, None, "", method, error.what)
-
-    def _written(self, scalar: Scalar) -> str | None:
-        """Text of an exact answer; None where it is too long to read."""
-        if text_size(scalar) > LONGEST_RESULT:
-            return None
-        form = book_form(scalar, Work.FORMULA, self.phase.system.scope.positive)
-        return readable_text(without_cases((form,))[0])
 
     def _at_start(self, quantity: Scalar, output: Output) -> float:
         """Value at the start in the output's unit; parameters on which it does not depend may have no value.
@@ -398,7 +361,7 @@ class _Solver:
         if found is None:
             return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
         exact = phase.simple(found)
-        text = self._written(exact)
+        text = answer_text(exact, self.phase.system.scope.positive)
         try:
             return _valued(Answer(text, None, "", method), self._at_start(exact, output), "at the instant")
         except MissingValues as error:
@@ -456,10 +419,8 @@ class _Solver:
 
 def _jump(phase: Study, output: Output, numbers: Mapping[Node, float]) -> str:
     """Message if accelerations and reactions have no number at the start: a force jumps with the sign of a rate."""
-    if not signs_of_rates(phase.system) or not phase.needs_equations(output.value):
-        return ""
     try:
-        refuse_jump(phase.system, exact_numbers(numbers))
+        phase.refuse_jump((output.value,), numbers)
     except DerivationError as error:
         return f"no number: {error.what}; {error.fix}"
     return ""

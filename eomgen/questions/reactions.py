@@ -30,7 +30,6 @@ from eomgen.documents import (
 )
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.free_bodies import Balance, NamedReaction
 from eomgen.mechanics.statics import ContactsAtStart
 from eomgen.model import (
@@ -46,7 +45,7 @@ from eomgen.model import (
     equation_in,
     with_values,
 )
-from eomgen.proof import Certificate, Check, certify_reactions
+from eomgen.proof import Certificate, certify_reactions
 from eomgen.questions.outputs_answered import Answers, solve
 from eomgen.resources import doing
 from eomgen.results import why_not_at_rest
@@ -166,12 +165,12 @@ def reactions_document(
     document = plain_document(
         model,
         lambda: {"name": model.name, "reactions": found, **more},
-        _listing(system, requested, found, bool(space)),
+        _listing(study, requested, found, bool(space)),
         *_law_statements(laws),
         *_open_statements(space),
         *_sum_statements(found.sums),
         failed=f"not answered: {listed(failed)}" if failed else broken,
-        notes=(*_without_force(system), *(() if at or from_rest else _without_sliding(starting)))
+        notes=(*_without_force(study), *(() if at or from_rest else _without_sliding(starting)))
         or (() if found else ("nothing reacts: no body is held by joints or constraints",)),
     )
     document = with_start_reported(document, starting)
@@ -180,9 +179,9 @@ def reactions_document(
     return proven(document, found.certify() if certify and found else None)
 
 
-def _without_force(system: System) -> tuple[str, ...]:
+def _without_force(study: Study) -> tuple[str, ...]:
     """The contacts that are open at the start, in words."""
-    names = [name for name, mode in system.modes.items() if not mode.closed]
+    names = [name for name, mode in study.system.modes.items() if not mode.closed]
     return (f"open at the start, without a force: {', '.join(names)}",) if names else ()
 
 
@@ -256,10 +255,10 @@ def _proof_of_answers(solved: Answers, found: Mapping[str, Quantity]) -> Certifi
     names = dict(zip(solved, found, strict=True))
     solved.update(zip(solved, found.values(), strict=True))
 
-    def reported(check: Check) -> Check:
-        return replace(check, detail=re.sub(r"\bo\d+\b", lambda m: names.get(m[0], m[0]), check.detail))
+    def under_its_name(detail: str) -> str:
+        return re.sub(r"\bo\d+\b", lambda m: names.get(m[0], m[0]), detail)
 
-    return Certificate(tuple(map(reported, solved.certify().checks)))
+    return Certificate(tuple(replace(c, detail=under_its_name(c.detail)) for c in solved.certify().checks))
 
 
 def _instant(model: Model, at: WrittenEquation | AtRest | str) -> WrittenEquation | AtRest:
@@ -318,13 +317,13 @@ def _checked(model: Model, where: str, **changes: Any) -> Model:
 # -- texts --------------------------------------------------------------------------------------
 
 
-def _listing(system: System, requested: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
+def _listing(study: Study, requested: Iterable[NamedReaction], found: dict[str, Quantity], below: bool) -> Listing:
     """Each reaction by name and in words, then as `solve` prints its answers.
 
     Args:
         below: the self-stresses of indeterminate ones follow below.
     """
-    balance = Balance.of(system)
+    balance = Balance.of(study.system)
     rows = []
     for named in requested:
         answer = found[named.name]

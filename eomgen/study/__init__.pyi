@@ -36,9 +36,6 @@ from eomgen.study.programs import RequestedOutputs as RequestedOutputs
 # Lazy value of a model in one configuration of its contacts
 from eomgen.study.study import Study as Study
 
-# Exact rational values of doubles; nan is left out
-from eomgen.study.study import exact_numbers as exact_numbers
-
 # The model whose motion is studied: each massless node is held by the balance of what pushes it
 from eomgen.study.study import model_to_study as model_to_study
 

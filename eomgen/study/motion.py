@@ -331,6 +331,13 @@ class MotionFromStart:
         """The start as an instant."""
         return StateAtInstant(self.phase, self.start, self.numbers, "at the start")
 
+    def at_rest_on(self) -> str:
+        """Names of the contacts on surfaces that are at rest at the start, with friction."""
+        phase = self.phase
+        values = {**phase.system.scope.known_parameters, **self.numbers}
+        rows = [row for row in phase.system.constraints.rows if row.shares and row.friction is not None]
+        return ", ".join(f"'{row.constraint}'" for row in rows if evaluate((row.sliding,), values, FLOAT)[0] == 0)
+
     # -- on the way ------------------------------------------------------------------------------
 
     def until(self, condition: WrittenEquation, side: str | None = None) -> StateAtInstant:
@@ -530,7 +537,27 @@ class MotionFromStart:
         symbols = self.phase.system.symbols
         return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
 
-    def leaves_at(self, held: Extent) -> float | None:
+    def refuse_leaving(self, held: Extent) -> None:
+        """Refuses integrals of the motion that hold only in pieces which the motion leaves.
+
+        Raises:
+            DerivationError: it leaves them, or that is not known.
+        """
+        if held.everywhere:
+            return
+        what = f"the integrals of the motion give the rates only while {held.text}"
+        if not self.numbers:
+            raise DerivationError(
+                f"{what}, and without values of all parameters it is not known whether the motion stays there",
+                fix="give the parameters values",
+            )
+        left = self._leaves_at(held)
+        if left is not None:
+            raise DerivationError(
+                f"{what}, and the motion leaves that at t = {left:.4g} s", fix="request it at an instant: `at`"
+            )
+
+    def _leaves_at(self, held: Extent) -> float | None:
         """Time at which the motion first leaves the pieces of an extent [s]; None: not within the time followed.
 
         Raises:

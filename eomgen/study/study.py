@@ -466,10 +466,14 @@ class Study:
         """
         return self.numbers((formula,), numbers)[0]
 
-    def numbers(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> list[float]:
-        """Numbers of several formulas at a state; common subexpressions are evaluated once."""
+    def refuse_jump(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> None:
+        """Refuses accelerations and reactions in formulas at a state where they jump with the sign of a rate."""
         if signs_of_rates(self.system) and any(map(self.needs_equations, formulas)):
             refuse_jump(self.system, exact_numbers(numbers))
+
+    def numbers(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> list[float]:
+        """Numbers of several formulas at a state; common subexpressions are evaluated once."""
+        self.refuse_jump(formulas, numbers)
         inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         closed = substituted(tuple(self.eliminated(self.raw(formula)) for formula in formulas), inputs)
         found = numbers_of(closed, numbers)
