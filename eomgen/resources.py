@@ -13,7 +13,6 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import field
@@ -263,6 +262,7 @@ def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
 
 def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:
     """Each piece of work in a thread of its own; if `check`, called now and then, raises, their event is set."""
+    from concurrent.futures import ThreadPoolExecutor, wait
 
     stop = threading.Event()
     with ThreadPoolExecutor(len(work)) as pool:
