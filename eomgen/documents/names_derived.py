@@ -181,7 +181,7 @@ def _applied(force: str, whole: System) -> Applied:
     for each in whole.loads.applied:
         if each.name == force:
             return each
-    raise DerivationError(f"there is no force '{force}'")
+    raise DerivationError(f"there is no force '{force}'", fix="name one of [forces]")
 
 
 def _joint_share(body: str, q: str, study: Study, whole: System) -> Scalar:
@@ -209,7 +209,7 @@ def _of(q: str, study: Study, whole: System) -> System:
     for each in (whole, study.system, study.system.free or study.system):
         if q in [x.name for x in moved_coordinates(each)]:
             return each
-    raise DerivationError(f"'{q}' is no coordinate that is free here")
+    raise DerivationError(f"'{q}' is no coordinate that is free here", fix="name one that moves freely")
 
 
 def _index(whole: System, q: str) -> int:
@@ -264,13 +264,13 @@ def _row(constraint: str, number: int, system: System) -> Row:
     for row in system.constraints.rows:
         if (row.constraint, row.number) == (constraint, number):
             return row
-    raise DerivationError(f"there is no row {number} of a constraint '{constraint}'")
+    raise DerivationError(f"there is no row {number} of a constraint '{constraint}'", fix="name one of [constraints]")
 
 
 def _gap(constraint: str, number: int, study: Study, whole: System) -> Scalar:
     gap = _row(constraint, number, whole).gap
     if gap is None:
-        raise DerivationError(f"'{constraint}' is a condition on velocities: it has no gap")
+        raise DerivationError(f"'{constraint}' is a condition on velocities: it has no gap", fix="name its rate")
     return gap
 
 
@@ -296,7 +296,8 @@ def _of_the_whole(letter: str, axis: str, study: Study, whole: System) -> Scalar
     for each in FirstIntegrals(study.equations).momenta_of_the_whole(()):
         if (each.letter, each.axis) == (letter, axis):
             return each.expression
-    raise DerivationError(f"'{letter}_{axis}' does not stay constant, as the momentum that has this letter does")
+    what = f"'{letter}_{axis}' does not stay constant, as the momentum that has this letter does"
+    raise DerivationError(what, fix="declare an output for another momentum")
 
 
 def _reactions(system: System) -> Iterator[tuple[str, Value]]:

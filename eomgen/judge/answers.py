@@ -53,6 +53,8 @@ def of_output(case: Case, written: HandEquation, at: Instant) -> Verdict | None:
     output = case.model.outputs.get(written.name)
     if at is not None:
         return None
+    if output is not None and _is_its_answer(case, written, output):
+        return Verdict(written.given, kind_of_equation(replace(written, left=output.value), case.model), RIGHT)
     number = written.measured
     if number is not None and (output is not None or (number.unit and len(written.left.code) == 1)):
         return _measured(case, written, number, output)
@@ -61,6 +63,16 @@ def of_output(case: Case, written: HandEquation, at: Instant) -> Verdict | None:
     placed = case if output.from_ != "rest" else replace(case, at_rest=True)
     meant = replace(written, left=output.value)
     return requested(placed, meant, kind_of_equation(meant, case.model), output.at)
+
+
+def _is_its_answer(case: Case, written: HandEquation, output: Output) -> bool:
+    """True if the right side is the exact answer to an output."""
+    if written.right.calls or case.unknown_names(written)[1:]:
+        return False
+    with suppress(EomgenError):
+        exact = case.exact(case.answer(output))
+        return exact is not None and bool(is_zero_everywhere(case.system, exact - case.value(written.right)).holds)
+    return False
 
 
 def _measured(case: Case, written: HandEquation, number: Measured, output: Output | None) -> Verdict | None:

@@ -325,8 +325,9 @@ class Case:
         """A quantity that derivations name; with every coordinate free where that is meant."""
         name, *free = call.args
         assert isinstance(name, Reference)
-        value = self.reading.derived.quantities[name.name].value
-        assert value is not None
+        quantity = self.reading.derived.quantities.get(name.name)
+        if quantity is None or (value := quantity.value) is None:
+            raise ExpressionError(f"'{name.name}' names nothing of the model", max(call.column, 0), length=len(name.name))
         system = self.system.free if free and self.system.free else self.system
         return self.solved(self.own(value(self.phase, system)))
 

@@ -136,6 +136,7 @@ GROUND = "the joint's forces along the ground's axes"
 MATRICES = {"M": "mass", "C": "damping", "K": "stiffness"}
 """letter of a matrix of small motions -> the function of its entries"""
 AT_REST = "an equilibrium"
+NO_REST = "it is the condition of an equilibrium, and none is found"
 VIRTUAL = "delta"
 NAMED = "names of outputs as derivations have them"
 FREE = "energies over all coordinates, as if none followed from others"
@@ -178,7 +179,12 @@ class Judge:
             return self._of_matrix(equation, *matrix)
         written = self.case.reading.read(equation, defined)
         known = kind or kind_of_equation(written, self.case.model)
-        found = self._of_virtual_work(written, known, at) or self._of_axes(written, known, at)
+        try:
+            found = self._of_virtual_work(written, known, at) or self._of_axes(written, known, at)
+        except ExpressionError:  # it has no value of the motion; as the output that it names it may have one
+            if (answered := of_output(self.case, written, at)) is None:
+                raise
+            return answered
         answered = of_output(self.case, written, at) if not found else None
         if answered:
             return answered
@@ -190,6 +196,8 @@ class Judge:
             with suppress(ExpressionError):
                 if so := self._of_axes(written, "equilibrium", None):
                     return replace(so, up_to=" and ".join(filter(None, (AT_REST, so.up_to))))
+            if not self.case.rests:
+                return Verdict(written.given, "equilibrium", UNDECIDED, reason=NO_REST)
         if answered is not None and found.verdict == UNDECIDED:
             return answered
         return self._to_first_order(written, found)

@@ -233,7 +233,7 @@ class Reading:
     @cached_property
     def vocabulary(self) -> Vocabulary:
         """Names, functions, and how names are set in LaTeX."""
-        names = [*self.system.scope.names, *self.letters]
+        names = [*self.system.scope.names, *self.letters, *self.system.scope.model.outputs]
         notation = notation_of(self.system.scope.model)
         own = [name for name in self.system.scope.names if "'" not in name]
         letters = [letter for letter in LETTERS if letter not in self.system.scope.names]
