@@ -327,7 +327,9 @@ class Case:
         assert isinstance(name, Reference)
         quantity = self.reading.derived.quantities.get(name.name)
         if quantity is None or (value := quantity.value) is None:
-            raise ExpressionError(f"'{name.name}' names nothing of the model", max(call.column, 0), length=len(name.name))
+            raise ExpressionError(
+                f"'{name.name}' names nothing of the model", max(call.column, 0), length=len(name.name)
+            )
         system = self.system.free if free and self.system.free else self.system
         return self.solved(self.own(value(self.phase, system)))
 

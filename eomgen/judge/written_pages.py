@@ -307,7 +307,7 @@ def _plain_unit(written: str) -> str:
 _MEASURED = re.compile(
     r"\s*(?P<number>[-+]?\s*(?:\d+(?:\.\d*)?|\.\d+))(?:[eE](?P<power>[-+]?\d+))?"
     r"(?:\s*(?:\\cdot|\\times|\*|·)\s*10\s*\^\s*\{?\s*(?P<ten>-?\d+)\s*\}?)?"
-    r"(?P<unit>(?:\\[,;:! ]|[^=\[\]+()])*?)\s*(?:\[[^\]]*\])?\s*(?:\([^()]*\))?\s*[.,]?\s*"
+    r"(?P<unit>(?:\\[,;:! ]|[^=\[\]+()])*?)\s*(?:\[[^\]]*\]\s*(?:\([^()]*\))?)?\s*[.,]?\s*"
 )
 """a number, a power of ten, a unit, and in brackets how it was found"""
 

@@ -25,7 +25,7 @@ USUAL = ("simple_pendulum", "cart_pole", "disc_leaves_cylinder", "beam_with_over
 SLOW = sorted(str(path.relative_to(MODELS).with_suffix("")) for path in MODELS.rglob("*.toml")) if ALL else USUAL
 VERBS = ("derive", "solve", "reactions", "linearize", "statics")
 UNJUDGED = re.compile(  # what is printed and is no statement on the model's quantities, or is not judged
-    r"it names nothing|general law|numbers alone|is no matrix that is judged|'dM'|'x' is neither|unknown names? "
+    r"it names nothing|det'|general law|numbers alone|is no matrix that is judged|'dM'|'x' is neither|unknown names? "
     r"|no sign between|a value that is assumed|'\\sum'|'\\partial'|'\\begin'|'\['|statically indeterminate|unexpected"
 )
 PENDULUM = MODELS / "simple_pendulum.toml"
