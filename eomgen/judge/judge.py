@@ -179,14 +179,14 @@ class Judge:
             return self._of_matrix(equation, *matrix)
         written = self.case.reading.read(equation, defined)
         known = kind or kind_of_equation(written, self.case.model)
+        answered = of_output(self.case, written, at)
+        if answered:
+            return answered
         try:
             found = self._of_virtual_work(written, known, at) or self._of_axes(written, known, at)
         except ExpressionError:  # it has no value of the motion; as the output that it names it may have one
-            if (answered := of_output(self.case, written, at)) is None:
+            if answered is None:
                 raise
-            return answered
-        answered = of_output(self.case, written, at) if not found else None
-        if answered:
             return answered
         for reported, other in self._other_readings(equation, written, defined) if not found else ():
             with suppress(ExpressionError):
@@ -222,7 +222,7 @@ class Judge:
             ExpressionError: another matrix, or one of another size.
         """
         names = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
-        if letter not in MATRICES:
+        if letter not in MATRICES or not {*names} <= self.case.model.coordinates.keys():
             raise ExpressionError(f"'{letter}' is no matrix that is judged", 0, f"one of {', '.join(MATRICES)}")
         if [len(row) for row in rows] != [len(names)] * len(names):
             raise ExpressionError(f"{letter} has {len(names)} rows and columns: {', '.join(names)}", 0)
