@@ -385,7 +385,8 @@ def by_independent(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[No
     """
     symbols, n = equations.symbols, len(equations.M)
     if n - len(kept) > FEW:
-        raise DerivationError(f"the constraints leave more than {FEW} degrees of freedom")
+        what = f"the constraints leave more than {FEW} degrees of freedom"
+        raise DerivationError(what, fix="declare what follows from them as dependent")
     J = [equations.J[m] for m in kept]
     d = _dependent(equations.system, J)
     i = [k for k in range(n) if k not in d]
