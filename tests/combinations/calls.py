@@ -25,6 +25,10 @@ from refusals import lacking
 import eomgen
 import eomgen.cli_errors
 from eomgen.cli import main
+from eomgen.judge.case import Case
+from eomgen.judge.derivations import judged_derivation
+from eomgen.judge.judge import Judge
+from eomgen.study import model_to_study
 
 SECONDS = 20  # of CPU that one call may take
 SLOW = 8.0  # of CPU from which a call is named
@@ -215,31 +219,31 @@ def _refused(call: str, no: eomgen.EomgenError, text: str, seconds: float) -> Ou
     return Outcome(call, 1, "refusal" if left else "", f"{left}: {first}" if left else "", seconds, first)
 
 
-def judged(text: str, rng: Random, most: int = 2) -> Iterator[Outcome]:
-    """`verify` of lines of equations that derive prints: none may be called wrong."""
+def judged(text: str, rng: Random) -> Iterator[Outcome]:
+    """`verify` of a whole derivation as derive prints it, in text or LaTeX: no line may be called wrong."""
     try:
         with quiet(), limit(SECONDS):
             model = eomgen.loads(text)
-            reported = eomgen.derive(model).render("text")
+            page = eomgen.derive(model).render(rng.choice(("text", "latex")))
     except (TooLong, eomgen.EomgenError):
         return  # told by `derive`
-    reported = re.sub(r"(?<=\S)\n {8,}(?=[+*-] )", " ", reported)  # what stands in several lines is one
-    lines = [x.strip() for x in reported.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
-    lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
-    for line in [lines[-1], *rng.sample(lines[:-1], min(most - 1, len(lines) - 1))] if lines else []:
-        begin = time.process_time()
-        spent = lambda: time.process_time() - begin  # noqa: B023, E731
-        try:
-            with quiet(), limit(SECONDS):
-                verdict = eomgen.verify(model, line)
-            wrong = verdict.verdict == "wrong"
-            yield Outcome("verify", 0, "judged wrong" if wrong else "", line[:200], spent(), verdict.verdict)
-        except TooLong:
-            yield Outcome("verify", -1, "slow", f"{line[:160]}: more than {SECONDS} s of CPU", spent())
-        except eomgen.EomgenError as no:
-            yield Outcome("verify", 1, "", line[:200], spent(), "unread: " + str(no).splitlines()[0][:160])
-        except Exception as error:
-            yield Outcome("verify", 70, "internal error", f"{type(error).__name__}: {str(error)[:160]}: {line[:80]}")
+    begin = time.process_time()
+    spent = lambda: time.process_time() - begin  # noqa: E731
+    try:
+        with quiet(), limit(SECONDS):
+            found = judged_derivation(Judge(Case(model_to_study(model))), page)
+        for line in found.lines:
+            fault = "judged wrong" if line.verdict.verdict == "wrong" else ""
+            reported = "right" if line.defines else line.verdict.verdict
+            yield Outcome("verify", 0, fault, line.equation.text[:200], spent() if fault else 0.0, reported)
+        for equation, why in found.skipped:
+            yield Outcome("verify", 0, "", equation.text[:200], 0.0, f"unread: {why[:160]}")
+    except TooLong:
+        yield Outcome("verify", -1, "slow", f"a derivation: more than {SECONDS} s of CPU", spent())
+    except eomgen.EomgenError as no:
+        yield Outcome("verify", 1, "", str(no).splitlines()[0][:200], spent(), "unread: the page")
+    except Exception as error:
+        yield Outcome("verify", 70, "internal error", f"{type(error).__name__}: {str(error)[:240]}")
 
 
 PYTHON: dict[str, Callable[[Any], Any]] = {
