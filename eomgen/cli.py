@@ -35,6 +35,7 @@ from eomgen.cli_options import (
     VIEW,
     WRITTEN,
     form_requested,
+    proven_in_full,
     refuse_idle,
     refuse_other_endings,
     with_form,
@@ -203,7 +204,8 @@ def _cached_derivation(
             from eomgen.verbs import typed
 
             declared = typed(source.model, options)[0].model
-        before = cached_derivation(source.data, source.name, declared, {**options, "form": form, "strict": strict})
+        printed = {"form": form, "strict": strict, "in full": proven_in_full()}
+        before = cached_derivation(source.data, source.name, declared, {**options, **printed})
         if before is not None and (known := before.found()) is not None:
             found = Delivery(*known)
         else:

@@ -19,7 +19,7 @@ import click
 
 from eomgen import files
 from eomgen.cli_errors import INTERRUPTED, Placed, failure, guarded, problems_of, say
-from eomgen.cli_options import form_requested
+from eomgen.cli_options import form_requested, proven_in_full
 from eomgen.errors import DerivationError, EomgenError, ModelError, OpenConstraints, RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.resources import doing, growing, patience, seldom
@@ -169,7 +169,7 @@ def delivery_of(document: Document, form: str, *, strict: bool = False) -> Deliv
     """
     from eomgen.documents import proven_as, rendered
 
-    document = proven_as(document, form)
+    document = replace(proven_as(document, form), proven_in_full=proven_in_full())
     taken = [f"taken: {each}" for each in document.taken]
     lines = (*taken, *document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong)
     return Delivery(rendered(document, form), tuple(filter(None, lines)), _code(document, strict))
@@ -205,7 +205,7 @@ def deliver_several(
     for path in paths:
         try:
             with reading(path) as declared:
-                document = proven_as(made(declared), form)
+                document = replace(proven_as(made(declared), form), proven_in_full=proven_in_full())
             results.append(rendered(document, form))
             code = max(code, _code(document, strict))
             for problem in document.warnings:

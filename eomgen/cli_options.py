@@ -17,6 +17,7 @@ OTHERS = (".html", ".htm", ".pdf", ".docx", ".doc", ".odt", ".png", ".svg", ".cs
 FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".json": "json"}
 """ending of a file -> the form of what is written into it"""
 
+IN_FULL = "eomgen: every check of the proof"
 PICTURES = (".png", ".svg", ".pdf")
 OF_PLOT = "says what --plot draws: give both"
 OF_TABLE = "says how the heads of a .csv are written: give -o too"
@@ -45,6 +46,10 @@ def folder(context: click.Context, option: click.Parameter, path: str | None) ->
     if path and ending in (*filter(None, FORMATS), *OTHERS, *SOURCES) and not Path(path).exists():
         raise click.UsageError(f"'{path}' is called like a file: -o names the folder for the files")
     return path
+
+
+def _keep(context: click.Context, option: click.Parameter, wanted: bool) -> None:
+    context.meta[IN_FULL] = wanted
 
 
 def words(context: click.Context, option: click.Parameter, text: str | None) -> tuple[str, ...]:
@@ -118,7 +123,25 @@ FORMAT = click.option(
     help="Form of the result.  [default: by the ending of -o, else text]",
 )
 PLOT = click.option("--plot", type=click.Path(dir_okay=False), callback=picture, help="Draw it as .png, .svg or .pdf.")
-CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
+NO_CERTIFICATE = click.option(
+    "--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof."
+)
+CERTIFICATE = click.option(
+    "--certificate", is_flag=True, expose_value=False, callback=_keep, help="Print every check of the proof."
+)
+
+
+def CERTIFY(function: Callable[..., int]) -> Callable[..., int]:
+    """Options of what has a proof."""
+    return NO_CERTIFICATE(CERTIFICATE(function))
+
+
+def proven_in_full() -> bool:
+    """True if every check of the proof is to be printed."""
+    context = click.get_current_context(silent=True)
+    return bool(context is not None and context.meta.get(IN_FULL))
+
+
 DURATION = partial(click.option, "--time", type=time_typed, metavar="TIME")
 TIME = DURATION(default=10.0, show_default=True, help='How long: 5 is in s, or "500 ms".')
 PAGE_TIME = DURATION(

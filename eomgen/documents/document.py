@@ -45,6 +45,7 @@ class Document:
         notation: typesetting of its symbols in LaTeX.
         parameters: the values of those that have one, exact constants.
         answer_code: the exit code that is an answer: 5 where that is no.
+        proven_in_full: its proof is printed check by check, and not in one line.
     """
 
     title: str
@@ -65,6 +66,14 @@ class Document:
     notation: Notation = Notation()
     parameters: Mapping[str, Any] = field(default_factory=dict)
     answer_code: int = 0
+    proven_in_full: bool = False
+
+    @property
+    def proof(self) -> str:
+        """The proof as it is printed; "" where none was made."""
+        if self.certificate is None:
+            return ""
+        return str(self.certificate) if self.proven_in_full else self.certificate.brief
 
     def __getstate__(self) -> dict[str, Any]:
         """State to be pickled: the entries take the place of the function that makes them."""

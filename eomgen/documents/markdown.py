@@ -37,7 +37,7 @@ def render(document: Document) -> str:
     for step in document.steps:
         blocks += [f"## {markdown_escaped(step.title)}"] if step.title else []
         blocks += markdown_blocks(setter, step.statements)
-    blocks += [f"```\n{document.certificate}\n```"] if document.certificate is not None else []
+    blocks += [f"```\n{document.proof}\n```"] if document.proof else []
     return "\n\n".join(blocks) + "\n"
 
 

@@ -49,7 +49,7 @@ def render(document: Document) -> str:
     for number, step in enumerate(document.steps, start=1):
         lines += ["", *_headed(f"{number}. {step.title}", "-")] if step.title else []
         lines += [line for statement in step.statements for line in statement_lines(statement)]
-    lines += ["", str(document.certificate)] if document.certificate is not None else []
+    lines += ["", document.proof] if document.proof else []
     return "".join(f"{line}\n" for line in lines)
 
 

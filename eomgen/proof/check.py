@@ -68,6 +68,10 @@ def first_wrong(found: Iterable[str]) -> str:
     return next(filter(None, found), "")
 
 
+def _line(check: Check) -> str:
+    return f"  {MARKS[check.status]} {check.name} [{check.how}]" + (f": {check.detail}" if check.detail else "")
+
+
 @dataclass(frozen=True)
 class Certificate:
     """The proof that comes with a result."""
@@ -90,12 +94,18 @@ class Certificate:
         return Certificate((*self.checks, *more))
 
     def __str__(self) -> str:
-        lines = [f"certificate: {self._headline}"]
-        for check in self.checks:
-            lines.append(
-                f"  {MARKS[check.status]} {check.name} [{check.how}]" + (f": {check.detail}" if check.detail else "")
-            )
-        return "\n".join(lines)
+        return "\n".join([f"certificate: {self._headline}", *map(_line, self.checks)])
+
+    @property
+    def brief(self) -> str:
+        """One line; where it fails, what fails below it."""
+        failed = [check for check in self.checks if check.status == "fails"]
+        count = sum(check.status != "unchecked" for check in self.checks)
+        if self.ok is None:
+            return f"certificate: unchecked ({len(self.checks)})"
+        if not failed:
+            return f"certificate: holds ({count} check{'s' * (count != 1)})"
+        return "\n".join([f"certificate: FAILS ({len(failed)} of {count})", *map(_line, failed)])
 
     @property
     def _headline(self) -> str:
