@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
@@ -62,7 +62,7 @@ from eomgen.judge.verdict import (
     causes_of,
     kind_of_equation,
 )
-from eomgen.judge.written_pages import matrix_of
+from eomgen.judge.written_pages import equations_in, matrix_of
 from eomgen.model import AtRest, ModelOrPath, equation_in
 from eomgen.proof import JudgedEquation
 from eomgen.resources import doing
@@ -175,6 +175,9 @@ class Judge:
         """
         if kind is not None and kind not in KINDS:
             raise UsageError(f"there is no kind '{kind}' of equations", fix=f"one of {', '.join(KINDS)}")
+        several = equations_in(equation) if isinstance(equation, str) else []
+        if len(several) > 1:
+            return self._of_several(equation, several, at=at, kind=kind, defined=defined)
         if (matrix := matrix_of(equation) if isinstance(equation, str) else None) is not None:
             return self._of_matrix(equation, *matrix)
         written = self.case.reading.read(equation, defined)
@@ -201,6 +204,13 @@ class Judge:
         if answered is not None and found.verdict == UNDECIDED:
             return answered
         return self._to_first_order(written, found)
+
+    def _of_several(self, given: str, several: Sequence[str], **meant: Any) -> Verdict:
+        """The verdict on a chain or on rows: that of the first that is not right, of the last where all are."""
+        for each in several:
+            if not (verdict := self.verdict(each, **meant)):
+                return verdict
+        return replace(verdict, given=given)
 
     def _to_first_order(self, written: HandEquation, found: Verdict) -> Verdict:
         """A verdict on a wrong equation of motion that is right beside a place: right where that is enough."""

@@ -68,11 +68,11 @@ def equations_of(page: str) -> list[PageEquation]:
 
 
 def equations_in(given: str) -> list[str]:
-    """The single equations of what is given as one: a chain, rows, matrices; itself where it is one."""
-    if "=" not in given:
+    """The single equations of what is given as one: of a chain, of rows; itself where it is one, or none."""
+    if len(_signs(given)) < 2 and not ENVIRONMENT.search(given):
         return [given]
     found = [each.text for each in _of_display(given, 1)]
-    return found or [given]
+    return found if len(found) > 1 else [given]
 
 
 # -- LaTeX and Markdown ----------------------------------------------------------------------------------------

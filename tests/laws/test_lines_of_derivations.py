@@ -28,6 +28,7 @@ USUAL = (
     ("gyrostat", "derive"),
     ("disc_leaves_cylinder", "solve"),
     ("beam_with_overhang", "statics"),
+    ("two_mass_oscillator", "statics"),
     ("seeds/ch16_p5", "derive"),
     ("seeds/ch22_p1", "solve"),
 )
@@ -168,6 +169,10 @@ RIGHT_LINES = [
     "theta_dd = -8.255 1/s²",
     "K = [[m*g*l]]",
     "m*l^2*theta''*deltatheta + m*g*l*sin(theta)*deltatheta = 0",
+    "K[theta, theta] = m*l*g",
+    "T = 1/2*m*v_bob^2 = 1/2*m*l^2*theta'^2",
+    "\\begin{aligned} T &= \\tfrac12 m l^2\\dot\\theta^2 \\\\ V &= -m g l\\cos\\theta \\end{aligned}",
+    "x_bob = l*sin(theta) where theta <= 1; l*sin(theta) otherwise",
 ]
 WRONG_LINES = [
     "x_{bob} = l\\cos\\theta",
@@ -179,6 +184,10 @@ WRONG_LINES = [
     "U = m*g*l*cos(theta)",
     "Q_\\theta = m g l \\sin\\theta",
     "m*l^2*theta''*deltatheta - m*g*l*sin(theta)*deltatheta = 0",
+    "K[theta, theta] = 2*m*l*g",
+    "T = 1/2*m*v_bob^2 = m*l^2*theta'^2",
+    "\\begin{aligned} T &= \\tfrac12 m l^2\\dot\\theta^2 \\\\ V &= m g l\\cos\\theta \\end{aligned}",
+    "x_bob = l*sin(theta) where theta <= 1; l*cos(theta) otherwise",
 ]
 
 
