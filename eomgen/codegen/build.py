@@ -114,7 +114,6 @@ C = Compiler(
 _EXTENSIONS = {"avx512f": "-mavx512f", "avx512dq": "-mavx512dq", "avx2": "-mavx2", "fma": "-mfma"}
 
 
-@cache
 def functions_in_c(text: str, *names: str) -> tuple[Any, ...]:
     """The functions of a C text by their names, compiled for this machine.
 
@@ -125,6 +124,7 @@ def functions_in_c(text: str, *names: str) -> tuple[Any, ...]:
     return tuple(function_of(made, name) for name in names)
 
 
+@cache
 def of_this_machine() -> Compiler:
     """The C compiler, with flags for the registers of this machine; every operation is rounded as without them."""
     flags = [flag for name, flag in _EXTENSIONS.items() if name in _processor()]
