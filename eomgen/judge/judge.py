@@ -139,6 +139,7 @@ AT_REST = "an equilibrium"
 NO_REST = "it is the condition of an equilibrium, and none is found"
 VIRTUAL = "delta"
 NAMED = "names of outputs as derivations have them"
+OTHERWISE = "friction as its size, v and a as those of what moves"
 FREE = "energies over all coordinates, as if none followed from others"
 SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong that hold whatever the system does
 
@@ -176,7 +177,7 @@ class Judge:
         if kind is not None and kind not in KINDS:
             raise UsageError(f"there is no kind '{kind}' of equations", fix=f"one of {', '.join(KINDS)}")
         several = equations_in(equation) if isinstance(equation, str) else []
-        if len(several) > 1:
+        if several and several != [equation]:
             return self._of_several(equation, several, at=at, kind=kind, defined=defined)
         if (matrix := matrix_of(equation) if isinstance(equation, str) else None) is not None:
             return self._of_matrix(equation, *matrix)
@@ -278,6 +279,8 @@ class Judge:
             yield "", with_unit
         if (derived := self.case.reading.as_derived(given, defined)) is not None:
             yield NAMED, derived
+        if (otherwise := self.case.reading.otherwise(given, defined)) is not None:
+            yield OTHERWISE, otherwise
 
     def _of_axes(self, written: HandEquation, known: str, at: Any) -> Verdict:
         """Verdict on an equation whose reactions are along known axes."""
@@ -314,6 +317,8 @@ class Judge:
             written = along_ground_axes(written)
         if NAMED in verdict.up_to:
             written = self.case.reading.as_derived(verdict.given, defined) or written
+        if OTHERWISE in verdict.up_to:
+            written = self.case.reading.otherwise(verdict.given, defined) or written
         if equations.system.free is not None and (verdict.verdict == WRONG or FREE in verdict.up_to):
             written = of_free_coordinates(written)
         names = [name for name in self.case.unknown_names(written) if name not in verdict.substitution]
@@ -337,6 +342,8 @@ class Judge:
         if not unknown:
             case.check(written)
         if says_nothing(case, written):
+            if written.name == "L":
+                return Verdict(written.given, kind, RIGHT, "what L is")
             return self._not(written, kind, Decided(False, why=IDENTITY))
         if at is None and kind == "equilibrium" and not unknown:
             found = self._at_rest(written)

@@ -21,7 +21,17 @@ from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.judge.written_pages import Measured, in_one_formula, measured
 from eomgen.mechanics.dynamics import System
 from eomgen.model import FUNCTIONS
-from eomgen.symbolic.expression import SLOPE, Call, Expression, Instruction, Reference, Scalar, parse, parse_equation
+from eomgen.symbolic.expression import (
+    SLOPE,
+    Call,
+    Expression,
+    Instruction,
+    Reference,
+    Scalar,
+    is_zero,
+    parse,
+    parse_equation,
+)
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
@@ -29,8 +39,9 @@ FREQUENCY = re.compile("(omega|f|T|tau)(?:_?([0-9n]))?")
 """the letter of a frequency of small motions, in radians or cycles, or of its period, and its number"""
 ALONE = {"K": "kinetic_energy", "W": "potential_energy"}
 """letters that stand for energies where they are the left side"""
-ONLY = {"N_": ("N",), "T_": ("S", "F_S", "F_T"), "F_": ("F_f", "F_R", "R")}
-"""begin of the letter of a reaction -> letters of the only one there is"""
+ONLY = {"reaction_n": ("N",), "tension": ("S", "F_S", "F_T", "S_1", "S1"), "reaction_t": ("F_f", "F_R", "R")}
+"""function of a reaction -> letters of the only one there is"""
+FRICTION = frozenset(ONLY["reaction_t"])
 MULTIPLIER = "lam"  # of a constraint row: lam(constraint, 1)
 DERIVED = "derived"  # what a derivation names and no output is: derived(Q_theta_motor)
 
@@ -252,7 +263,7 @@ class Reading:
         doubly |= {letter: formula for letter, formula in self._energies.items() if letter in outputs}
         if not doubly or not isinstance(given, str):
             return None
-        sides = self._sides(self._plain(given))
+        sides, _ = self._written_sides(given)
         if not any(name in doubly for side in sides for name in side.names):
             return None
         return self._read_sides(given, *sides, {**(defined or {}), **doubly})
@@ -274,14 +285,12 @@ class Reading:
         found = {**self._energies, **found}
         for letter, call in self._reactions():
             found.setdefault(letter, _called(call.name, *call.args))
-        for kinds, letters in ONLY.items():
-            only = [x for x in found if x.startswith(kinds) and x.split("_", 1)[1] in model.constraints]
-            for letter in letters if len(only) == 1 else ():
-                found.setdefault(letter, found[only[0]])
-        strands = [x for x in found if x.startswith("T_") and x.split("_", 1)[1] in model.constraints]
-        for k, name in enumerate(strands, start=1):
-            found.setdefault(f"S_{k}", found[name])
-            found.setdefault(f"S{k}", found[name])
+        for kind, letters in ONLY.items():
+            of_kind = [_called(x.name, *x.args) for each, x in self._requested if each.function == kind]
+            for letter in letters if len(of_kind) == 1 else ():
+                found.setdefault(letter, of_kind[0])
+            for k, formula in enumerate(of_kind if kind == "tension" and len(of_kind) > 1 else (), start=1):
+                found = {f"S_{k}": formula, f"S{k}": formula} | found
         points = model.named_points if model.space == "plane" and model.bodies else ()
         found |= {f"{letter}_{x}": _called("inertia_point", Reference(x)) for x in points for letter in "JI"} | found
         return {letter: formula for letter, formula in found.items() if letter not in own}
@@ -342,17 +351,38 @@ class Reading:
         """
         if not isinstance(given, str):
             given = text_of_sympy(given)
+        sides, number = self._written_sides(given)
+        return replace(self._read_sides(given, *sides, defined), measured=number)
+
+    def _written_sides(self, given: str) -> tuple[tuple[Expression, Expression], Measured | None]:
+        """(both sides as they are written, the right one where it is a number), a number with its unit in SI."""
         plain = self._plain(given)
         head, sign, tail = plain.rpartition("=")
         number = measured(tail) if sign and "=" not in head else None
         if number is not None and not (number.unit and self._may_be_product(number.unit)):
             plain = f"{head}= {number.exact if number.unit else number.text}"
-        found = self._read_sides(given, *self._sides(plain), defined)
-        return replace(found, measured=number)
+        return self._sides(plain), number
 
     def _may_be_product(self, unit: str) -> bool:
         """True if what stands behind a number may be a product of names of the model: 2 m."""
         return all(word in self.system.scope.names for word in re.findall(r"[^\W\d_]+", unit))
+
+    def otherwise(self, given: Any, defined: Mapping[str, Expression] | None = None) -> HandEquation | None:
+        """The same, letters as they are often meant: friction the other way, a and v of the only coordinate or body."""
+        if not isinstance(given, str):
+            return None
+        sides, _ = self._written_sides(given)
+        names = {name for side in sides for name in side.names} - self.system.scope.names.keys()
+        model, meant = self.system.scope.model, dict[str, Expression]()
+        for letter in names & FRICTION & self.letters.keys():
+            meant[letter] = Expression.number(0) - self.letters[letter]
+        free = [q for q, x in model.coordinates.items() if not x.driven and not x.dependent]
+        if len(free) == 1:
+            meant |= {x: parse(free[0] + dots) for x, dots in (("a", "''"), ("v", "'")) if x in names - {*self.letters}}
+        heavy = [body for body in model.bodies if not is_zero(self.system.scope.mass_properties(body).m)]
+        if "v" in names - {*self.letters} and len(free) > 1 and len(heavy) == 1:
+            meant["v"] = _called("speed", Reference(f"{heavy[0]}.center"))
+        return self._read_sides(given, *sides, {**(defined or {}), **meant}) if meant else None
 
     def with_unit(self, given: Any, defined: Mapping[str, Expression] | None = None) -> HandEquation | None:
         """The same, what stands behind the number on the right taken for its unit; None where that is so already."""

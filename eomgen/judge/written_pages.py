@@ -69,10 +69,9 @@ def equations_of(page: str) -> list[PageEquation]:
 
 def equations_in(given: str) -> list[str]:
     """The single equations of what is given as one: of a chain, of rows; itself where it is one, or none."""
-    if len(_signs(given)) < 2 and not ENVIRONMENT.search(given):
+    if len(_signs(given)) < 2 and not ENVIRONMENT.search(given) and not MATRIX.search(given):
         return [given]
-    found = [each.text for each in _of_display(given, 1)]
-    return found if len(found) > 1 else [given]
+    return [each.text for each in _of_display(given, 1)] or [given]
 
 
 # -- LaTeX and Markdown ----------------------------------------------------------------------------------------

@@ -204,6 +204,32 @@ def test_students_letters_make_nothing_right(line):
     assert judge_of(PENDULUM).verdict(line).verdict != "right"
 
 
+OF_OTHERS = [
+    ("atwood", "a = \\frac{2(m_1-m_2)}{2m_1+2m_2+M} g", "right"),
+    ("atwood", "S_1 = m_1*(g - a)", "right"),
+    ("atwood", "S_2 = m_2*(g + a)", "right"),
+    ("atwood", "S_2 = m_2*(g - a)", "not right"),
+    ("double_pendulum", "L = T - U", "right"),
+    ("double_pendulum", "L = T + U", "wrong"),
+    ("two_mass_oscillator", "K = \\begin{pmatrix} k_1+k_2 & -k_2 \\\\ -k_2 & k_2+k_3 \\end{pmatrix}", "right"),
+    ("two_mass_oscillator", "K = [[k_1, -k_2], [-k_2, k_2+k_3]]", "wrong"),
+    ("cart_pole", "N = (M+m)*g - m*l/2*(sin(theta)*theta'' + cos(theta)*theta'^2)", "right"),
+    ("rough_incline", "F_f = mu*m*g*cos(alpha)", "right"),
+    ("rough_incline", "R = -mu*N", "right"),
+    ("rough_incline", "F_f = 2*mu*m*g*cos(alpha)", "wrong"),
+    ("elastic_pendulum", "v^2 = r'^2 + r^2*theta'^2", "right"),
+    ("elastic_pendulum", "v^2 = r'^2 + theta'^2", "not right"),
+    ("elastic_pendulum", "F_s = k*(r - l0)", "undecided"),
+]
+
+
+@each("model, line, verdict", OF_OTHERS)
+def test_letters_are_read_as_they_are_meant(model, line, verdict):
+    """a, v, S_2, N, F_f, L, matrices in LaTeX; a letter that nobody can know stays unknown, and no mistake is right."""
+    found = eomgen.verify(MODELS / f"{model}.toml", line)
+    assert found.verdict == verdict or (verdict == "not right" and not found)
+
+
 @each(
     "equation, verdict, up_to",
     [
