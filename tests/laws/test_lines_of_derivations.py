@@ -133,6 +133,7 @@ def test_another_mistake_is_not_carried_on():
     assert [x.carried_on for x in found.lines if x.verdict.verdict == "wrong"] == [False, True, False]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("ending", [".tex", ".md", ".ipynb", ".txt"])
 def test_files_of_derivations_have_lines_in_json(tmp_path, ending):
     """.tex, .md, .ipynb are derivations, others with --derivation; JSON says line, first_wrong, carried_on, skipped."""
@@ -192,12 +193,14 @@ WRONG_LINES = [
 ]
 
 
+@pytest.mark.slow
 @each("line", RIGHT_LINES)
 def test_students_letters_are_read(line):
     """Quantities as books and derivations write them."""
     assert judge_of(PENDULUM).verdict(line)
 
 
+@pytest.mark.slow
 @each("line", WRONG_LINES)
 def test_students_letters_make_nothing_right(line):
     """The same with a mistake."""
@@ -223,6 +226,7 @@ OF_OTHERS = [
 ]
 
 
+@pytest.mark.slow
 @each("model, line, verdict", OF_OTHERS)
 def test_letters_are_read_as_they_are_meant(model, line, verdict):
     """a, v, S_2, N, F_f, L, matrices in LaTeX; a letter that nobody can know stays unknown, and no mistake is right."""
@@ -230,6 +234,7 @@ def test_letters_are_read_as_they_are_meant(model, line, verdict):
     assert found.verdict == verdict or (verdict == "not right" and not found)
 
 
+@pytest.mark.slow
 @each(
     "equation, verdict, up_to",
     [
