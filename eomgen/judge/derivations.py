@@ -27,8 +27,7 @@ from eomgen.symbolic.expression import Call, Expression, Scalar, ScalarRow, depe
 
 GENERAL = re.compile(r"\\sum\b|\bsum\b|_\{?(?:[ijk]|ik|ij)\}?(?![\w])")
 """a sum, or an index that stands for each of several"""
-
-
+A_LAW = "a general law: its index stands for each of several"
 POTENTIAL = "potential_energy()"
 
 
@@ -90,12 +89,13 @@ def judged_derivation(judge: Judge, page: str) -> Derivation:
 
 def _line(judge: Judge, equation: PageEquation, defined: dict[str, Expression]) -> DerivationLine | str:
     """The verdict on a line; why it is not judged. What it defines is added to what is defined."""
-    if GENERAL.search(equation.text):
-        return "a general law: its index stands for each of several"
+    is_general = GENERAL.search(equation.text) is not None
     try:
         if matrix_of(equation.text) is not None:
             return DerivationLine(equation, judge.verdict(equation.text))
         written = judge.case.reading.read(equation.text, defined)
+        if is_general and judge.case.unknown_names(written):  # r_i may be a name of the model
+            return A_LAW
         if not written.names and not written.calls:
             return "numbers alone: it says nothing"
         if not _names_something(judge, written):
@@ -110,7 +110,7 @@ def _line(judge: Judge, equation: PageEquation, defined: dict[str, Expression]) 
             )
         verdict = judge.verdict(equation.text, defined=defined)
     except ExpressionError as error:
-        return f"it cannot be read: {error.what}"
+        return A_LAW if is_general else f"it cannot be read: {error.what}"
     return verdict.reason if verdict.unknown and equation.inline else DerivationLine(equation, verdict)
 
 

@@ -125,6 +125,13 @@ def test_a_derivation_is_judged_line_by_line():
     assert [why for _, why in found.skipped] == ["a general law: its index stands for each of several"]
 
 
+def test_an_index_that_the_model_has_is_no_general_law():
+    """r_i is a length of the file, Q_k stands for each generalized force."""
+    text = PENDULUM.read_text(encoding="utf-8").replace('"l"', '"r_i"').replace("\nl = {", "\nr_i = {")
+    found = judged_derivation(judge_of(text), "$ x_{bob} = r_i \\sin\\theta $ and $ Q_k = 0 $")
+    assert [line.verdict.verdict for line in found.lines] == ["right"] and len(found.skipped) == 1
+
+
 def test_another_mistake_is_not_carried_on():
     """Beside the wrong V the equation of motion has a mistake of its own."""
     found = judged_derivation(
