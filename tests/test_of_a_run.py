@@ -189,7 +189,7 @@ def test_outputs_of_a_run_stand_in_text_and_json_and_solve_leaves_them(tmp_path)
     reported = json.loads(found.output)["quantities"]
     assert reported["peak"]["value"] == pytest.approx(math.degrees(2)) and reported["peak"]["unit"] == "deg"
     assert reported["w"]["t"] == pytest.approx([0.75 * reported["T"]["value"]], rel=1e-7)
-    text = CliRunner().invoke(main, ["simulate", str(path), "--time", "6"]).output
+    text = CliRunner().invoke(main, ["simulate", str(path), "--time", "6", "--certificate"]).output
     assert "peak [deg]" in text and "outputs of the whole run agree with its samples" in text
     solved = CliRunner().invoke(main, ["solve", str(path), "--json"])
     answers = json.loads(solved.output)["outputs"]
