@@ -202,7 +202,8 @@ class Judge:
                     return replace(so, up_to=" and ".join(filter(None, (AT_REST, so.up_to))))
             if not self.case.rests:
                 return Verdict(written.given, "equilibrium", UNDECIDED, reason=NO_REST)
-        if answered is not None and found.verdict == UNDECIDED:
+        is_number = written.measured is not None and bool(written.measured.unit)
+        if answered is not None and (is_number or found.verdict == UNDECIDED):
             return answered
         return self._to_first_order(written, found)
 
