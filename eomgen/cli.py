@@ -21,7 +21,6 @@ from eomgen.cli_common import (
 )
 from eomgen.cli_options import (
     AT,
-    CERTIFY,
     DURATION,
     FOLLOW,
     FORMAT,
@@ -40,6 +39,7 @@ from eomgen.cli_options import (
     refuse_other_endings,
     with_form,
     with_picture,
+    with_proof,
     with_values,
 )
 from eomgen.cli_runs import RUNS
@@ -171,7 +171,7 @@ def check_command(
     envvar="EOMGEN_FRESH",
     help="Derive anew what was proven before, and cache nothing.",
 )
-@CERTIFY
+@with_proof
 def derive_command(*, fresh: bool, **options: Any) -> int:
     """Derive the equations of motion and certify them.
 
@@ -219,7 +219,7 @@ def _cached_derivation(
 @main.command("solve")
 @with_form
 @FOLLOW
-@CERTIFY
+@with_proof
 def solve_command(**options: Any) -> int:
     """Answer every entry of [outputs], exactly and in numbers."""
     from eomgen.verbs import solve_document
@@ -379,7 +379,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     "--about", metavar="PLACE", help='Of --to-first-order: beside "theta=0".  [default: 0, or an equilibrium]'
 )
 @click.option("--hint", type=click.IntRange(1, 3), help="Show 1 the place, 2 the quantity, 3 the cause of an error.")
-@CERTIFY
+@with_proof
 def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
     """Judge equations that somebody derived: right, or why not.
 

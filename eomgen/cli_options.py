@@ -131,7 +131,7 @@ CERTIFICATE = click.option(
 )
 
 
-def CERTIFY(function: Callable[..., int]) -> Callable[..., int]:
+def with_proof(function: Callable[..., int]) -> Callable[..., int]:
     """Options of what has a proof."""
     return NO_CERTIFICATE(CERTIFICATE(function))
 
@@ -198,7 +198,7 @@ def with_form(function: Callable[..., int]) -> Callable[..., int]:
 
 def with_picture(function: Callable[..., int]) -> Callable[..., int]:
     """Options of what has a picture and a proof, too."""
-    return with_form(PLOT(CERTIFY(function)))
+    return with_form(PLOT(with_proof(function)))
 
 
 def form_requested(wants_json: bool, format_: str | None, output: str | None = None) -> str:

@@ -18,7 +18,6 @@ from eomgen.cli_common import (
 from eomgen.cli_options import (
     ATOL,
     BAUMGARTE,
-    CERTIFY,
     FOLLOW,
     FORCES,
     FORMAT,
@@ -44,6 +43,7 @@ from eomgen.cli_options import (
     refuse_idle,
     refuse_other_endings,
     with_form,
+    with_proof,
     with_values,
     words,
 )
@@ -98,7 +98,7 @@ VERB = partial(click.command, cls=Verb)
 @click.option(
     "--target", metavar="NAME", help="Language that evaluates the equations, of codegen --list.  [default: the fastest]"
 )
-@CERTIFY
+@with_proof
 def simulate_command(
     model: str,
     wants_json: bool,
@@ -175,7 +175,7 @@ def simulate_command(
 @PLOT
 @VIEW(type=click.Choice(["lines", "heat", "scatter"]), help="What --plot draws.  [default: what fits]")
 @UNITS(help='In table.csv "k [N/m]", as the file declares it, for names and SI.')
-@CERTIFY
+@with_proof
 def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool, **options: Any) -> int:
     """Make many runs over parameters, resumably.
 
@@ -216,7 +216,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
 
 @VERB("identify")
 @with_form
-@CERTIFY
+@with_proof
 @click.option(
     "--data",
     type=click.Path(exists=True, dir_okay=False),
@@ -289,7 +289,7 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
     is_flag=True,
     help="Single precision; the tolerances of its tests are measured.",
 )
-@CERTIFY
+@with_proof
 @BAUMGARTE(
     help="Baumgarte's stabilization of the constraints, with these rates [1/s].",
 )
@@ -360,7 +360,7 @@ def codegen_command(
 @TRAIL(default="", help="A point that leaves a trail from the start.")
 @FORCES(help="Show arrows of forces from the start.")
 @SPEED
-@CERTIFY
+@with_proof
 def play_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
     """Write an interactive page of a model.
 
@@ -386,7 +386,7 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
 @with_values
 @click.option("--with", "with_", metavar="LIST", callback=words, help='Further sections: "linearize,statics".')
 @click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')
-@CERTIFY
+@with_proof
 def report_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
     """Write a page, paper or notebook of a model.
 

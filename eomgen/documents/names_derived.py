@@ -34,7 +34,7 @@ from eomgen.mechanics.integrals import FirstIntegrals
 from eomgen.mechanics.kinematics import Applied, SystemInertia
 from eomgen.model import Couple, PointForce
 from eomgen.study import Study
-from eomgen.symbolic.expression import Node, Scalar, derivative, gradient, inner, is_zero
+from eomgen.symbolic.expression import Node, Scalar, derivative, gradient, inner, is_zero, sqrt
 from eomgen.symbolic.print import Setter, Symbol
 
 Value = Callable[[Study, System], Scalar]
@@ -285,6 +285,7 @@ def _of_integrals(system: System) -> Iterator[tuple[Side, str, Value | None]]:
     for letter in "PL":
         for axis in axes(system):
             yield Name(f"{letter}_{axis}"), "", partial(_of_the_whole, letter, axis)
+    yield Name("L"), "", lambda study, whole: sqrt(_of_the_whole("L", "", study, whole))
 
 
 def _jacobi(study: Study, whole: System) -> Scalar:
@@ -296,7 +297,8 @@ def _of_the_whole(letter: str, axis: str, study: Study, whole: System) -> Scalar
     for each in FirstIntegrals(study.equations).momenta_of_the_whole(()):
         if (each.letter, each.axis) == (letter, axis):
             return each.expression
-    what = f"'{letter}_{axis}' does not stay constant, as the momentum that has this letter does"
+    name = f"{letter}_{axis}".rstrip("_")
+    what = f"'{name}' does not stay constant, as the momentum that has this letter does"
     raise DerivationError(what, fix="declare an output for another momentum")
 
 

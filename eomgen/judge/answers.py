@@ -25,7 +25,7 @@ from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.truth import other_models
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of, kind_of_equation
-from eomgen.judge.written_pages import Measured
+from eomgen.judge.written_pages import WrittenNumber
 from eomgen.model import Output, Unit, with_values
 from eomgen.questions import Answer
 from eomgen.symbolic.expression import Expression, Node, Scalar, is_zero, parse
@@ -75,7 +75,7 @@ def _is_its_answer(case: Case, written: HandEquation, output: Output) -> bool:
     return False
 
 
-def _measured(case: Case, written: HandEquation, number: Measured, output: Output | None) -> Verdict | None:
+def _measured(case: Case, written: HandEquation, number: WrittenNumber, output: Output | None) -> Verdict | None:
     """The verdict on a number: it is that of the output, or at the start; None: it is no output, and another number."""
     requests = output or Output(value=written.left)
     kind = kind_of_equation(replace(written, left=requests.value), case.model)

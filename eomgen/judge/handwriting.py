@@ -54,7 +54,6 @@ _WHOLE = re.compile(r"\s*(?:\\(?:left|[bB]igg?l?)\s*)?[(\[{]|\s*\\left\s*\\lbrac
 _UNIT = re.compile(r"\s*([A-Za-zµ]+)(?![\w(])")
 _INDEX_GROUP = re.compile(r"\{([^{}]*)\}")
 _OF_TIME = re.compile(r"\s*\{?\s*(?:\\left)?\s*\(\s*t\s*(?:\\right)?\s*\)\s*\}?")
-_LETTER = re.compile(r"\\(?:mathrm|mathit|text|alpha|beta|gamma|eta|theta|phi|varphi|psi|xi|chi|omega|rho|sigma|tau)\b")
 _REFERENCES = re.compile(r"\(\s*[\w.]+(?:\s*[,-]\s*[\w.]+)*\s*\)")
 _ORNAMENT = re.compile(
     r"\$\$?|\\\[|\\\]|\\\(|\\\)|\\(?:begin|end)\s*\{(?:equation|align|aligned|gather|split)\*?\}|(?<!\\)&|\\\\\s*$"
@@ -559,8 +558,8 @@ class _Reader:
         if command == "delta" and self.known.known("delta") is None:  # a virtual displacement
             self.at = found.end()
             self.skip_space()
-            behind = self.text[self.at : self.at + 1]
-            if behind.isalpha() or (behind == "\\" and _LETTER.match(self.text, self.at)):
+            behind = re.match(r"\\([A-Za-z]+)|[^\W\d_]", self.text[self.at :])
+            if behind is not None and (not behind[1] or behind[1] in _WRAPS or spelled_command(behind[1])):
                 letters, dots = self.letters()
                 return f"delta{letters}", dots
             return "delta", 0

@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError, ExpressionError
 from eomgen.frozen import dataclass
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
-from eomgen.judge.written_pages import Measured, in_one_formula, measured
+from eomgen.judge.written_pages import WrittenNumber, in_one_formula, measured
 from eomgen.mechanics.dynamics import System
 from eomgen.model import FUNCTIONS
 from eomgen.symbolic.expression import (
@@ -63,7 +63,7 @@ class HandEquation:
     right: Expression
     letters: Mapping[str, str] = field(default_factory=dict)
     name: str = ""
-    measured: Measured | None = None
+    measured: WrittenNumber | None = None
 
     @property
     def difference(self) -> Expression:
@@ -259,7 +259,8 @@ class Reading:
     def as_derived(self, given: Any, defined: Mapping[str, Expression] | None = None) -> HandEquation | None:
         """The same equation, names of outputs taken for what derivations name so: omega_disc; None where none is."""
         outputs = self.system.scope.model.outputs
-        doubly = {name: formula for name, formula in self.derived.meanings.items() if name in outputs}
+        taken = outputs.keys() | self._energies.keys()  # L, the Lagrangian, is an angular momentum too
+        doubly = {name: formula for name, formula in self.derived.meanings.items() if name in taken}
         doubly |= {letter: formula for letter, formula in self._energies.items() if letter in outputs}
         if not doubly or not isinstance(given, str):
             return None
@@ -354,7 +355,7 @@ class Reading:
         sides, number = self._written_sides(given)
         return replace(self._read_sides(given, *sides, defined), measured=number)
 
-    def _written_sides(self, given: str) -> tuple[tuple[Expression, Expression], Measured | None]:
+    def _written_sides(self, given: str) -> tuple[tuple[Expression, Expression], WrittenNumber | None]:
         """(both sides as they are written, the right one where it is a number), a number with its unit in SI."""
         plain = self._plain(given)
         head, sign, tail = plain.rpartition("=")

@@ -36,8 +36,9 @@ GOES_ON = "+-*/=)"
 CASE = re.compile(r"\s(?:else )?where .+(?:<=|>=|<|>).+$|\sotherwise$")
 INSIDE = re.compile(r"\([^()]*\)")
 WORDS = re.compile(r"(?<![\w.'\\])[^\W\d_]{2,}[.,;]?\s+[^\W\d_]{2,}(?![\w'(])")
-CONTINUED = re.compile(r"(?:\s|\\q?quad\b|\\[,;:!]|~)*(?:[-+=]|\\(?:cdot|times|pm)\b)")
-SPACE = re.compile(r"^(?:\s|\\q?quad\b|\\[,;:!]|~)+")
+BLANK = r"(?:\s|\\q?quad\b|\\[,;:!]|~)"
+CONTINUED = re.compile(rf"{BLANK}*(?:[-+=]|\\(?:cdot|times|pm)\b)")
+SPACE = re.compile(rf"^{BLANK}+")
 RULE = re.compile(r"[-=~^#*\s]*$")
 OMITTED = re.compile(r"\(\d+ operations, not printed\)")
 OPENED, CLOSED = "({[", ")}]"
@@ -248,7 +249,7 @@ def _is_prose(text: str) -> bool:
 
 
 @dataclass(frozen=True)
-class Measured:
+class WrittenNumber:
     """A number as it is written.
 
     Args:
@@ -271,7 +272,7 @@ class Measured:
         return float(parse(self.exact).evaluate({"pi": math.pi}))
 
 
-def measured(side: str) -> Measured | None:
+def measured(side: str) -> WrittenNumber | None:
     """A side that is a number with a unit or without, -4.46 m/s, 5.85\\ \\text{N$\\cdot$m}; None of any other.
 
     What a page says of its way, in brackets behind it, is left out.
@@ -292,7 +293,7 @@ def measured(side: str) -> Measured | None:
         pi = {0: "", 1: "*pi", -1: "/pi"}.get(unit.pi_power, f"*pi^({unit.pi_power})")
     half = float(step * unit.factor) * math.pi**unit.pi_power / 2
     text = found["number"] if not (found["ten"] or found["power"]) else f"({exact})"
-    return Measured(text, f"({exact * unit.factor}){pi}", half, written, unit.dimension if written else None)
+    return WrittenNumber(text, f"({exact * unit.factor}){pi}", half, written, unit.dimension if written else None)
 
 
 def _plain_unit(written: str) -> str:

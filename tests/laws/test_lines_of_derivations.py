@@ -125,6 +125,12 @@ def test_a_derivation_is_judged_line_by_line():
     assert [why for _, why in found.skipped] == ["a general law: its index stands for each of several"]
 
 
+def test_a_wrong_number_of_an_output_is_answered_by_its_value():
+    """theta_dd is -8.2548 1/s^2 at the start; no difference of formulas is shown."""
+    found = eomgen.verify(PENDULUM, "theta_dd = -9 1/s^2")
+    assert found.verdict == "wrong" and found.causes[0].text.startswith("it is theta_dd = -8.254830361 1/s")
+
+
 def test_an_index_that_the_model_has_is_no_general_law():
     """r_i is a length of the file, Q_k stands for each generalized force."""
     text = PENDULUM.read_text(encoding="utf-8").replace('"l"', '"r_i"').replace("\nl = {", "\nr_i = {")
@@ -230,13 +236,15 @@ OF_OTHERS = [
     ("elastic_pendulum", "v^2 = r'^2 + r^2*theta'^2", "right"),
     ("elastic_pendulum", "v^2 = r'^2 + theta'^2", "not right"),
     ("elastic_pendulum", "F_s = k*(r - l0)", "undecided"),
+    ("tumbling_body", "L^2 = I_1^2*w1^2 + I_2^2*w2^2 + I_3^2*w3^2", "right"),
+    ("tumbling_body", "L^2 = I_1^2*w1^2 + I_2^2*w2^2 - I_3^2*w3^2", "wrong"),
 ]
 
 
 @pytest.mark.slow
 @each("model, line, verdict", OF_OTHERS)
 def test_letters_are_read_as_they_are_meant(model, line, verdict):
-    """a, v, S_2, N, F_f, L, matrices in LaTeX; a letter that nobody can know stays unknown, and no mistake is right."""
+    """a, v, S_2, N, F_f, both meanings of L, matrices; an unknown letter stays unknown, and no mistake is right."""
     found = eomgen.verify(MODELS / f"{model}.toml", line)
     assert found.verdict == verdict or (verdict == "not right" and not found)
 
