@@ -244,7 +244,7 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "verbs": 14,
     "codegen": 35,
     "simulation": 30,
-    "documents": 128,
+    "documents": 131,
     "results": 12,
     "study": 16,
     "proof": 60,
@@ -369,7 +369,7 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 336
+    assert len(house.chapters) <= 338
     assert max(m.lines for m in house.modules.values()) <= 700
     assert len(house.private) <= 50
     assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 601

@@ -65,6 +65,15 @@ from eomgen.documents.drawing import name_along as name_along
 # One more name of a model that is drawn: it is placed where it covers no other one
 from eomgen.documents.drawing import name_beside as name_beside
 
+# A name of a picture in its box
+from eomgen.documents.drawing_on_a_page import FlatName as FlatName
+
+# A line, a face or a dot on the page of a picture
+from eomgen.documents.drawing_on_a_page import FlatShape as FlatShape
+
+# A scene at the first frame of its drawing, on its page
+from eomgen.documents.drawing_on_a_page import flat_drawing as flat_drawing
+
 # M a + c = Q + J^T lam, row by row
 from eomgen.documents.equation_steps import sides_of as sides_of
 

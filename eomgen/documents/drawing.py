@@ -207,31 +207,58 @@ def draw(
     return shown
 
 
-def artist_of(panel: Any, stroke: Stroke, frame: int, colors: Mapping[str, str], layer: float) -> Any:
-    """One stroke, in its layer."""
+@dataclass(frozen=True)
+class StrokeLook:
+    """Look of a stroke.
+
+    Args:
+        fill: the colour inside, None where it is a line.
+        edge: the colour of the line.
+        width: of the line; of a dot its diameter [points].
+    """
+
+    fill: str | None
+    edge: str
+    width: float
+
+
+def look_of(stroke: Stroke, colors: Mapping[str, str]) -> StrokeLook:
+    """The look of a stroke of the plane.
+
+    Args:
+        colors: of bodies that have one of their own.
+    """
     color, width = LINES[stroke.role]
     own = colors.get(stroke.of) if stroke.role in ("body", "inertia", "hole") else None
     color = own or color
-    x, y = stroke.path[frame].T
     if stroke.dot:
-        size = 3.5 if stroke.role == "center" else 7
-        return panel.plot(x, y, marker="o", markersize=size, color=color, zorder=layer, linestyle="none")[0]
+        return StrokeLook(color, color, 3.5 if stroke.role == "center" else 7)
     if stroke.filled:
         solid = stroke.role not in FILLS and not stroke.hole
         fill = color if solid else PAPER if stroke.hole else _tinted(own) if own else FILLS[stroke.role]
-        return panel.fill(x, y, facecolor=fill, edgecolor=color, linewidth=0.4 if solid else width, zorder=layer)[0]
-    thin = FINE if stroke.fine else OPEN if stroke.role == "body" else width
-    return panel.plot(x, y, color=color, linewidth=thin, zorder=layer, solid_capstyle="round", solid_joinstyle="round")[
-        0
-    ]
+        return StrokeLook(fill, color, 0.4 if solid else width)
+    return StrokeLook(None, color, FINE if stroke.fine else OPEN if stroke.role == "body" else width)
 
 
-def _tinted(color: str) -> tuple[float, float, float]:
+def artist_of(panel: Any, stroke: Stroke, frame: int, colors: Mapping[str, str], layer: float) -> Any:
+    """One stroke, in its layer."""
+    look = look_of(stroke, colors)
+    x, y = stroke.path[frame].T
+    if stroke.dot:
+        dot = {"marker": "o", "markersize": look.width, "linestyle": "none"}
+        return panel.plot(x, y, color=look.edge, zorder=layer, **dot)[0]
+    if look.fill is not None:
+        return panel.fill(x, y, facecolor=look.fill, edgecolor=look.edge, linewidth=look.width, zorder=layer)[0]
+    ends = {"solid_capstyle": "round", "solid_joinstyle": "round"}
+    return panel.plot(x, y, color=look.edge, linewidth=look.width, zorder=layer, **ends)[0]
+
+
+def _tinted(color: str) -> str:
     """A colour, three quarters of it paper."""
-    from matplotlib.colors import to_rgb
+    from matplotlib.colors import to_hex, to_rgb
 
     r, g, b = (0.72 + 0.28 * x for x in to_rgb(color))
-    return r, g, b
+    return to_hex((r, g, b))
 
 
 def limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:

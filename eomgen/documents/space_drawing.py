@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
+from dataclasses import field
 from functools import cache, cached_property
 from typing import Any
 
@@ -193,30 +194,28 @@ def page_limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
     return middle - 0.5 * size, middle + 0.5 * size
 
 
-class SpacePicture:
-    """A scene in space on matplotlib axes; `show` sets it to another of its frames."""
+@dataclass(frozen=True)
+class SpaceView:
+    """A scene in space as it is seen: faces, lines and names on the page.
 
-    def __init__(self, panel: Any, drawing: Drawing, colors: Mapping[str, str] | None = None) -> None:
-        from matplotlib.collections import PolyCollection
+    Args:
+        colors: of bodies that have one of their own.
+    """
 
-        self.drawing, self.colors, self.view = drawing, colors or {}, sight(drawing.sizes.up)
-        panel.set_aspect("equal")
-        panel.axis("off")
-        self.pieces: Any = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
-        panel.add_collection(self.pieces, autolim=False)
-        low, high = page_limits(drawing)
-        panel.set_xlim(low[0], high[0])
-        panel.set_ylim(low[1], high[1])
+    drawing: Drawing
+    colors: Mapping[str, str] = field(default_factory=dict)
 
-    def show(self, frame: int) -> None:
-        """Everything at one frame, sorted by its distance."""
+    @cached_property
+    def view(self) -> np.ndarray:
+        """The rotation from the ground to the page."""
+        return sight(self.drawing.sizes.up)
+
+    def seen(self, frame: int) -> tuple[Any, np.ndarray]:
+        """(corners on the page, inks) of all that is seen at a frame, the farthest first."""
         parts = [layer.at(frame, self.view) for layer in self.layers]
         order = np.argsort(np.concatenate([[], *(part.depth for part in parts)]), kind="stable")
         inks = np.concatenate([np.zeros((0, 9)), *(part.inks for part in parts)])[order]
-        self.pieces.set_verts(_sorted_corners([part.corners for part in parts], order), closed=True)
-        self.pieces.set_facecolor(inks[:, :4])
-        self.pieces.set_edgecolor(inks[:, 4:8])
-        self.pieces.set_linewidth(inks[:, 8])
+        return _sorted_corners([part.corners for part in parts], order), inks
 
     def _color(self, stroke: Stroke) -> str:
         own = self.colors.get(stroke.of) if stroke.role in ("body", "inertia") else None
@@ -277,6 +276,43 @@ class SpacePicture:
         """Lines that names should not cover."""
         paths = [s.path[frame].reshape(-1, 3) @ self.view.T[:, :2] for s in self.drawing.strokes if not s.faces]
         return paths
+
+
+class SpacePicture:
+    """A scene in space on matplotlib axes; `show` sets it to another of its frames."""
+
+    def __init__(self, panel: Any, drawing: Drawing, colors: Mapping[str, str] | None = None) -> None:
+        from matplotlib.collections import PolyCollection
+
+        self.drawing, self.seen = drawing, SpaceView(drawing, colors or {})
+        panel.set_aspect("equal")
+        panel.axis("off")
+        self.pieces: Any = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
+        panel.add_collection(self.pieces, autolim=False)
+        low, high = page_limits(drawing)
+        panel.set_xlim(low[0], high[0])
+        panel.set_ylim(low[1], high[1])
+
+    def show(self, frame: int) -> None:
+        """Everything at one frame, sorted by its distance."""
+        corners, inks = self.seen.seen(frame)
+        self.pieces.set_verts(corners, closed=True)
+        self.pieces.set_facecolor(inks[:, :4])
+        self.pieces.set_edgecolor(inks[:, 4:8])
+        self.pieces.set_linewidth(inks[:, 8])
+
+    @property
+    def view(self) -> np.ndarray:
+        """The rotation from the ground to the page."""
+        return self.seen.view
+
+    def names(self, frame: int, notation: Notation) -> list[PlacedName]:
+        """The names next to their places on the page."""
+        return self.seen.names(frame, notation)
+
+    def lines(self, frame: int) -> list[np.ndarray]:
+        """Lines that names should not cover."""
+        return self.seen.lines(frame)
 
 
 def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
