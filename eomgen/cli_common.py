@@ -46,6 +46,13 @@ class Verb(click.Command):
             return super().invoke(ctx)
 
 
+class Lasting(Verb):
+    """A verb that works until somebody ends it: what it does one after the other has a time limit, not the whole."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        return click.Command.invoke(self, ctx)
+
+
 def _patience_option() -> click.Option:
     return click.Option(
         ["--patience"],

@@ -9,6 +9,7 @@ from typing import Any
 import click
 
 from eomgen.cli_common import (
+    Lasting,
     Verb,
     deliver,
     reading,
@@ -403,6 +404,23 @@ def report_command(model: str, wants_json: bool, output: str, strict: bool, **op
     return deliver(document, form_requested(wants_json, None), strict=strict)
 
 
+@click.command("live", cls=Lasting)
+@click.argument("model", type=click.Path(exists=True, dir_okay=False))
+@click.option("--port", type=click.IntRange(0, 65535), default=0, help="The port of 127.0.0.1.  [default: a free one]")
+@click.option("--no-browser", is_flag=True, help="Open no browser.")
+@click.option("--edit", is_flag=True, help="A pane to edit the file in the page.")
+def live_command(model: str, port: int, no_browser: bool, edit: bool, patience: float | None) -> int:
+    """Show a model in a page that follows its file.
+
+    On each save: figure, problems, degrees of freedom, equations, answers, motion, reactions, each as soon as it is
+    there. The address is printed; Ctrl-C ends it. --patience is the time for one part.
+    """
+    from eomgen.living import serve
+
+    serve(model, port=port, edits=edit, opens=not no_browser, seconds=patience, say=click.echo)
+    return 0
+
+
 @VERB("schema")
 @JSON
 @OUTPUT
@@ -432,6 +450,7 @@ RUNS = (
     codegen_command,
     play_command,
     report_command,
+    live_command,
     schema_command,
     doctor_command,
 )

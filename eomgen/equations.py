@@ -368,9 +368,14 @@ class Equations(Result):
         """The derivation, step by step."""
         return self._derivation(full=False)
 
-    def _derivation(self, *, full: bool) -> Document:
+    def derivation_of_motion(self) -> Document:
+        """The derivation without the reactions, whose formulas take the longest."""
+        return self._derivation(full=False, reactions=False)
+
+    def _derivation(self, *, full: bool, reactions: bool = True) -> Document:
         in_time = None if self.in_print is self.graph else self.graph
-        return self._with_assumptions(derivation_of(self.in_print, self.method, full=full, in_time=in_time))
+        found = derivation_of(self.in_print, self.method, full=full, in_time=in_time, reactions=reactions)
+        return self._with_assumptions(found)
 
     def _with_assumptions(self, derivation: Document) -> Document:
         """The derivation with a first step that lists the assumptions."""

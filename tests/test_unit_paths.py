@@ -97,8 +97,8 @@ BESIDE = {
     "verify": ["T = m*l^2*theta'^2/6"],
 }
 """what else a verb needs, or one of its options"""
-STILL = ("new", "schema", "doctor", "examples", "import")
-"""verbs that compute nothing of a model; import makes one"""
+STILL = ("new", "schema", "doctor", "examples", "import", "live")
+"""verbs that compute nothing of a model that one types values for; import makes one"""
 
 
 def paths() -> list[tuple[str, str]]:

@@ -44,7 +44,12 @@ SHORT = 900  # characters of the derivatives of T that are printed where rates o
 
 
 def derivation_of(
-    equations: EquationsOfMotion, method: str, *, full: bool = False, in_time: EquationsOfMotion | None = None
+    equations: EquationsOfMotion,
+    method: str,
+    *,
+    full: bool = False,
+    in_time: EquationsOfMotion | None = None,
+    reactions: bool = True,
 ) -> Document:
     """The derivation of the equations of motion of a system.
 
@@ -56,6 +61,7 @@ def derivation_of(
         equations: those that a user gets; printed with named sub-expressions where the method's own are long.
         full: everything is printed, however long, the long and the repeated parts with names of their own.
         in_time: the same with all that is driven as functions of time; None: they are so.
+        reactions: those of joints and constraints follow at the end.
     """
     system = equations.system
     model = system.scope.model
@@ -63,7 +69,7 @@ def derivation_of(
     letters = letters_of(system)
     steps, result = _by_method(equations, reader, method, letters)
     known = method == "kinetostatic" or bool(equations.friction)  # the table of the reactions stands further up
-    last = reactions_step(equations, reader, letters, table=not known)
+    last = reactions_step(equations, reader, letters, table=not known) if reactions else ()
     if method == "kinetostatic" and not isinstance(letters, str):
         last = (*last, *along_the_motion(equations, reader, letters))
     last = (*integral_steps(equations, reader, in_time), *last)

@@ -12,6 +12,15 @@ from eomgen.page.animation import refuse_ending as refuse_ending
 # A model and the results for it
 from eomgen.page.contents import Report as Report
 
+# The steps of a document as a part of a page
+from eomgen.page.html import document_html as document_html
+
+# Parts of a page one after the other; texts are escaped
+from eomgen.page.markup import in_a_row as in_a_row
+
+# The style sheet of a report, with the letters of its formulas
+from eomgen.page.markup import page_style as page_style
+
 # The path of ffmpeg: the system's, else that of the package imageio-ffmpeg
 from eomgen.page.moving_picture import ffmpeg as ffmpeg
 
@@ -29,3 +38,6 @@ from eomgen.page.report import form_of as form_of
 
 # Writes the report; the document names its files
 from eomgen.page.report import report_document as report_document
+
+# The picture of a model at its start, as one element <svg>
+from eomgen.page.svg_picture import model_svg as model_svg

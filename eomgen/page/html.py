@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Sequence
 from html import unescape
-from importlib import resources
 from itertools import chain, zip_longest
 
 from eomgen.documents import (
     Cell,
     Code,
+    Document,
     Formula,
     Grid,
     Group,
@@ -24,11 +24,24 @@ from eomgen.documents import (
     piece_latex,
     setter_of,
     side_latex,
+    with_listings_typeset,
 )
 from eomgen.errors import ToolMissing
 from eomgen.files import json_text
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
-from eomgen.page.markup import Html, element, font_face, html, in_a_row, in_a_script, mathml, packed, script, style
+from eomgen.page.markup import (
+    Html,
+    element,
+    html,
+    in_a_row,
+    in_a_script,
+    mathml,
+    own_text,
+    packed,
+    page_style,
+    script,
+    style,
+)
 from eomgen.page.packing import table_bytes, with_far_copies
 from eomgen.proof import SIGNS, Certificate
 from eomgen.symbolic.print import Setter
@@ -65,7 +78,7 @@ def html_page(report: Report) -> str:
         element("meta", name="color-scheme", content="light dark"),
         element("meta", name="generator", content=f"eomgen {__version__}"),
         element("title", title),
-        style(font_face() + own_text("style.css")),
+        style(page_style()),
     )
     return f"<!doctype html>\n{element('html', element('head', *head), element('body', *body), lang='en')}\n"
 
@@ -93,11 +106,6 @@ def _set_apart(shown: Html) -> tuple[Html, dict[str, list[str]]]:
 
     shown = Html(_COPIED.sub(uncopied, _DRAWN.sub(empty, shown)))
     return shown, {"formulas": formulas, "pictures": pictures, "copied": copied}
-
-
-def own_text(name: str) -> str:
-    """A style sheet or a program of this room."""
-    return resources.files("eomgen.page").joinpath(name).read_text(encoding="utf-8")
 
 
 def _head(report: Report) -> list[Html]:
@@ -145,6 +153,13 @@ def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:
     """A step of a derivation, its title above it."""
     heading = [element("h3", step.title)] if step.title and titled else []
     return [*heading, *(_group(setter, group) for group in grouped(step.statements))]
+
+
+def document_html(document: Document, wanted: Callable[[Step], bool] = lambda step: True) -> Html:
+    """The steps of a document, those that are wanted, as a part of a page."""
+    document = with_listings_typeset(document)
+    setter = setter_of(document)
+    return in_a_row(*(part for step in document.steps if wanted(step) for part in step_html(setter, step)))
 
 
 def _group(setter: Setter, group: Group) -> Html:

@@ -66,6 +66,11 @@ def script(text: str) -> Html:
     return Html(f"<script>\n{text}</script>")
 
 
+def own_text(name: str) -> str:
+    """A style sheet or a program of this room."""
+    return resources.files("eomgen.page").joinpath(name).read_text(encoding="utf-8")
+
+
 def packed(content: bytes) -> str:
     """Bytes as a page carries them: gzip, then base64."""
     press = zlib.compressobj(9, wbits=16 + zlib.MAX_WBITS, memLevel=7)  # no date; short blocks, each with its own code
@@ -209,3 +214,8 @@ def font_face() -> str:
     font = resources.files("eomgen.page").joinpath("fonts/stix_two_math.woff2").read_bytes()
     source = f"url(data:font/woff2;base64,{b64encode(font).decode()}) format('woff2')"
     return f"@font-face{{font-family:'eomgen math';src:{source};}}\n"
+
+
+def page_style() -> str:
+    """The style sheet of a report, with the letters of its formulas."""
+    return font_face() + own_text("style.css")

@@ -93,8 +93,9 @@ def _name(name: FlatName) -> Html:
     pieces = []
     for (new, upright), run in groupby(signs_of(name.text), key=lambda sign: (sign.level, sign.upright)):
         look: dict[str, Any] = {"font_style": None if upright else "italic"}
-        look |= {"font_size": f"{SMALL * size:.1f}"} if new else {}
-        look |= {"dy": f"{DROP * size * (level - new):.1f}"} if new != level else {}
+        here = SMALL if new else 1.0
+        look |= {"font_size": f"{SMALL:g}em"} if new else {}
+        look |= {"dy": f"{DROP * (level - new) / here:.2f}em"} if new != level else {}
         pieces.append(element("tspan", "".join(sign.text for sign in run), **look))
         level = new
     middle, base = 0.5 * (box.left + box.right), box.bottom + BASE * (box.top - box.bottom)
