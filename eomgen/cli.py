@@ -359,6 +359,11 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     type=click.Path(exists=True, allow_dash=True),
     help="Equations in a file, one a line; a derivation in .tex, .md, .ipynb; all files of a folder.",
 )
+@click.option(
+    "--free-bodies",
+    type=click.Path(exists=True, dir_okay=False),
+    help="Forces on bodies cut free, a JSON list of {body, at, direction, kind, name}.",
+)
 @click.option("--derivation", is_flag=True, help="Each --file is a derivation, whatever its ending.")
 @AT(help='The instant at which they hold: "theta=pi/2"; or "equilibrium".')
 @FROM_REST(

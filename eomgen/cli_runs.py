@@ -392,7 +392,8 @@ def report_command(model: str, wants_json: bool, output: str, strict: bool, **op
     """Write a page, paper or notebook of a model.
 
     Its figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the model. Sections:
-    figure data derivation reactions statics kinematics inertia outputs linearize plots motion certificate downloads.
+    figure data derivation reactions free_bodies statics kinematics inertia outputs linearize plots motion certificate
+    downloads.
     """
     from eomgen.page import form_of, report_document
 

@@ -254,6 +254,9 @@ from eomgen.documents.reaction_values import PrintedReactions as PrintedReaction
 # A symbol for every reaction, none of them a name of the model
 from eomgen.documents.reaction_values import lettered as lettered
 
+# The symbol that a joint or a constraint gives a reaction of its own; None of sums, and where it gives none
+from eomgen.documents.reaction_values import own_symbol as own_symbol
+
 # Name of a reaction: B_x, R_stick_x, N_wall, T_rope_2, M_E
 from eomgen.documents.reaction_values import reaction_name as reaction_name
 
@@ -283,8 +286,14 @@ from eomgen.documents.result import rendered as rendered
 # A scene in space on matplotlib axes; `show` sets it to another of its frames
 from eomgen.documents.space_drawing import SpacePicture as SpacePicture
 
+# A scene at its first frame, on matplotlib axes with equal scales and no frame
+from eomgen.documents.space_drawing import draw_scene as draw_scene
+
 # A scene at the start of its model, with its dimensions
 from eomgen.documents.space_drawing import drawing_at_rest as drawing_at_rest
+
+# Height over width of the page of a drawing
+from eomgen.documents.space_drawing import page_shape as page_shape
 
 # A scene at the start of its model
 from eomgen.documents.space_drawing import picture_of_scene as picture_of_scene

@@ -291,10 +291,12 @@ def letter_names(letters: Sequence[Letter], colors: Mapping[str, str], notation:
 def written(letter: Letter, notation: Notation) -> str:
     """A name as matplotlib sets it: of bodies and forces as it is, of points and lengths as mathematics.
 
-    A body that declares its symbol is called by that.
+    A body that declares its symbol is called by that, a force that has one too.
     """
     if letter.role == "label" and letter.of in notation.indices:
         return f"${notation.indices[letter.of]}$"
+    if letter.role in ("force", "reaction") and letter.text in notation.symbols:
+        return f"${mathtext(letter.text, notation)}$"
     if letter.role in ("label", "force", "reaction"):
         return letter.text.replace("$", r"\$")
     return f"${mathtext(letter.text, notation)}$"

@@ -102,6 +102,13 @@ class Picture:
         width, height = self.size
         return f"<picture{f' of {self.title!r}' if self.title else ''}, {width:.3g} x {height:.3g} inches>"
 
+    @property
+    def svg(self) -> str:
+        """The picture as the text of an SVG file."""
+        page = io.BytesIO()
+        self._drawn(lambda figure: figure.savefig(page, format="svg", metadata={"Date": None}))
+        return page.getvalue().decode()
+
     def _repr_png_(self) -> bytes:
         page = io.BytesIO()
         self._drawn(lambda figure: figure.savefig(page, format="png", dpi=100))

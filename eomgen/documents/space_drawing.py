@@ -343,6 +343,17 @@ def draw_space(panel: Any, drawing: Drawing, notation: Notation) -> SpacePicture
     return picture
 
 
+def draw_scene(panel: Any, drawing: Drawing, notation: Notation) -> None:
+    """A scene at its first frame, on matplotlib axes with equal scales and no frame."""
+    (draw if len(drawing.sizes.low) == 2 else draw_space)(panel, drawing, notation)
+
+
+def page_shape(drawing: Drawing) -> float:
+    """Height over width of the page of a drawing."""
+    low, high = limits(drawing) if len(drawing.sizes.low) == 2 else page_limits(drawing)
+    return float(high[1] - low[1]) / float(high[0] - low[0])
+
+
 # -------- at rest --------------------------------------------------------------------------------------------
 # Model -> a picture of it where it starts, with its coordinates and lengths.
 
@@ -368,12 +379,11 @@ def drawing_at_rest(scene: Scene) -> Drawing:
 def picture_of_scene(scene: Scene) -> Picture:
     """A scene at the start of its model."""
     drawing = drawing_at_rest(scene)
-    low, high = limits(drawing) if scene.plane else page_limits(drawing)
-    ratio = float(high[0] - low[0]) / float(high[1] - low[1])
+    ratio = 1 / page_shape(drawing)
     width = min(max(HEIGHT_AT_REST * ratio, WIDTHS_AT_REST[0]), WIDTHS_AT_REST[1])
     height = min(HEIGHT_AT_REST, width / ratio + TITLE_AT_REST)
 
     def fill(figure: Any) -> None:
-        (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
+        draw_scene(figure.subplots(), drawing, notation_of(scene.system.scope.model))
 
     return Picture((width, height), fill, scene.name)

@@ -266,6 +266,16 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         """Picture of the model at its start: shows itself in a notebook, `save("model.svg")` writes it."""
         return import_module("eomgen").rest_picture(self)  # as above
 
+    def free_bodies(self, at: Any = None) -> Any:
+        """Each body cut free with its forces, reactions and inertia: `.bodies[name].forces`, and `.picture`.
+
+        Args:
+            at: the instant: an equation that is first met then, or "equilibrium"; None: the start.
+        Raises:
+            DerivationError: something acts at no place; a body is unsupported; there is no such instant.
+        """
+        return import_module("eomgen").free_bodies(self, at)  # as above
+
     def _repr_png_(self) -> bytes | None:
         """Picture of the model at its start, for notebooks; None where it cannot be drawn."""
         try:

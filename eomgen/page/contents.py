@@ -23,6 +23,7 @@ SECTIONS = {
     "data": "Data",
     "derivation": "Derivation",
     "reactions": "Reactions",
+    "free_bodies": "Free bodies",
     "statics": "At rest",
     "kinematics": "Velocities and accelerations",
     "inertia": "Masses and inertia",

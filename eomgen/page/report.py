@@ -45,7 +45,7 @@ from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
 from eomgen.questions import solve
 from eomgen.resources import doing
-from eomgen.results import Statics, inertia, kinematics, linearize, statics
+from eomgen.results import Statics, free_bodies, inertia, kinematics, linearize, statics
 from eomgen.runs import PAGE_TIME, run_of_a_page
 from eomgen.scene import VirtualDisplacement, picture_reported, scene_of
 from eomgen.simulation import Trajectory
@@ -155,6 +155,7 @@ def _derived(subject: Subject) -> Document:
 
 FOUND: dict[str, Callable[[Model], Result]] = {
     "statics": statics,
+    "free_bodies": free_bodies,
     "kinematics": kinematics,
     "inertia": inertia,
     "linearize": linearize,
@@ -377,6 +378,14 @@ def _reactions(subject: Subject) -> ReportSection | None:
     return ReportSection("reactions", steps) if steps else None
 
 
+def _free_bodies(subject: Subject) -> ReportSection | None:
+    """Each body cut free, as a picture and as a table of its forces."""
+    steps = subject.document("free_bodies").steps
+    picture = replace(subject.found["free_bodies"].picture, title="")
+    caption = "Each body cut free; an arrow points where its letter is positive."
+    return ReportSection("free_bodies", steps, (figure_of(picture, "free_bodies", caption),))
+
+
 def _outputs(subject: Subject) -> ReportSection | None:
     document = subject.document("outputs")
     return ReportSection("outputs", document.steps) if subject.model.outputs else None
@@ -461,6 +470,7 @@ MADE: dict[str, Callable[[Subject], ReportSection | None]] = {
     "data": _setting,
     **{key: _steps(key) for key in ("derivation", "statics", "kinematics", "inertia", "linearize")},
     "reactions": _reactions,
+    "free_bodies": _free_bodies,
     "outputs": _outputs,
     "plots": _plots,
     "motion": _motion,

@@ -110,6 +110,12 @@ from eomgen.proof.posed_model import branches_otherwise as branches_otherwise
 # Formulas as they are printed
 from eomgen.proof.printed import Printed as Printed
 
+# A force, or a couple, as it leaves, ground axes
+from eomgen.proof.reported_cuts import ReportedForce as ReportedForce
+
+# Checks of the forces on all bodies at a state
+from eomgen.proof.reported_cuts import cuts_reported as cuts_reported
+
 # An arrow
 from eomgen.proof.reported_pictures import ReportedArrow as ReportedArrow
 

@@ -15,11 +15,17 @@ from eomgen.scene.frames_of_phases import phase_frames as phase_frames
 # Places of bodies, ends of springs and arrows that the strokes of a drawing show at a frame
 from eomgen.scene.frames_of_phases import picture_reported as picture_reported
 
+# A force on a body as it is drawn
+from eomgen.scene.making import CutArrow as CutArrow
+
 # Every named point of the ground and of bodies by its whole name, ground axes [m]
 from eomgen.scene.making import named_points as named_points
 
 # Scene of a model
 from eomgen.scene.making import scene_of as scene_of
+
+# The scene of one body by itself, with its forces
+from eomgen.scene.making import scene_of_cut_body as scene_of_cut_body
 
 # Bodies in space and about their mass centres x I x = c, of half-axes sqrt(c/I_k): of a ball the ball
 from eomgen.scene.making import scene_of_inertia as scene_of_inertia

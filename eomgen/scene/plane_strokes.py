@@ -10,7 +10,17 @@ import numpy as np
 from eomgen.model import ArcForm, LineForm, PolygonForm
 from eomgen.scene import forms
 from eomgen.scene.scene import Mark, plain_number
-from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSizes, SceneNumbers, Stroke, drawn_with
+from eomgen.scene.strokes import (
+    SYMBOL,
+    DrawerTable,
+    Drawing,
+    Drawn,
+    Letter,
+    PictureSizes,
+    SceneNumbers,
+    Stroke,
+    drawn_with,
+)
 from eomgen.scene.symbols import PLANE, TEETH
 
 HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0
@@ -18,9 +28,9 @@ ROUND = 73  # points of a circle
 LEAST = 0.03  # of an angle that is drawn [rad]
 
 
-def plane_drawing(numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing:
+def plane_drawing(numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL) -> Drawing:
     """The strokes of a scene in the plane."""
-    return drawn_with(TABLE, numbers, dimensions=dimensions)
+    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol)
 
 
 def _stroke(path: np.ndarray, mark: Mark, **look: bool) -> Stroke:

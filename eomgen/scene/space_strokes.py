@@ -19,7 +19,17 @@ from eomgen.model import (
 )
 from eomgen.scene import forms
 from eomgen.scene.scene import Mark, plain_number
-from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSizes, SceneNumbers, Stroke, drawn_with
+from eomgen.scene.strokes import (
+    SYMBOL,
+    DrawerTable,
+    Drawing,
+    Drawn,
+    Letter,
+    PictureSizes,
+    SceneNumbers,
+    Stroke,
+    drawn_with,
+)
 from eomgen.scene.symbols import SPACE, TEETH
 
 ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest
@@ -32,9 +42,9 @@ CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-
 SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
-def space_drawing(numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing:
+def space_drawing(numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL) -> Drawing:
     """The strokes of a scene in space."""
-    return drawn_with(TABLE, numbers, dimensions=dimensions)
+    return drawn_with(TABLE, numbers, dimensions=dimensions, symbol=symbol)
 
 
 def _faces(corners: np.ndarray, mark: Mark, role: str = "", *, solid: bool = False) -> Stroke:

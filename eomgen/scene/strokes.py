@@ -18,6 +18,7 @@ from eomgen.frozen import dataclass
 from eomgen.model import Form
 from eomgen.scene.scene import Mark, Scene, is_moving, plain_number
 from eomgen.symbolic.expression import Vector
+from eomgen.symbolic.numeric import tolerances
 
 SYMBOL = 0.028  # symbol unit, of the extent
 ARROW = 0.2  # the longest arrow, of the extent
@@ -187,12 +188,15 @@ class Drawing:
     sizes: PictureSizes
 
 
-def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing:
+def drawn_with(
+    table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = False, symbol: float = SYMBOL
+) -> Drawing:
     """The marks of a scene as strokes and letters.
 
     Args:
         table: the function that draws each form, in the plane or in space.
         dimensions: dimension lines and angles are drawn.
+        symbol: size of symbols, of the extent.
     """
     marks = numbers.scene.marks
     flat = PictureSizes(0.0, np.zeros(numbers.dimension), np.ones(numbers.dimension))
@@ -204,7 +208,7 @@ def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = 
         for stroke in table[type(m.form)](m.form, m, numbers, flat)[0]
     ]
     low, high, extent = _box(numbers, [stroke for strokes in solid for stroke in strokes], guides)
-    sizes = PictureSizes(SYMBOL * extent, low, high, _scales(numbers, extent), dimensions, _up(numbers))
+    sizes = PictureSizes(symbol * extent, low, high, _scales(numbers, extent), dimensions, _up(numbers))
     strokes: list[Stroke] = []
     letters: list[Letter] = []
     for mark in marks:
@@ -263,7 +267,10 @@ def _box(
 def _side(clouds: list[np.ndarray], d: int) -> float:
     """The larger side of the box around some points; 0 of none."""
     found = corners_of(clouds, d)
-    return 0.0 if found is None else float(np.max(found[1] - found[0]))
+    if found is None:
+        return 0.0
+    side = float(np.max(found[1] - found[0]))
+    return side if side > tolerances.SUMMED * float(np.max(np.abs(found))) else 0.0  # one place, but for rounding
 
 
 def corners_of(clouds: Iterable[np.ndarray], d: int) -> tuple[np.ndarray, np.ndarray] | None:

@@ -11,8 +11,9 @@ from typing import Any
 from eomgen import files
 from eomgen.documents import Document, Lines, plain_document, proven, with_constraints_closed
 from eomgen.errors import UsageError
-from eomgen.judge import Answered, judged
+from eomgen.judge import Answered, judged, judged_forces
 from eomgen.model import AtRest, Model, WrittenEquation
+from eomgen.results import free_bodies as free_bodies_of
 
 LARGEST = 1_000_000  # bytes of a file of answers
 PAGES = (".tex", ".md", ".ipynb")  # endings of derivations
@@ -30,6 +31,7 @@ def verify_document(
     derivation: bool = False,
     to_first_order: bool = False,
     about: str | None = None,
+    free_bodies: str | None = None,
     certify: bool = True,
 ) -> Document:
     """The verdicts, each with the relations used or the reason why it is wrong.
@@ -40,6 +42,7 @@ def verify_document(
         to_first_order, about: as of `verify`.
         derivation: each file is a derivation, whatever its ending.
         at, from_rest, kind: as of `verify`.
+        free_bodies: the file of a list of forces on bodies that are cut free, `{body, at, direction, kind, name}`.
         hint: how much is said about what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
     Raises:
         UsageError: there is no equation; the only one cannot be read.
@@ -48,6 +51,10 @@ def verify_document(
         *(each for text in equations for each in _typed(text)),
         *(each for path in answers for each in _of_path(path, derivation)),
     ]
+    if free_bodies is not None:
+        if requested:
+            raise UsageError("--free-bodies judges a list of forces, and no equation", fix="ask for one of the two")
+        return _on_bodies(model, free_bodies, at, certify)
     if not requested:
         raise UsageError("there is no equation to judge", fix="write one behind the model, or --file FILE")
     found = judged(
@@ -63,6 +70,30 @@ def verify_document(
     if found.system is not None:
         document = with_constraints_closed(document, found.system)
     return proven(document, found.certify(again=at is None) if certify else None)
+
+
+def _on_bodies(model: Model, path: str, at: WrittenEquation | AtRest | None, certify: bool) -> Document:
+    """The verdict on a list of forces.
+
+    Raises:
+        UsageError: the file holds none.
+    """
+    try:
+        listed = json.loads(files.read(Path(path), LARGEST))
+    except ValueError as error:
+        raise UsageError(f"{path} is no JSON: {error}", fix="save a list of forces as JSON") from error
+    listed = listed.get("forces") if isinstance(listed, dict) else listed
+    if not isinstance(listed, list):
+        raise UsageError(f"{path} holds no list of forces", fix='write [{"body": ..., "at": ..., "direction": ...}]')
+    free = free_bodies_of(model, at)
+    found = judged_forces(free, listed)
+    document = plain_document(
+        model,
+        lambda: {"name": model.name, "equations": [], "free_bodies": found.entries},
+        Lines(found.lines),
+        answer_code=found.exit_code,
+    )
+    return proven(document, free.certify() if certify else None)
 
 
 def _typed(text: str) -> Iterator[Answered]:

@@ -9,6 +9,15 @@ from eomgen.mechanics.free_bodies.balance import BodyEquation as BodyEquation
 # Refuse loads that act at no place, or on a point that a coordinate moves in its body: a balance would lack them
 from eomgen.mechanics.free_bodies.balance import refuse_placeless as refuse_placeless
 
+# A force, or a couple, on a body
+from eomgen.mechanics.free_bodies.cut import CutForce as CutForce
+
+# Kinds of what acts on a body that is cut free
+from eomgen.mechanics.free_bodies.cut import ForceKind as ForceKind
+
+# All that acts on each body
+from eomgen.mechanics.free_bodies.cut import forces_on_bodies as forces_on_bodies
+
 # Description of what is out of balance at a state; "" where nothing is. Reactions left open take random values
 from eomgen.mechanics.free_bodies.equilibrium import imbalance as imbalance
 

@@ -159,10 +159,15 @@ def efforts_of(system: System, body: str) -> list[Effect]:
         return []
     axes = Axes(system.motion)
     effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
-    link = axes.motion.link(body)
+    return [*effects, *rotors_of(axes, axes.motion.link(body))]
+
+
+def rotors_of(axes: Axes, link: BodyLink) -> list[Effect]:
+    """Effects of the rotors in a body's joint, which turn faster than the joint."""
+    effects: list[Effect] = []
     for k, armature in _armatures(axes.motion, link):
         rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
-        effects += effects_at_joint(axes, link, *scaled_axes(axes, body, k, -armature * rate))
+        effects += effects_at_joint(axes, link, *scaled_axes(axes, link.name, k, -armature * rate))
     return effects
 
 

@@ -90,13 +90,13 @@ def _named(statics: StaticReactions) -> tuple[dict[str, Node], dict[str, Symbol]
         if len(reaction.named.combination) == 1 and alone and is_zero(reaction.named.given):
             found[reaction.name] = letters.symbols[alone[0]]
         else:
-            name = _untaken(_letter(reaction.name), taken)
+            name = _untaken(letter_of_reaction(reaction.name), taken)
             found[reaction.name] = graph.symbol(name)
             taken.add(name)
     return found, declared
 
 
-def _letter(name: str) -> str:
+def letter_of_reaction(name: str) -> str:
     """reaction_x(foot) -> R_foot_x, reaction_couple_z(foot) -> M_foot_z"""
     kind, _, rest = name.partition("(")
     owner, *more = rest.removesuffix(")").replace(".", "_").replace(", ", "_").replace("-", "_").split("_")

@@ -58,6 +58,7 @@ DRAWN = 1e-5  # of the size of a picture: so far a place may be off that is draw
 SAME_ARROW = 1e-3  # of an arrow's length and direction against others of its kind: nobody sees less
 BETWEEN_PLACES = 0.03  # of a shape: so far what is round reaches beyond places on a grid inside it
 STANDS_FOR_A_MASS = 0.13  # of the largest half-axis of an ellipsoid of inertia: flat ones are drawn thicker
+WRITTEN_BY_HAND = 0.01  # of a direction, and of a place against the size of all: a person writes two digits
 SAME_PLACE = 1e-6  # of coordinates against their size and 1: so near, two places are one (a double root is so wide)
 BESIDE_A_PLACE = 1e-4  # of coordinates against their size and 1: what vanishes at a place does not so far from it
 AT_A_MULTIPLE_ROOT = 1e-4  # of a derivative so far from it: a root of order 5 is known to 8 digits where f is to 40

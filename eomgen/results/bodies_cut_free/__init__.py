@@ -1,0 +1,1 @@
+"""Bodies cut free, with all their forces, as data and drawn."""
