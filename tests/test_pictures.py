@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.documents.drawing import is_freer_outward
+from eomgen.documents.drawing import is_freer_outward, limits
 from eomgen.documents.figures import four_figures, scale_of
+from eomgen.documents.space_drawing import drawing_at_rest
+from eomgen.model.reader import loads
 from eomgen.results.mass_properties.result import values_at_start
 from eomgen.scene import forms, plane_strokes
-from eomgen.scene.making import scene_of_inertia
+from eomgen.scene.making import scene_of, scene_of_inertia
 from eomgen.scene.scene import Mark, drawn_start, frame_at
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 
@@ -177,3 +179,30 @@ def test_of_the_reference_only_bodies_stand_behind_a_mode():
         teeth = [line for line in panel.lines if len(line.get_xdata()) == 12]
         masses = [patch for patch in panel.patches if to_hex(patch.get_edgecolor()) in ("#c4c4c4", "#2f5d8a")]
         assert (len(teeth), len(masses)) == (3, 4)
+
+
+BOWL = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, r = 0.05, R = 0.4, g = 9.81 }
+coordinates = { phi = 1 }
+[bodies.ball]
+mass = "m"
+inertia = "2/5*m*r^2"
+joint = { kind = "placed", at = ["(R - r)*sin(phi)", "-(R - r)*cos(phi)"], angle = "-(R - r)*phi/r" }
+[constraints.bowl]
+kind = "rolling"
+body = "ball"
+radius = "r"
+circle = { at = [0, 0], radius = "R", inside = true }
+"""
+
+
+def test_a_picture_holds_the_bowl_of_its_ball_and_the_angle_by_which_the_ball_is_placed():
+    """The whole circle |x| = R is in sight; phi runs from the lowest place about the centre of the bowl, by phi."""
+    drawing = drawing_at_rest(scene_of(loads(BOWL)))
+    low, high = limits(drawing)
+    assert (low < -0.4).all() and (high > 0.4).all()
+    (letter,) = (each for each in drawing.letters if each.text == "phi")
+    angle = np.arctan2(letter.at[0, 0], -letter.at[0, 1])
+    assert angle == pytest.approx(0.5)

@@ -11,6 +11,7 @@ from dataclasses import replace
 from itertools import combinations, pairwise
 
 from eomgen.frozen import dataclass
+from eomgen.mechanics.constraints import holds_identically
 from eomgen.mechanics.dynamics import EquationsOfMotion, System
 from eomgen.mechanics.kinematics import GROUND, BodyLink
 from eomgen.model import ArcForm, EllipsoidForm, LineForm, ModelOrPath, PolygonForm, SpreadLoad, is_node
@@ -42,13 +43,18 @@ from eomgen.symbolic.expression import (
     Fraction,
     Node,
     Pose,
+    Scalar,
     Vector,
     collected,
+    cross,
     derivative,
+    dot,
+    function,
     is_zero,
     matrix_of,
     minus,
     plus,
+    substituted,
     times,
     vector_of,
 )
@@ -203,11 +209,11 @@ def _coordinates(system: System) -> Iterator[Mark]:
     """The angle or the displacement that each coordinate is, at the first joint that shows it alone."""
     tiers: dict[Vector, int] = {}
     for q in system.symbols.q:
-        for link in system.motion.links:
-            mark = _turn(system, link, q, tiers) or _slide(system, link, q)
-            if mark is not None:
-                yield mark
-                break
+        links = system.motion.links
+        ways = (_turn(system, link, q, tiers) or _slide(system, link, q) for link in links)
+        shown = next(filter(None, ways), None) or next(filter(None, (_way(system, link, q) for link in links)), None)
+        if shown is not None:
+            yield shown
 
 
 def _turn(system: System, link: BodyLink, q: Node, tiers: dict[Vector, int]) -> Mark | None:
@@ -235,6 +241,37 @@ def _slide(system: System, link: BodyLink, q: Node) -> Mark | None:
         return None
     above = link.parent + 1 if link.parent != GROUND else 0
     return Mark(DimensionForm(link.before.p, link.local.p, q.name), above, "dimension", q.name)
+
+
+def _way(system: System, link: BodyLink, q: Node) -> Mark | None:
+    """A coordinate by which a placed body goes round a fixed centre, p = c + r(q), or straight on, p = a + q e.
+
+    It goes round where p + p'' is a fixed c, and straight on where p'' = 0, at a rate of 1: from where q is 0.
+    """
+    if not link.is_placed:
+        return None
+    place = system.motion.points[link.name].get("center", ZERO)
+    p = system.motion.position((link.name, place))
+    rate = vector_of(derivative(x, q) for x in p)
+    second = vector_of(derivative(x, q) for x in rate)
+    start = vector_of(substituted(p, {q: 0}))
+    if all(map(holds_identically, second)):
+        return Mark(DimensionForm(start, p, q.name, 5), 0, "dimension", q.name) if _is_one(dot(rate, rate)) else None
+    center = vector_of(collected(x + y) for x, y in zip(p, second, strict=True))
+    arm = minus(p, center)
+    if not all(holds_identically(derivative(x, q)) for x in center):
+        return None
+    x, y, _ = minus(start, center)
+    begin = function("atan2", y, x)
+    turns = cross(arm, rate)[2] - dot(arm, arm), cross(arm, rate)[2] + dot(arm, arm)
+    sense = next((k for k, left in zip((1, -1), turns, strict=True) if holds_identically(left)), None)
+    return (
+        None if sense is None else Mark(AngleForm(center, begin, begin + sense * q, q.name, 7), 0, "dimension", q.name)
+    )
+
+
+def _is_one(x: Scalar) -> bool:
+    return holds_identically(x - 1)
 
 
 # -- ellipsoids of inertia ---------------------------------------------------------------------------------------

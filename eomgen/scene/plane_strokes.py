@@ -25,6 +25,7 @@ from eomgen.scene.symbols import PLANE, TEETH
 
 HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0
 ROUND = 73  # points of a circle
+LONGEST = 1.5  # of the extent, a length that is drawn
 LEAST = 0.03  # of an angle that is drawn [rad]
 
 
@@ -238,6 +239,8 @@ def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, siz
     if not sizes.dimensions:
         return [], []
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    if np.nanmax(np.linalg.norm(b - a, axis=1), initial=0.0) > LONGEST * sizes.extent:
+        return [], []  # of what the picture does not show as a whole
     x = _unit(b - a)
     side = np.column_stack([x[:, 1], -x[:, 0]])
     middle = 0.5 * (sizes.low + sizes.high)
@@ -248,7 +251,8 @@ def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, siz
     over = 0.5 * sizes.unit * side
     lines = _broken(np.stack([a + over, b + over], axis=1), np.stack([c + over, d + over], axis=1))
     found = [_stroke(lines, mark, fine=True), *_arrow_strokes(d, c, mark, sizes), *_arrow_strokes(c, d, mark, sizes)]
-    seen = np.where(np.linalg.norm(b - a, axis=1, keepdims=True) > 1.5 * sizes.unit, 0.0, np.nan)
+    length = np.linalg.norm(b - a, axis=1, keepdims=True)
+    seen = np.where(length > 1.5 * sizes.unit, 0.0, np.nan)
     return found, [Letter(form.text, 0.5 * (c + d) + 0.2 * over + seen, mark.role, mark.of)]
 
 

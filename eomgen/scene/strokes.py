@@ -22,7 +22,7 @@ from eomgen.symbolic.numeric import tolerances
 
 SYMBOL = 0.028  # symbol unit, of the extent
 ARROW = 0.2  # the longest arrow, of the extent
-WIDEST = 6.0  # of the rest, how large a guide may be that is shown as a whole
+WIDEST = 14.0  # of the rest, how large a guide may be that is shown as a whole: a bowl under its ball
 LONELY = 14.0  # side of a picture of one point [symbol units]
 SHOWN = frozenset(("body", "inertia"))
 """Roles that are a body itself."""
