@@ -422,6 +422,19 @@ def live_command(model: str, port: int, no_browser: bool, edit: bool, patience: 
     return 0
 
 
+@VERB("lsp")
+def lsp_command() -> int:
+    """Answer an editor about model files, on stdin and stdout.
+
+    By the Language Server Protocol: problems as one types, completion, what a name means and its value, renaming, where
+    a name is declared. It needs the extra lsp.
+    """
+    from eomgen.language_server import answer_editor
+
+    answer_editor()
+    return 0
+
+
 @VERB("schema")
 @JSON
 @OUTPUT
@@ -452,6 +465,7 @@ RUNS = (
     play_command,
     report_command,
     live_command,
+    lsp_command,
     schema_command,
     doctor_command,
 )

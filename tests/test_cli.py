@@ -60,6 +60,7 @@ VERBS = [
     "play",
     "report",
     "live",
+    "lsp",
     "schema",
     "doctor",
 ]
@@ -426,7 +427,7 @@ def test_the_ending_of_the_file_chooses_the_format(ending, mark, tmp_path):
     assert path.read_text().startswith("#")
 
 
-@pytest.mark.parametrize("verb", [verb for verb in VERBS[2:] if verb != "live"])  # it writes nothing
+@pytest.mark.parametrize("verb", [verb for verb in VERBS[2:] if verb not in ("live", "lsp")])  # it writes nothing
 def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
     """derive -o w.html: exit 2, the endings that there are, no file, with and without --format."""
     own = {"animate": {".html"}, "play": {".html"}, "report": {".html", ".pdf", ".PDF"}}.get(verb, set())

@@ -97,7 +97,7 @@ BESIDE = {
     "verify": ["T = m*l^2*theta'^2/6"],
 }
 """what else a verb needs, or one of its options"""
-STILL = ("new", "schema", "doctor", "examples", "import", "live")
+STILL = ("new", "schema", "doctor", "examples", "import", "live", "lsp")
 """verbs that compute nothing of a model that one types values for; import makes one"""
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import re
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import singledispatch
 from pathlib import Path
 from typing import Any
@@ -41,7 +41,7 @@ from eomgen.model.joints.base import Turned  # noqa: E402
 from eomgen.model.joints.path import PathPiece  # noqa: E402
 from eomgen.model.kinds import ReactionSymbolsRule, Resistance  # noqa: E402
 from eomgen.model.model import Model  # noqa: E402
-from eomgen.model.part import PartRule, SeamRule, Slot  # noqa: E402
+from eomgen.model.part import PartRule, SeamRule, Slot, meanings  # noqa: E402
 from eomgen.model.parts import (  # noqa: E402
     Body,
     Coordinate,
@@ -98,7 +98,6 @@ NAMED = {
     "axes": '"ground" or the name of a body',
     "member": '"n1-n2", by two nodes',
 }
-ENTRY = re.compile(r"^(\w[\w, ]*): (.*)$")
 REGION = re.compile(r"(<!-- made: (.+?) -->\n).*?(<!-- end -->)", re.S)
 
 # -- what the class says -----------------------------------------------------------------------------
@@ -107,29 +106,6 @@ REGION = re.compile(r"(<!-- made: (.+?) -->\n).*?(<!-- end -->)", re.S)
 def prose(cls: type[Any]) -> str:
     """A class's docstring before its fields."""
     return re.split(r"^(?:Args|Raises|Source):", inspect.getdoc(cls) or "", maxsplit=1, flags=re.M)[0].strip()
-
-
-def meanings(cls: type[Any]) -> dict[str, str]:
-    """Field -> what it means, by the docstrings of the class and of its bases; the nearest counts."""
-    found: dict[str, str] = {}
-    for base in reversed(cls.__mro__):
-        found |= dict(_entries(inspect.cleandoc(base.__doc__ or "")))
-    return found
-
-
-def _entries(text: str) -> Iterator[tuple[str, str]]:
-    names: list[str] = []
-    words = ""
-    for line in text.partition("\nArgs:\n")[2].splitlines():
-        match = ENTRY.match(line.removeprefix("    "))
-        if not line.startswith("    "):
-            break
-        if match and not line.startswith("     "):
-            yield from ((name, words) for name in names)
-            names, words = match[1].split(", "), match[2]
-        else:
-            words += f" {line.strip()}"
-    yield from ((name, words) for name in names)
 
 
 @singledispatch

@@ -134,8 +134,7 @@ def _of_bodies(system: System) -> Iterator[tuple[Side, str, Value | None]]:
 
 
 def _spin(body: str, k: int, study: Study, whole: System) -> Scalar:
-    found: Scalar = whole.motion.spin(whole.motion.link(body))[k]
-    return found
+    return whole.motion.spin(whole.motion.link(body))[k]
 
 
 def _rotor_energy(body: str, study: Study, whole: System) -> Scalar:
@@ -198,13 +197,11 @@ def _joint_energy(body: str, study: Study, whole: System) -> Scalar:
 def _load(force: str, number: int, k: int, study: Study, whole: System) -> Scalar:
     load = _applied(force, whole).loads[number]
     assert isinstance(load, (PointForce, Couple))
-    found: Scalar = (load.force if isinstance(load, PointForce) else load.couple)[k]
-    return found
+    return (load.force if isinstance(load, PointForce) else load.couple)[k]
 
 
 def _place(name: str, k: int, study: Study, whole: System) -> Scalar:
-    found: Scalar = dict(points_of_forces(whole))[name][k]
-    return found
+    return dict(points_of_forces(whole))[name][k]
 
 
 def _of(q: str, study: Study, whole: System) -> System:

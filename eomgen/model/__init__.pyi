@@ -12,6 +12,9 @@ from eomgen.model.composite import Composite as Composite
 # One piece where it is in the body
 from eomgen.model.composite import PlacedPiece as PlacedPiece
 
+# k A
+from eomgen.model.composite import matrix_times as matrix_times
+
 # Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`
 from eomgen.model.composite import pose_of as pose_of
 
@@ -203,6 +206,9 @@ from eomgen.model.outputs.masses import polar as polar
 # P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus
 from eomgen.model.outputs.masses import second_moments as second_moments
 
+# Field of a part -> its meaning, by the docstring of its class
+from eomgen.model.part import meanings as meanings
+
 # A rigid body: its mass (`shape`; or `mass`, `center`, `inertia`; or `mass` and `parts`), its points, its joint
 from eomgen.model.parts import Body as Body
 
@@ -360,3 +366,9 @@ from eomgen.model.units import OUTPUT as OUTPUT
 
 # The error of a quaternion that is 0 at the start
 from eomgen.model.values import no_orientation as no_orientation
+
+# Place in a text, and what is being written there
+from eomgen.model.written_text import Cursor as Cursor
+
+# Text of a model file, and what stands where in it, also while it is being typed
+from eomgen.model.written_text import WrittenText as WrittenText

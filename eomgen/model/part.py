@@ -1,9 +1,10 @@
 """A part of a model: a frozen dataclass that reads its own fields by their rules, from Python or from a file."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, fields
 from functools import cache
-from inspect import Parameter, Signature
+from inspect import Parameter, Signature, cleandoc
 from types import NoneType, UnionType
 from typing import Any, ClassVar, Self, Union, get_args, get_origin
 
@@ -337,6 +338,32 @@ def _with_inline(table: dict[str, Any], members: tuple[Any, ...], definitions: d
         required = [*inner.get("required", ()), *table.get("required", ())]
         branches.append({**inner, "properties": merged, "required": required})
     return {"title": table["title"], "description": table["description"], "oneOf": branches}
+
+
+_ENTRY = re.compile(r"^(\w[\w, ]*): (.*)$")
+
+
+def meanings(cls: Any) -> dict[str, str]:
+    """Field -> its meaning, by the docstrings of the class and of its bases; the nearest counts."""
+    found: dict[str, str] = {}
+    for base in reversed(cls.__mro__):
+        found |= dict(_entries(cleandoc(base.__doc__ or "")))
+    return found
+
+
+def _entries(text: str) -> Iterator[tuple[str, str]]:
+    names: list[str] = []
+    words = ""
+    for line in text.partition("\nArgs:\n")[2].splitlines():
+        match = _ENTRY.match(line.removeprefix("    "))
+        if not line.startswith("    "):
+            break
+        if match and not line.startswith("     "):
+            yield from ((name, words) for name in names)
+            names, words = match[1].split(", "), match[2]
+        else:
+            words += f" {line.strip()}"
+    yield from ((name, words) for name in names)
 
 
 def _first_line(cls: Any) -> str:

@@ -42,6 +42,8 @@ class Index:
         keys, values: the span of each key, and of each value (a table's header stands for its value), by path.
         twice: path, span, and whole statement (None: a header or a key within a line) of every key given before.
         deep: the first key with more pieces than DEEPEST, where the scan ended.
+        pieces: path and span of every piece of every key and header, as often as it stands there.
+        end: the place up to which the text was read.
     """
 
     text: str
@@ -49,6 +51,8 @@ class Index:
     values: dict[DocumentPath, Span] = field(default_factory=dict)
     twice: list[tuple[DocumentPath, Span, Span | None]] = field(default_factory=list)
     deep: Span | None = None
+    pieces: list[tuple[DocumentPath, Span]] = field(default_factory=list)
+    end: int = 0
     _lines: list[int] = field(default_factory=list)
 
     def line_and_column(self, offset: int) -> tuple[int, int]:
@@ -93,6 +97,7 @@ def index_of(text: str) -> Index:
     scanner = _Scanner(text)
     with suppress(_Lost, RecursionError):
         scanner.document()
+    scanner.index.end = scanner.at
     if scanner.at < len(text) and scanner.index.deep is None:
         scanner.index.deep = _dotted_line(text, scanner.at)
     return scanner.index
@@ -147,8 +152,9 @@ class _Scanner:
         keys = self.dotted()
         self.take("]]" if many else "]")
         path: DocumentPath = ()
-        for k, (name, _) in enumerate(keys):
+        for k, (name, piece) in enumerate(keys):
             path = (*path, name)
+            self.index.pieces.append((path, piece))
             if many and k == len(keys) - 1:
                 self.counts[path] = self.counts.get(path, -1) + 1
             if path in self.counts:
@@ -186,10 +192,12 @@ class _Scanner:
         path = table
         for name, span in keys[:-1]:
             path = (*path, name)
+            self.index.pieces.append((path, span))
             self.index.keys.setdefault(path, span)
             self.index.values.setdefault(path, span)
         name, span = keys[-1]
         path = (*path, name)
+        self.index.pieces.append((path, span))
         again = path in self.index.keys
         self.index.keys.setdefault(path, span)
         self.value(path)

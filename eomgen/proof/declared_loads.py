@@ -41,7 +41,26 @@ from eomgen.proof.in_numbers import (
     way_through,
 )
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression import Fraction, Pose, Scalar, State, Twist, Vector, is_zero
+from eomgen.symbolic.expression import (
+    ZERO,
+    Fraction,
+    Numbers,
+    Pose,
+    Scalar,
+    State,
+    Twist,
+    Vector,
+    apply,
+    cross,
+    dot,
+    is_zero,
+    minus,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
@@ -56,7 +75,7 @@ from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 Term = tuple[Scalar, Any]
 """(a scalar that moves, the work for a unit of it)"""
-Placed = tuple[str | None, tuple[Scalar, ...], Vector]
+Placed = tuple[str | None, tuple[Scalar, ...], Numbers]
 """(body, a place of it as a function of the coordinates, the force there in ground axes)"""
 HALF = Fraction(1, 2)
 SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
@@ -168,7 +187,7 @@ class _Declared(InNumbers):
             pull = ActingElement(self.system, self.state, act).law[0]
             for body, sign in zip(act.bodies, (1, -1), strict=True):
                 if body is not None:
-                    yield from self._of_couple(body, Vector((0, 0, sign * pull)))
+                    yield from self._of_couple(body, (0, 0, sign * pull))
         else:
             for _, place, force in self._placed(act):
                 yield from zip(place, force, strict=True)
@@ -196,14 +215,14 @@ class _Declared(InNumbers):
         found: Pushes = {}
         for act in acts:
             if isinstance(act, CoupleOn):
-                add_push(found, act.body, self._couple(act), Vector.ZERO)
+                add_push(found, act.body, self._couple(act), ZERO)
             elif isinstance(act, Element) and not act.points:
                 pull = ActingElement(self.system, self.state, act).law[0]
                 for body, sign in zip(act.bodies, (1, -1), strict=True):
-                    add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
+                    add_push(found, body, (0, 0, sign * pull), ZERO)
             elif not isinstance(act, (PushOnCoordinate, GivenEnergy)):
                 for body, place, force in self._placed(act):
-                    add_push(found, body, self.vector(place).cross(force), force)
+                    add_push(found, body, cross(self.vector(place), force), force)
         return found
 
     def _placed(self, act: Act) -> Iterator[Placed]:
@@ -218,7 +237,7 @@ class _Declared(InNumbers):
             g = self.vector(self.scene.vector(act.acceleration))
             for name in act.bodies or [link.name for link in self.motion.links]:
                 mass = self.system.scope.mass_properties(name)
-                yield name, self.scene.position((name, mass.com)), self.one(mass.m) * g
+                yield name, self.scene.position((name, mass.com)), times(self.one(mass.m), g)
         elif isinstance(act, Element):
             yield from self._of_element(act)
 
@@ -229,21 +248,21 @@ class _Declared(InNumbers):
         ]
         A, B = map(self.vector, places)
         q = [self.vector(self.scene.vector(each)) for each in line.intensities]
-        gap = B - A
-        sixth = fifty_digits().functions["sqrt"](gap @ gap) / 6
+        gap = minus(B, A)
+        sixth = fifty_digits().functions["sqrt"](dot(gap, gap)) / 6
         for halves, sixths in SIMPSON:
-            here = sixth * sixths / 2 * ((2 - halves) * q[0] + halves * q[1])
+            here = times(sixth * sixths / 2, plus(times(2 - halves, q[0]), times(halves, q[1])))
             yield line.body, _between(places, halves), here
 
     def _of_element(self, element: Element) -> Iterator[Placed]:
         acting = ActingElement(self.system, self.state, element)
         for point, sign in zip(element.points, (1, -1), strict=True):
             place = self.scene.place(point)
-            yield place[0], self.scene.position(place), sign * acting.law[0] * acting.direction
+            yield place[0], self.scene.position(place), times(sign * acting.law[0], acting.direction)
 
-    def _couple(self, act: CoupleOn) -> Vector:
+    def _couple(self, act: CoupleOn) -> Numbers:
         given = self.at([self.system.scope.value(x) for x in act.couple])
-        own = Vector(given if len(given) == 3 else (0, 0, *given))
+        own = vector_of(given if len(given) == 3 else (0, 0, *given))
         return self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
 
 
@@ -334,15 +353,15 @@ def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -
     carried = (Twist() if link.parent < 0 else system.motion.links[link.parent].twist).at(link.local.p)
     turning = _turns(link, variable)
     column = link.S[variable][0 if turning else 1]
-    n, Q = here.R @ column, here.R @ home.R.T
-    own = link.twist.w if turning else link.twist.v + link.twist.w.cross(link.point)
-    against = link.pose.R @ own - parent.R @ (carried.w if turning else carried.v)
+    n, Q = apply(here.R, column), product(here.R, transposed(home.R))
+    own = link.twist.w if turning else plus(link.twist.v, cross(link.twist.w, link.point))
+    against = minus(apply(link.pose.R, own), apply(parent.R, carried.w if turning else carried.v))
     requested = (
-        n @ Vector((Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
+        dot(n, (Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
         Q[0][0] + Q[1][1] + Q[2][2] - 1,
-        n @ (here.p - home.p),
-        column @ column,
-        against @ (link.pose.R @ column),
+        dot(n, minus(here.p, home.p)),
+        dot(column, column),
+        dot(against, apply(link.pose.R, column)),
     )
     sine, cosine, way, square, rate = evaluate(requested, state, fifty_digits())
     size = square**0.5
@@ -364,7 +383,7 @@ class ActingElement(InNumbers):
     def wrong(self, applied: Applied) -> str:
         """Message if the loads or the energy of the element are not those of its law; ""."""
         pull, energy = self.law
-        reach: Any = 1 + max((end.largest for end in self.ends), default=0)
+        reach: Any = 1 + max(map(abs, (x for end in self.ends for x in end)), default=0)
         stated = pushes_of(self.motion, self.state, applied.loads)
         if body := pushed_otherwise(stated, self.of_pull(pull), (1 + abs(pull)) * reach):
             return f"pushes '{body}' otherwise than its length and rate say"
@@ -379,16 +398,16 @@ class ActingElement(InNumbers):
     # -- geometry --------------------------------------------------------------------------------------------
 
     @cached_property
-    def ends(self) -> tuple[Vector, ...]:
+    def ends(self) -> tuple[Numbers, ...]:
         return tuple(self.vector(self.scene.position(self.scene.place(p))) for p in self.element.points)
 
     @cached_property
-    def direction(self) -> Vector:
+    def direction(self) -> Numbers:
         """Direction of the pull on the first end, a unit vector; 0 for a spring whose ends coincide."""
         along = self.element.along
-        v: Vector = self.ends[1] - self.ends[0] if along is None else self.vector(self.scene.vector(along))
+        v: Numbers = minus(self.ends[1], self.ends[0]) if along is None else self.vector(self.scene.vector(along))
         if along is None and self._is_spring_without_length and not any(v):
-            return Vector.ZERO  # it pulls nothing, in no direction
+            return ZERO  # it pulls nothing, in no direction
         return direction_at(v)
 
     @property
@@ -406,7 +425,7 @@ class ActingElement(InNumbers):
             return second - first, w_2 - w_1
         speeds = [self.vector(self.motion.velocity(self.scene.place(p))) for p in self.element.points]
         n = self.direction
-        return (self.ends[1] - self.ends[0]) @ n, (speeds[1] - speeds[0]) @ n
+        return dot(minus(self.ends[1], self.ends[0]), n), dot(minus(speeds[1], speeds[0]), n)
 
     def _turned(self, body: str | None) -> tuple[Any, Any]:
         """Angle of the axes about z, with the whole turns of the body, and its rate."""
@@ -441,10 +460,10 @@ class ActingElement(InNumbers):
         if not isinstance(slack, str):
             return self.at((self.system.scope.value(slack),))[0]
         first, second = (self.scene.position(self.scene.place(p)) for p in self.element.points)
-        apart = self.vector([self.scene.start(x) for x in second - first])
+        apart = self.vector([self.scene.start(x) for x in minus(second, first)])
         if self.element.along is not None:
-            return apart @ self.direction
-        return apart @ direction_at(apart) if any(apart) else 0
+            return dot(apart, self.direction)
+        return dot(apart, direction_at(apart)) if any(apart) else 0
 
     # -- acts ------------------------------------------------------------------------------------------------
 
@@ -453,11 +472,11 @@ class ActingElement(InNumbers):
         found: Pushes = {}
         if not self.element.points:
             for body, sign in zip(self.element.bodies, (1, -1), strict=True):
-                add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
+                add_push(found, body, (0, 0, sign * pull), ZERO)
             return found
         for point, place, sign in zip(self.element.points, self.ends, (1, -1), strict=True):
-            f: Vector = sign * pull * self.direction
-            add_push(found, self.scene.place(point)[0], place.cross(f), f)
+            f: Numbers = times(sign * pull, self.direction)
+            add_push(found, self.scene.place(point)[0], cross(place, f), f)
         return found
 
 
@@ -500,14 +519,13 @@ class _Stop:
 
     body: str | None
     place: Vector
-    center: Vector
+    center: Numbers
     a: Any
-    axis: Vector
+    axis: Numbers
     passes: bool
 
-    def touched(self, d: Vector) -> Vector:
-        touched: Vector = self.center + self.axis.cross(d) * self.a
-        return touched
+    def touched(self, d: Numbers) -> Numbers:
+        return plus(self.center, times(self.a, cross(self.axis, d)))
 
 
 @dataclass(frozen=True)
@@ -525,9 +543,9 @@ class _Strung(InNumbers):
         for row, rope in zip(rows, self._ropes, strict=True):
             due: Pushes = {}
             for first, second, d in rope:
-                add_push(due, first.body, first.touched(d).cross(d), d)
-                add_push(due, second.body, second.touched(d).cross(-d), -d)
-            size = 1 + max(first.center.largest for first, *_ in rope)
+                add_push(due, first.body, cross(first.touched(d), d), d)
+                add_push(due, second.body, cross(second.touched(d), times(-1, d)), times(-1, d))
+            size = 1 + max(abs(x) for first, *_ in rope for x in first.center)
             stated = pushes_of(self.motion, self.state, row.pushes)
             if body := pushed_otherwise(stated, due, size):
                 return f"pulls '{body}' otherwise than it runs"
@@ -543,16 +561,16 @@ class _Strung(InNumbers):
             return ""
         declared = self.one(self._scene.value(self.thread.length))
         first, second = (stop.center for stop in self._stops)
-        apart: Vector = second - first
-        square: Any = apart @ apart
+        apart: Numbers = minus(second, first)
+        square: Any = dot(apart, apart)
         wrong = abs(square - declared**2) > tolerances.COMPUTED * (1 + square)
         return f"is {float(square) ** 0.5:.10g} long for {float(declared):.10g}" if wrong else ""
 
     @cached_property
-    def _ropes(self) -> list[list[tuple[_Stop, _Stop, Vector]]]:
+    def _ropes(self) -> list[list[tuple[_Stop, _Stop, Numbers]]]:
         """The strands of one tension each: (from, to, direction)."""
         ways = self.thread.ways or (None,) * (len(self._stops) - 1)
-        ropes: list[list[tuple[_Stop, _Stop, Vector]]] = []
+        ropes: list[list[tuple[_Stop, _Stop, Numbers]]] = []
         for (first, second), way in zip(pairwise(self._stops), ways, strict=True):
             strand = (first, second, self._direction(first, second) if way is None else self._typed(way))
             if ropes and first.passes:
@@ -561,37 +579,35 @@ class _Strung(InNumbers):
                 ropes.append([strand])
         return ropes
 
-    def _direction(self, first: _Stop, second: _Stop) -> Vector:
+    def _direction(self, first: _Stop, second: _Stop) -> Numbers:
         """Direction of the line that is tangent to both stops."""
-        D: Vector = second.center - first.center
+        D: Numbers = minus(second.center, first.center)
         self._refuse_turned_over(first, second, D)
         along = direction_at(D)
         n = first.axis if first.a != 0 else second.axis
-        same: Any = n @ second.axis
+        same: Any = dot(n, second.axis)
         offset: Any = first.a - (same if second.a != 0 else 0) * second.a
-        distance: Any = D @ along
+        distance: Any = dot(D, along)
         if abs(offset) > distance:
             raise NoValue("one wrap lies within the other")
         functions = fifty_digits().functions
         lean = -functions["asin"](offset / distance)
-        direction: Vector = along * functions["cos"](lean) + n.cross(along) * functions["sin"](lean)
-        return direction
+        return plus(times(functions["cos"](lean), along), times(functions["sin"](lean), cross(n, along)))
 
-    def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Vector) -> None:
+    def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Numbers) -> None:
         """Raises NoValue where a strand runs backwards: a line along an axis has the sense that it has at the start."""
-        at_start = [self._scene.value_at_start(x) for x in second.place - first.place]
-        here: list[Any] = list(D)
-        if sum(float(x) * (y or 0.0) for x, y in zip(here, at_start, strict=True)) < 0:
+        at_start = [self._scene.value_at_start(x) for x in minus(second.place, first.place)]
+        if sum(float(x) * (y or 0.0) for x, y in zip(D, at_start, strict=True)) < 0:
             raise NoValue("a strand runs the other way than at the start")
 
-    def _typed(self, way: Any) -> Vector:
+    def _typed(self, way: Any) -> Numbers:
         """A direction that is given, of length 1."""
         named = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
         return self.vector(named[way]) if isinstance(way, str) else direction_at(self.vector(self._scene.vector(way)))
 
-    def _lengthening(self, first: _Stop, second: _Stop, d: Vector) -> Any:
+    def _lengthening(self, first: _Stop, second: _Stop, d: Numbers) -> Any:
         """Relative velocity d . (v_2 - v_1) of the two surfaces."""
-        return d @ (self.velocity(second.body, second.touched(d)) - self.velocity(first.body, first.touched(d)))
+        return dot(d, minus(*(self.velocity(stop.body, stop.touched(d)) for stop in (second, first))))
 
     # -- as it is declared -----------------------------------------------------------------------------------
 
@@ -616,7 +632,7 @@ class _Strung(InNumbers):
             radius = scene.radius(item.body) if item.radius is None else scene.value(item.radius)
             axis = z if item.axis is None else direction_at(self.vector(scene.vector(item.axis)))
             if not (fixed or scene.plane):
-                axis = Vector(self.vector(row) @ axis for row in scene.orientation(item.body))
+                axis = vector_of(dot(self.vector(row), axis) for row in scene.orientation(item.body))
             a = self.one(radius)
             yield _Stop(item.body, r, self.vector(r), -a if item.turn == "ccw" else a, axis, bool(item.slip))
 

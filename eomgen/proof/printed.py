@@ -153,8 +153,7 @@ class ReadBack:
         if of in known:
             return known[of]
         if call.name in SPINS:
-            found: Scalar = self._spin(of)[SPINS.index(call.name)]
-            return found
+            return self._spin(of)[SPINS.index(call.name)]
         if call.name in FUNCTIONS and FUNCTIONS[call.name].source == OutputSource.BALANCE:
             raise DerivationError(f"'{call}' is a reaction, and proven as such")
         return Quantities(self.equations.system).value(call)

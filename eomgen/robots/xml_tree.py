@@ -10,7 +10,8 @@ from xml.parsers import expat
 
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import LARGEST_EXPONENT, MOST_DIGITS, Vector
+from eomgen.robots.tables import Triple
+from eomgen.symbolic.expression import LARGEST_EXPONENT, MOST_DIGITS
 
 DEEPEST = 200  # elements one within the other
 
@@ -54,9 +55,10 @@ class XmlElement:
         """A number among the attributes, exactly as it is written."""
         return self._decimals(self.get(key, default) if default is not None else self.need(key), 1, key)[0]
 
-    def vector(self, key: str, default: str) -> Vector:
+    def vector(self, key: str, default: str) -> Triple:
         """Three numbers in an attribute."""
-        return Vector(self._decimals(self.get(key, default) or default, 3, key))
+        x, y, z = self._decimals(self.get(key, default) or default, 3, key)
+        return x, y, z
 
     def value(self, size: int = 1) -> tuple[Decimal, ...]:
         """The numbers that stand in the element."""

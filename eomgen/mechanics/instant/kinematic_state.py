@@ -19,7 +19,24 @@ from eomgen.mechanics.kinematics import (
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node
 from eomgen.symbolic.exact import Legibly
-from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, sqrt, substituted
+from eomgen.symbolic.expression import (
+    IDENTITY,
+    Matrix,
+    Node,
+    Scalar,
+    State,
+    Vector,
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    sqrt,
+    substituted,
+    times,
+    transposed,
+    vector_of,
+)
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
@@ -116,7 +133,7 @@ class KinematicState:
     def _named(self, link: BodyLink) -> Iterable[tuple[str, Vector]]:
         motion = self.system.motion
         if is_node(link.name):
-            return [(link.name, Vector((0, 0, 0)))]
+            return [(link.name, (0, 0, 0))]
         own = motion.points[link.name]
         kept = [name for name in own if name != "origin"] or ["origin"]
         return [(f"{link.name}.{name}", own[name]) for name in kept]
@@ -140,7 +157,7 @@ class KinematicState:
 
     def size(self, v: Vector) -> Scalar:
         """|v|"""
-        return self.simple(sqrt(v @ v))
+        return self.simple(sqrt(dot(v, v)))
 
     @cached_property
     def values(self) -> ScalarValues:
@@ -203,12 +220,12 @@ class Composition:
     @property
     def relative_velocity(self) -> Vector:
         """v_r [m/s]"""
-        return self.R @ self.relative[1]
+        return apply(self.R, self.relative[1])
 
     @property
     def velocity(self) -> Vector:
         """v = v_t + v_r [m/s]"""
-        return self.transport_velocity + self.relative_velocity
+        return plus(self.transport_velocity, self.relative_velocity)
 
     @property
     def transport_acceleration(self) -> Vector:
@@ -228,17 +245,17 @@ class Composition:
     @property
     def relative_acceleration(self) -> Vector:
         """a_r [m/s^2]"""
-        return self.R @ self.relative[2]
+        return apply(self.R, self.relative[2])
 
     @property
     def coriolis(self) -> Vector:
         """a_C = 2 omega x v_r [m/s^2]"""
-        return 2 * self.carrier.w.cross(self.relative_velocity)
+        return times(2, cross(self.carrier.w, self.relative_velocity))
 
     @property
     def acceleration(self) -> Vector:
         """a = a_t + a_r + a_C [m/s^2]"""
-        return self.transport_acceleration + (self.relative_acceleration + self.coriolis)
+        return plus(self.transport_acceleration, plus(self.relative_acceleration, self.coriolis))
 
 
 def composition_of(motion: Motion, point: str, body: str) -> Composition:
@@ -248,16 +265,16 @@ def composition_of(motion: Motion, point: str, body: str) -> Composition:
     place = motion.position((owner, local))
     R = body_axes(motion, body)
     if owner != body and body in motion.index:
-        local = R.T @ (place - motion.link(body).pose.p)
+        local = apply(transposed(R), minus(place, motion.link(body).pose.p))
     elif owner != body:
         local = place
     v = scope.rate_of(local)
-    return Composition(place, motion.field(body), R, (local, v, Vector(scope.with_accelerations(v))))
+    return Composition(place, motion.field(body), R, (local, v, vector_of(scope.with_accelerations(v))))
 
 
 def body_axes(motion: Motion, body: str) -> Matrix:
     """The body's axes in the ground; of the ground its own."""
-    return motion.link(body).pose.R if body in motion.index else Matrix.IDENTITY
+    return motion.link(body).pose.R if body in motion.index else IDENTITY
 
 
 # -------- body motion -----------------------------------------------------------------------------------------
@@ -324,7 +341,7 @@ class BodyMotion:
     def invariants(self) -> tuple[Scalar, Scalar]:
         """omega.omega and omega.v, the same at all points of the body."""
         w, v = self.field.w, self.field.v
-        return self.readable.scalar(w @ w), self.readable.scalar(w @ v)
+        return self.readable.scalar(dot(w, w)), self.readable.scalar(dot(w, v))
 
     @cached_property
     def center(self) -> Vector | None:
@@ -342,8 +359,8 @@ class BodyMotion:
         middle = self._found(VelocityField.inflection_center)
         if middle is None or self.center is None:
             return None
-        arm = self.readable.vector(middle - self.center)
-        return middle, self.readable.scalar(sqrt(arm @ arm))
+        arm = self.readable.vector(minus(middle, self.center))
+        return middle, self.readable.scalar(sqrt(dot(arm, arm)))
 
     @cached_property
     def slowest(self) -> tuple[str, str, Scalar] | None:

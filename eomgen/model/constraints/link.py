@@ -14,7 +14,21 @@ from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Flag, Length, Text, TwoPoints
-from eomgen.symbolic.expression import Call, Fraction, Node, Reference, Scalar, Vector, order, over, sqrt
+from eomgen.symbolic.expression import (
+    AnyScalar,
+    Call,
+    Fraction,
+    Node,
+    Reference,
+    Vector,
+    dot,
+    minus,
+    order,
+    over,
+    sqrt,
+    times,
+    vector_of,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,16 +66,16 @@ class Link(Constraint):
         It is L - |r| to first order, without a root.
         """
         first, second = (scene.place(point) for point in self.points)
-        r = scene.position(second) - scene.position(first)
+        r = minus(scene.position(second), scene.position(first))
         L = self._length(scene, r)
-        d = Vector(over(x, L) for x in r)
-        pulls = (PointForce(first, d), PointForce(second, -d))
-        return (ConstraintRow(pulls, Fraction(1, 2) * (L - r @ d), component="tension"),)
+        d = vector_of(over(x, L) for x in r)
+        pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
+        return (ConstraintRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
 
-    def _length(self, scene: LoadContext, r: Vector) -> Scalar:
+    def _length(self, scene: LoadContext, r: Vector) -> AnyScalar:
         if self.length is not None:
             return scene.value(self.length)
-        square = scene.start(r @ r)
+        square = scene.start(dot(r, r))
         if scene.value_at_start(square) == 0 or scene.vanishes(square):
             ends = " and ".join(f"'{point}'" for point in self.points)
             raise ModelError(
@@ -113,7 +127,7 @@ class Members(Constraint):
     def _row(self, scene: LoadContext, member: str) -> ConstraintRow:
         ends = self.ends(member)
         first, second = (scene.position(scene.place(point)) for point in ends)
-        r = second - first
+        r = minus(second, first)
         if all(scene.vanishes(x) or scene.value_at_start(x) == 0 for x in r):
             raise ModelError(
                 f"member '{member}' of truss '{self.truss}' has no length",
@@ -124,10 +138,7 @@ class Members(Constraint):
         if scene.moves(r):
             return replace(row, part=member)
         x, y, z = _direction(scene, r)
-        pulls = (
-            PointForce(scene.place(ends[0]), Vector((x, y, z))),
-            PointForce(scene.place(ends[1]), -Vector((x, y, z))),
-        )
+        pulls = (PointForce(scene.place(ends[0]), (x, y, z)), PointForce(scene.place(ends[1]), times(-1, (x, y, z))))
         return replace(row, part=member, pushes=pulls)
 
 
@@ -136,14 +147,14 @@ def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
     return {name: constraint for name, constraint in constraints.items() if isinstance(constraint, Members)}
 
 
-def _direction(scene: LoadContext, r: Vector) -> tuple[Scalar, ...]:
+def _direction(scene: LoadContext, r: Vector) -> tuple[AnyScalar, ...]:
     """r over its length: in plain numbers and roots of them where all components are multiples of one parameter."""
-    (square,) = scene.readable((r @ r,))
+    (square,) = scene.readable((dot(r, r),))
     (length,) = scene.readable((sqrt(square),))
     direction = tuple(over(x, length) for x in r)
     return direction if _has_root_of_sum(length) else scene.readable(direction)
 
 
-def _has_root_of_sum(x: Scalar) -> bool:
+def _has_root_of_sum(x: AnyScalar) -> bool:
     """True if a length contains a root of something other than a number."""
     return type(x) is Node and any(y.op == "sqrt" and type(y.args[0]) is Node for y in order((x,)))

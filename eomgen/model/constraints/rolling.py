@@ -30,7 +30,26 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.exact import readable
-from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, Vector, cos, over, sin, sqrt
+from eomgen.symbolic.expression import (
+    ZERO,
+    AnyScalar,
+    Expression,
+    Fraction,
+    Node,
+    Vector,
+    apply,
+    cos,
+    cross,
+    dot,
+    minus,
+    over,
+    plus,
+    sin,
+    sqrt,
+    times,
+    transposed,
+    vector_of,
+)
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
@@ -61,18 +80,18 @@ class Nearest:
     """
 
     reach: Vector
-    height: Scalar
+    height: AnyScalar
 
 
 @dataclass(frozen=True)
 class RollingBall:
     """A ball of radius R."""
 
-    R: Scalar
+    R: AnyScalar
 
     def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """R below the centre."""
-        return Nearest(-self.R * n, self.R)
+        return Nearest(times(-self.R, n), self.R)
 
 
 @dataclass(frozen=True)
@@ -81,8 +100,8 @@ class Wheel:
 
     body: str
     axis: Vector
-    R: Scalar
-    tube: Scalar
+    R: AnyScalar
+    tube: AnyScalar
 
     def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """The lowest place of the rim.
@@ -97,8 +116,8 @@ class Wheel:
                 scene.where,
                 "start it upright or leaning; an axis along the normal has no lowest point",
             )
-        down = over(-self.R, rho) * a.cross(n.cross(a))
-        return Nearest(down - self.tube * n, self.R * rho + self.tube)
+        down = times(over(-self.R, rho), cross(a, cross(n, a)))
+        return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
 
     def nearest_to_ball(self, scene: LoadContext, out: Vector, side: int) -> Vector:
         """Vector from the wheel's centre to the point of its centre line nearest to a ball's centre; inside: farthest.
@@ -115,26 +134,26 @@ class Wheel:
                 scene.where,
                 "start it leaning",
             )
-        return over(-side * self.R, size) * h
+        return times(over(-side * self.R, size), h)
 
-    def distance(self, scene: LoadContext, out: Vector) -> Scalar:
+    def distance(self, scene: LoadContext, out: Vector) -> AnyScalar:
         """|h|, of a ball's centre from the wheel's axis [m]; 0 where the whole rim touches."""
         h = self._across(scene, out)
-        return sqrt(_short(h @ h))
+        return sqrt(_short(dot(h, h)))
 
     def _across(self, scene: LoadContext, out: Vector) -> Vector:
         a = self._axle(scene)
-        return out - out @ a * a
+        return minus(out, times(dot(out, a), a))
 
-    def tilt(self, scene: LoadContext, n: Vector) -> Scalar:
+    def tilt(self, scene: LoadContext, n: Vector) -> AnyScalar:
         """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
         a = self._axle(scene)
-        k = n.cross(a)
-        wave = _other_wave(scene, _short(n @ a))
-        return sqrt(k @ k) if wave is None else wave
+        k = cross(n, a)
+        wave = _other_wave(scene, _short(dot(n, a)))
+        return sqrt(dot(k, k)) if wave is None else wave
 
     def _axle(self, scene: LoadContext) -> Vector:
-        return scene.orientation(self.body) @ unit(self.axis)
+        return apply(scene.orientation(self.body), unit(self.axis))
 
 
 @dataclass(frozen=True)
@@ -147,10 +166,10 @@ class Egg:
     def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """The place of the surface at which n is its inner normal."""
         R = scene.orientation(self.body)
-        n_B = R.T @ n
+        n_B = apply(transposed(R), n)
         x, y, z = (s * s * k for s, k in zip(self.semiaxes, n_B, strict=True))
-        h = sqrt(n_B @ Vector((x, y, z)))
-        return Nearest(R @ (over(-1, h) * Vector((x, y, z))), h)
+        h = sqrt(dot(n_B, (x, y, z)))
+        return Nearest(apply(R, times(over(-1, h), (x, y, z))), h)
 
 
 Round = RollingBall | Wheel | Egg
@@ -163,15 +182,15 @@ def laid_in(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
     """
     x, y, z = n
     if _plain(y) and _plain(z):
-        t: Vector = Vector((0, 1, 0))
+        t: Vector = (0, 1, 0)
     elif _plain(y):
-        t = _sense(scene, z) * Vector((z, 0, -x))
+        t = times(_sense(scene, z), (z, 0, -x))
     elif _plain(z):
-        t = _sense(scene, y) * Vector((y, -x, 0))
+        t = times(_sense(scene, y), (y, -x, 0))
     else:
         root = complement(scene, x)
-        t = Vector((root, -over(x * y, root), -over(x * z, root)) if not _plain(x) else (1, 0, 0))
-    return t, n.cross(t)
+        t = (root, -over(x * y, root), -over(x * z, root)) if not _plain(x) else (1, 0, 0)
+    return t, cross(n, t)
 
 
 def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
@@ -181,12 +200,12 @@ def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
     and only there, they are not determined.
     """
     k, sense = _nearest_axis(scene, n)
-    axes: tuple[Vector, ...] = (Vector((1, 0, 0)), Vector((0, 1, 0)), Vector((0, 0, 1)))
-    e = sense * axes[k]
+    axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    e = times(sense, axes[k])
     first = axes[(k + 1) % 3]
-    middle = n + e
-    share = over(1, 1 + n @ e)
-    t, s = (d - n @ d * share * middle for d in (first, e.cross(first)))
+    middle = plus(n, e)
+    share = over(1, 1 + dot(n, e))
+    t, s = (minus(d, times(dot(n, d) * share, middle)) for d in (first, cross(e, first)))
     return t, s
 
 
@@ -197,39 +216,39 @@ def _nearest_axis(scene: LoadContext, n: Vector) -> tuple[int, int]:
     return k, -1 if sizes[k] < 0 else 1
 
 
-def complement(scene: LoadContext, x: Scalar) -> Scalar:
+def complement(scene: LoadContext, x: AnyScalar) -> AnyScalar:
     """sqrt(1 - x^2)."""
     x = _short(x)
     wave = _other_wave(scene, x)
     return sqrt(1 - x * x) if wave is None else wave
 
 
-def _short(x: Scalar) -> Scalar:
+def _short(x: AnyScalar) -> AnyScalar:
     """x multiplied out, where it is no long sum: a cosine that is written by those of two angles."""
     return readable(x, Work.PART) if type(x) is Node and text_size(x) <= LONGEST else x
 
 
-def _other_wave(scene: LoadContext, x: Scalar) -> Scalar | None:
+def _other_wave(scene: LoadContext, x: AnyScalar) -> AnyScalar | None:
     """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
     if type(x) is Node and x.op == "neg":
         return _other_wave(scene, x.args[0])
     if type(x) is not Node or x.op not in ("sin", "cos"):
         return None
-    found: Scalar = cos(x.args[0]) if x.op == "sin" else sin(x.args[0])
+    found: AnyScalar = cos(x.args[0]) if x.op == "sin" else sin(x.args[0])
     return -found if _sense(scene, found) < 0 else found
 
 
-def _sense(scene: LoadContext, x: Scalar) -> int:
+def _sense(scene: LoadContext, x: AnyScalar) -> int:
     return -1 if _value(scene, x) < 0 else 1
 
 
-def _value(scene: LoadContext, x: Scalar, unknown: float = 1.0) -> float:
+def _value(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
     """The value of x at the start with the model's values."""
     found = scene.value_at_start(x)
     return unknown if found is None else found
 
 
-def _plain(x: Scalar) -> bool:
+def _plain(x: AnyScalar) -> bool:
     return type(x) is int and x == 0
 
 
@@ -283,7 +302,7 @@ class TrackContact:
     """
 
     n: Vector
-    gap: Scalar
+    gap: AnyScalar
     reach: Vector
     anchor: BodyPoint
     arm: Vector
@@ -300,7 +319,7 @@ class Curved:
     """
 
     anchor: BodyPoint
-    r: Scalar
+    r: AnyScalar
     side: int = 1
     axis: Vector | None = None
 
@@ -311,8 +330,8 @@ def on_level(scene: LoadContext, on: str | None, track: Track, center: Vector, b
     tangents = (right(own),) if scene.plane else laid_in(scene, own)
     n, *along = (_carried(scene, on, e) for e in (own, *tangents))
     anchor = anchor_of(scene, on, track.at)
-    out, near = center - scene.position(anchor), body.nearest(scene, n)
-    return TrackContact(n, n @ out - near.height, near.reach, anchor, out + near.reach, tuple(along))
+    out, near = minus(center, scene.position(anchor)), body.nearest(scene, n)
+    return TrackContact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
 
 
 def normal_of(scene: LoadContext, on: str | None, track: Track) -> Vector:
@@ -322,7 +341,7 @@ def normal_of(scene: LoadContext, on: str | None, track: Track) -> Vector:
 
 def _carried(scene: LoadContext, on: str | None, e: Vector) -> Vector:
     """A direction of the ground, or of the body `on`, in ground axes."""
-    return e if on is None else scene.orientation(on) @ e
+    return e if on is None else apply(scene.orientation(on), e)
 
 
 def on_curved(scene: LoadContext, track: Curved, center: Vector, ball: RollingBall) -> TrackContact:
@@ -332,29 +351,29 @@ def on_curved(scene: LoadContext, track: Curved, center: Vector, ball: RollingBa
     gap is the distance.
     """
     D = _apart(scene, track, ball.R)
-    out = center - scene.position(track.anchor)
-    along = Vector.ZERO if track.axis is None else track.axis @ out * track.axis
-    d = out if track.axis is None else out - along
-    n = Vector(track.side * over(x, D) for x in d)
-    arm = along + track.side * track.r * n
-    return TrackContact(n, _gap(track, d, D), -ball.R * n, track.anchor, arm, _around(scene, track, n))
+    out = minus(center, scene.position(track.anchor))
+    along = ZERO if track.axis is None else times(dot(track.axis, out), track.axis)
+    d = out if track.axis is None else minus(out, along)
+    n = vector_of(track.side * over(x, D) for x in d)
+    arm = plus(along, times(track.side * track.r, n))
+    return TrackContact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
 
 
 def wheel_on_ball(scene: LoadContext, track: Curved, center: Vector, wheel: Wheel) -> TrackContact:
     """A wheel on a ball, or in it: a ball of the tyre's radius at the place of its centre line that comes nearest."""
-    D, out = _apart(scene, track, wheel.tube), center - scene.position(track.anchor)
+    D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
     rim = wheel.nearest_to_ball(scene, out, track.side)
-    d = out + rim
-    n = Vector(track.side * over(x, D) for x in d)
-    reach = rim - wheel.tube * n
-    return TrackContact(n, _gap(track, d, D), reach, track.anchor, out + reach, _around(scene, track, n))
+    d = plus(out, rim)
+    n = vector_of(track.side * over(x, D) for x in d)
+    reach = minus(rim, times(wheel.tube, n))
+    return TrackContact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
 
 
-def _gap(track: Curved, d: Vector, D: Scalar) -> Scalar:
-    return Fraction(1, 2) * track.side * (over(d @ d, D) - D)
+def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:
+    return Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
 
 
-def _apart(scene: LoadContext, track: Curved, R: Scalar) -> Scalar:
+def _apart(scene: LoadContext, track: Curved, R: AnyScalar) -> AnyScalar:
     """Distance of a ball's centre from that of its track where they touch [m]."""
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
@@ -369,7 +388,7 @@ def _around(scene: LoadContext, track: Curved, n: Vector) -> tuple[Vector, ...]:
     """Directions across n: of a pipe its axis k and n x k."""
     if scene.plane:
         return (right(n),)
-    return turned_over(scene, n) if track.axis is None else (track.axis, n.cross(track.axis))
+    return turned_over(scene, n) if track.axis is None else (track.axis, cross(n, track.axis))
 
 
 def curved(scene: LoadContext, on: str | None, circle: Circle) -> Curved:
@@ -511,9 +530,9 @@ class Rolling(Constraint):
         if self.circle is None or self.circle.inside:
             return "", ""
         track = self._curved(scene)
-        out = scene.position(scene.own_place(self.body, self._hub)) - scene.position(track.anchor)
-        along = 0 if track.axis is None else track.axis @ out
-        away, r = scene.value_at_start(out @ out - along * along), scene.value_at_start(track.r)
+        out = minus(scene.position(scene.own_place(self.body, self._hub)), scene.position(track.anchor))
+        along = 0 if track.axis is None else dot(track.axis, out)
+        away, r = scene.value_at_start(dot(out, out) - along * along), scene.value_at_start(track.r)
         if away is None or r is None or away >= r * r:
             return "", ""
         name = scene.where.rpartition(".")[2]
@@ -549,7 +568,7 @@ class Rolling(Constraint):
             n = normal_of(scene, self.on, self.plane)
             return (Edge(f"'{self.body}' lies flat in '{name}'", body.tilt(scene, n)),)
         center = scene.position(scene.own_place(self.body, self._hub))
-        out = center - scene.position(self._curved(scene).anchor)
+        out = minus(center, scene.position(self._curved(scene).anchor))
         return (Edge(f"the whole rim of '{self.body}' touches in '{name}'", body.distance(scene, out)),)
 
     def _contact(self, scene: LoadContext, center: Any) -> TrackContact:
@@ -585,14 +604,12 @@ class Rolling(Constraint):
             return RollingBall(self._radius(scene))
         R = scene.value(shape.major) if torus and self.radius is None else self._radius(scene)
         tube = shape.minor if torus and self.tube is None else self.tube
-        return Wheel(
-            self.body, Vector((0, 0, 1) if self.axis is None else scene.vector(self.axis)), R, scene.value(tube)
-        )
+        return Wheel(self.body, (0, 0, 1) if self.axis is None else scene.vector(self.axis), R, scene.value(tube))
 
     @property
     def _plain(self) -> bool:
         """True if neither radius nor axis is given for the body."""
         return self.radius is None and self.axis is None
 
-    def _radius(self, scene: LoadContext) -> Scalar:
+    def _radius(self, scene: LoadContext) -> AnyScalar:
         return scene.radius(self.body) if self.radius is None else scene.value(self.radius)
