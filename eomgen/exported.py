@@ -25,12 +25,13 @@ from eomgen.pipeline import derive
 from eomgen.proof import imported_otherwise, unsaid_otherwise
 from eomgen.robots import UNLIMITED, LeftOut, LegalNames, remarked
 from eomgen.symbolic.expression import (
+    Matrix,
     Pose,
     Scalar,
+    Vector,
     depends_on,
     depends_on_any,
     gradient,
-    minus,
     substituted,
     symbols_of,
 )
@@ -113,7 +114,7 @@ class _Writing:
     def _link(self, link: BodyLink) -> list[str]:
         mass = self.system.scope.mass_properties(link.name)
         where = f"bodies.{link.name}"
-        m, *com = self.numbers((mass.m, *minus(mass.com, link.point)), where)
+        m, *com = self.numbers((mass.m, *(mass.com - link.point)), where)
         tensor = self.numbers([x for row in mass.I for x in row], where)
         name = f"  <link name={quoteattr(self.link_names[link.name])}"
         if not m and not any(tensor):
@@ -136,14 +137,14 @@ class _Writing:
         if kind != "floating":
             relative = (*(x for row in link.relative.R for x in row), *link.relative.p)
             relative = substituted(relative, dict.fromkeys(symbols.q, 0))
-            R: Any = tuple(tuple(relative[3 * i : 3 * i + 3]) for i in range(3))
-            place = place.then(Pose(R, (relative[9], relative[10], relative[11])))
+            R = Matrix.of(relative[3 * i : 3 * i + 3] for i in range(3))
+            place = place.then(Pose(R, Vector((relative[9], relative[10], relative[11]))))
         if axis:
             limits = {key: x for key, x in self.remarks[own[0].name].items() if key != "name"}
             kind = "revolute" if kind == "continuous" and "upper" in limits else kind
             inner = f'<axis xyz="{_words(axis)}"/>{_limit(kind, limits)}{self._effort(link)}{self._mimic(own[0].name)}'
-        shift = (0, 0, 0) if parent is None else parent.point
-        at = self.numbers(minus(place.p, shift), where)
+        shift = Vector.ZERO if parent is None else parent.point
+        at = self.numbers(place.p - shift, where)
         R_numbers = self.numbers([x for row in place.R for x in row], where)
         name = self.joint_names[own[0].name] if len(own) == 1 else self.joints.new(f"{link.name}_joint")
         above = self.world if parent is None else self.link_names[parent.name]
@@ -157,7 +158,7 @@ class _Writing:
         """True if a link of the ground is fixed to it with the ground's own origin and axes."""
         R, p = (place := link.before.then(link.relative)).R, place.p
         held = all(symbol in self.known for symbol in symbols_of((*link.s, *p, *(x for row in R for x in row))))
-        return held and self.numbers((*minus(p, (0, 0, 0)), *(x for row in R for x in row)), link.name) == STANDING
+        return held and self.numbers((*(p - Vector((0, 0, 0))), *(x for row in R for x in row)), link.name) == STANDING
 
     def _shape(self, link: BodyLink, own: list[Any], where: str) -> tuple[str, list[float]]:
         """(type, axis in the child's axes along which the coordinate grows).

@@ -15,7 +15,7 @@ from eomgen.mechanics.dynamics import formulations as recursive
 from eomgen.mechanics.dynamics.system import System
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.symbolic.expression.derivatives import substituted
-from eomgen.symbolic.expression.spatial import ZERO, apply
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.expression.text import parse
 
 pytestmark = pytest.mark.slow
@@ -151,7 +151,7 @@ def test_the_velocity_of_a_moving_point_is_the_rate_of_its_place():
     assert at(scene.velocity(place), state) == pytest.approx(rate(system, scene.position(place), state), rel=1e-14)
     assert equal(system.motion.velocity(place), scene.velocity(place))
     in_body = (value(system, "s'"), value(system, "l*w*cos(w*t)"), 0)
-    assert equal(system.motion.slide(place), apply(system.motion.link("bar").pose.R, in_body))
+    assert equal(system.motion.slide(place), system.motion.link("bar").pose.R @ in_body)
 
 
 def test_the_velocity_of_a_fixed_point_by_its_twist_is_the_rate_of_its_place():
@@ -159,7 +159,7 @@ def test_the_velocity_of_a_fixed_point_by_its_twist_is_the_rate_of_its_place():
     system = written(MOVING_POINT)
     scene, state = SystemScene(system.motion), state_of(system)
     place = scene.place("bar.Q")
-    assert system.motion.slide(place) == ZERO
+    assert system.motion.slide(place) == Vector.ZERO
     assert at(system.motion.velocity(place), state) == pytest.approx(rate(system, scene.position(place), state))
 
 

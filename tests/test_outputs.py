@@ -14,7 +14,7 @@ from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.study.programs import accelerations_and_multipliers
 from eomgen.symbolic.expression.derivatives import derivative
-from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, transposed
+from eomgen.symbolic.expression.spatial import Matrix, Vector
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -109,9 +109,9 @@ class Motion:
     def number(self, scalar) -> float:
         return evaluate((scalar,), self.state, FLOAT)[0]
 
-    def vector(self, kind: str, *arguments: str) -> tuple[float, float, float]:
+    def vector(self, kind: str, *arguments: str) -> Vector:
         names = [f"{kind}{axis}({', '.join(arguments)})" for axis in "xyz"]
-        return tuple(self.value(name) for name in names)  # type: ignore[return-value]
+        return Vector(self.value(name) for name in names)
 
     def after(self, dt: float) -> Motion:
         """The same a little later, by Taylor: q + q' dt + q'' dt^2/2, u + a dt."""
@@ -157,21 +157,21 @@ def test_velocity_and_acceleration_are_the_rates_of_the_position_in_space(point)
 def test_the_field_of_a_rigid_body_is_that_of_omega_and_epsilon(text):
     """v_P - v_O = w x r,  a_P - a_O = e x r + w x (w x r)"""
     motion, point = Motion(text), "arm.end" if text is PLANE else "arm.tip"
-    r = minus(motion.vector("", point), motion.vector("", "arm.origin"))
+    r = motion.vector("", point) - motion.vector("", "arm.origin")
     w, e = motion.vector("omega_", "arm"), motion.vector("epsilon_", "arm")
-    v = minus(motion.vector("v", point), motion.vector("v", "arm.origin"))
-    a = minus(motion.vector("a", point), motion.vector("a", "arm.origin"))
-    assert v == pytest.approx(cross(w, r), abs=1e-12)
-    assert a == pytest.approx(plus(cross(e, r), cross(w, cross(w, r))), abs=1e-12)
+    v = motion.vector("v", point) - motion.vector("v", "arm.origin")
+    a = motion.vector("a", point) - motion.vector("a", "arm.origin")
+    assert v == pytest.approx(w.cross(r), abs=1e-12)
+    assert a == pytest.approx(e.cross(r) + w.cross(w.cross(r)), abs=1e-12)
 
 
 @each("text", [PLANE, SPACE])
 def test_angular_velocities_add(text):
     """w(arm) = w(base) + R w(arm, base), and the relative one is that of the joints between: seen from the parent."""
     motion, base = Motion(text), "table" if text is PLANE else "tray"
-    R = [[motion.number(x) for x in row] for row in motion.system.motion.link(base).pose.R]
-    relative = minus(motion.vector("omega_", "arm"), motion.vector("omega_", base))
-    assert motion.vector("omega_", "arm", base) == pytest.approx(apply(transposed(R), relative), abs=1e-12)
+    R = Matrix.of((motion.number(x) for x in row) for row in motion.system.motion.link(base).pose.R)
+    relative = motion.vector("omega_", "arm") - motion.vector("omega_", base)
+    assert motion.vector("omega_", "arm", base) == pytest.approx(R.T @ relative, abs=1e-12)
     axis, rate = ((0, 0, 1), "q'") if text is PLANE else ((0.6, 0, 0.8), "b'")
     assert motion.vector("omega_", "arm", base) == pytest.approx([motion.value(rate) * n for n in axis], abs=1e-12)
     turning = [motion.value(rate + "'") * n for n in axis]
@@ -192,9 +192,9 @@ def test_speed_and_acceleration_are_magnitudes():
     motion = Motion(SPACE)
     for name, kind in (("speed", "v"), ("acceleration", "a")):
         vector = motion.vector(kind, "arm.tip", "base")
-        assert motion.value(f"{name}(arm.tip, base)") == pytest.approx(math.sqrt(dot(vector, vector)))
+        assert motion.value(f"{name}(arm.tip, base)") == pytest.approx(math.sqrt(vector @ vector))
     w = motion.vector("omega_", "arm")
-    assert motion.value("omega(arm)") == pytest.approx(math.sqrt(dot(w, w)))
+    assert motion.value("omega(arm)") == pytest.approx(math.sqrt(w @ w))
 
 
 def moving(text: str) -> Motion:

@@ -12,26 +12,7 @@ import sympy
 from each import each
 
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.spatial import (
-    IDENTITY,
-    ZERO,
-    Matrix,
-    Pose,
-    SpatialInertia,
-    Twist,
-    Vector,
-    Wrench,
-    apply,
-    cross,
-    dot,
-    matrix_of,
-    plus,
-    product,
-    rotation,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression.spatial import Matrix, Pose, SpatialInertia, Twist, Vector, Wrench
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
@@ -51,14 +32,14 @@ class Exact:
         return self.scalar(Fraction(self.rng.randint(-20, 20), self.rng.randint(1, 9)))
 
     def vector(self) -> Vector:
-        return vector_of(self.draw() for _ in range(3))
+        return Vector(self.draw() for _ in range(3))
 
     def rotation(self) -> Matrix:
         """About a random axis of rational unit length, by an angle whose sine and cosine are rational."""
         *n, length = self.rng.choice(((2, 3, 6, 7), (1, 2, 2, 3), (4, 4, 7, 9), (2, -6, 9, 11), (-8, 1, 4, 9)))
         a, b, c = self.rng.choice(((3, 4, 5), (-5, 12, 13), (8, -15, 17)))
-        axis = vector_of(self.scalar(Fraction(x, length)) for x in n)
-        return rotation(axis, self.scalar(Fraction(a, c)), self.scalar(Fraction(b, c)))
+        axis = Vector(self.scalar(Fraction(x, length)) for x in n)
+        return Matrix.rotation(axis, self.scalar(Fraction(a, c)), self.scalar(Fraction(b, c)))
 
     def pose(self) -> Pose:
         return Pose(self.rotation(), self.vector())
@@ -142,54 +123,54 @@ def parts(of: Pose | Twist | Wrench) -> tuple[Any, Any]:
 def test_a_rotation_matrix_is_orthonormal_and_right_handed(world):
     """R R^T = 1, det R = +1."""
     R = world.rotation()
-    assert same(world, product(R, transposed(R)), IDENTITY)
-    assert same(world, dot(R[0], cross(R[1], R[2])), 1)
+    assert same(world, R @ R.T, Matrix.IDENTITY)
+    assert same(world, R[0] @ R[1].cross(R[2]), 1)
 
 
 def test_a_rotation_keeps_its_axis_and_turns_what_is_across_it(world):
     """R n = n, and R a = c a + s n x a for a across n: counter-clockwise about n."""
-    n = vector_of(world.scalar(Fraction(x, 7)) for x in (2, 3, 6))
+    n = Vector(world.scalar(Fraction(x, 7)) for x in (2, 3, 6))
     c, s = world.scalar(Fraction(3, 5)), world.scalar(Fraction(4, 5))
-    R = rotation(n, c, s)
-    a = cross(n, world.vector())
-    assert same(world, apply(R, n), n)
-    assert same(world, apply(R, a), plus(times(c, a), times(s, cross(n, a))))
+    R = Matrix.rotation(n, c, s)
+    a = n.cross(world.vector())
+    assert same(world, R @ n, n)
+    assert same(world, R @ a, c * a + s * n.cross(a))
 
 
 def test_a_quarter_turn_about_z_takes_x_to_y():
     """Rot(z, pi/2) e_x = e_y: the sign of an angle."""
-    assert apply(rotation((0, 0, 1), 0, 1), (1, 0, 0)) == (0, 1, 0)
+    assert Matrix.rotation((0, 0, 1), 0, 1) @ Vector((1, 0, 0)) == (0, 1, 0)
 
 
 def test_poses_chain_as_the_points_that_they_carry(world):
     """X_AB (X_BC p_C) = (X_AB X_BC) p_C, and the inverse undoes."""
     X, Y, p = world.pose(), world.pose(), world.vector()
     assert same(world, X.then(Y).point(p), X.point(Y.point(p)))
-    assert same(world, parts(X.then(X.inverse())), (IDENTITY, ZERO))
+    assert same(world, parts(X.then(X.inverse())), (Matrix.IDENTITY, Vector.ZERO))
     assert same(world, X.inverse().point(X.point(p)), p)
 
 
 def test_points_of_a_body_keep_their_distance(world):
     """(v_P - v_Q) . r_PQ = 0 for any twist."""
     xi, r = world.twist(), world.vector()
-    assert same(world, dot(plus(xi.at(r).v, times(-1, xi.v)), r), 0)
-    assert same(world, parts(xi.at(r).at(times(-1, r))), parts(xi))
+    assert same(world, (xi.at(r).v + -xi.v) @ r, 0)
+    assert same(world, parts(xi.at(r).at(-r)), parts(xi))
 
 
 def test_velocity_grows_with_the_arm_in_the_sense_of_the_turn():
     """v = w x r: a point to the right of a counter-clockwise turn moves up."""
-    assert Twist(w=(0, 0, 3)).at((2, 0, 0)).v == (0, 6, 0)
+    assert Twist(w=Vector((0, 0, 3))).at(Vector((2, 0, 0))).v == (0, 6, 0)
 
 
 def test_a_moment_grows_with_the_arm_in_the_sense_of_the_turn():
     """tau_O = tau_P + r_OP x f: an upward force to the right turns counter-clockwise."""
-    assert Wrench(f=(0, 5, 0)).moved((2, 0, 0)).tau == (0, 0, 10)
+    assert Wrench(f=Vector((0, 5, 0))).moved(Vector((2, 0, 0))).tau == (0, 0, 10)
 
 
 def test_power_does_not_depend_on_the_point(world):
     """tau . w + f . v is the same about the point r away."""
     xi, W, r = world.twist(), world.wrench(), world.vector()
-    assert same(world, xi.at(r).power(W.moved(times(-1, r))), xi.power(W))
+    assert same(world, xi.at(r).power(W.moved(-r)), xi.power(W))
 
 
 def test_power_does_not_depend_on_the_axes(world):
@@ -215,43 +196,43 @@ def cloud(world: Exact) -> list[Particle]:
 
 def tensor(particles: list[Particle], about: Vector) -> Matrix:
     """sum m (r.r 1 - r r^T), r from the point."""
-    I = (ZERO, ZERO, ZERO)
+    I = (Vector.ZERO, Vector.ZERO, Vector.ZERO)
     for m, place in particles:
-        r = plus(place, times(-1, about))
-        one = matrix_of((m * ((dot(r, r) if i == j else 0) - r[i] * r[j]) for j in range(3)) for i in range(3))
-        I = matrix_of(plus(a, b) for a, b in zip(I, one, strict=True))
+        r = place + -about
+        one = Matrix.of((m * ((r @ r if i == j else 0) - r[i] * r[j]) for j in range(3)) for i in range(3))
+        I = Matrix.of(a + b for a, b in zip(I, one, strict=True))
     return I
 
 
 def inertia_of(particles: list[Particle]) -> SpatialInertia:
     """The inertia from mass, mass centre and the tensor about it."""
     total = sum((m for m, _ in particles), start=0)
-    com = ZERO
+    com = Vector.ZERO
     for m, place in particles:
-        com = plus(com, times(m / total, place))
+        com = com + m / total * place
     return SpatialInertia.about_center(total, com, tensor(particles, com))
 
 
 def test_the_parallel_axes_theorem_moves_an_inertia_to_the_origin(world):
     """I_O = I_C + m (c.c 1 - c c^T), against the sum over particles about O."""
     particles = cloud(world)
-    assert same(world, inertia_of(particles).I, tensor(particles, ZERO))
+    assert same(world, inertia_of(particles).I, tensor(particles, Vector.ZERO))
 
 
 def test_momentum_is_the_sum_over_particles(world):
     """(L, P) = sum (r x m v_r, m v_r), v_r = v + w x r."""
     particles, xi = cloud(world), world.twist()
-    L, P = ZERO, ZERO
+    L, P = Vector.ZERO, Vector.ZERO
     for m, r in particles:
-        p = times(m, xi.at(r).v)
-        L, P = plus(L, cross(r, p)), plus(P, p)
+        p = m * xi.at(r).v
+        L, P = L + r.cross(p), P + p
     assert same(world, parts(inertia_of(particles).momentum(xi)), (L, P))
 
 
 def test_kinetic_energy_is_the_sum_over_particles(world):
     """T = sum m v_r . v_r / 2"""
     particles, xi = cloud(world), world.twist()
-    T = sum((m * dot(xi.at(r).v, xi.at(r).v) for m, r in particles), start=0) * Fraction(1, 2)
+    T = sum((m * (xi.at(r).v @ xi.at(r).v) for m, r in particles), start=0) * Fraction(1, 2)
     assert same(world, inertia_of(particles).kinetic_energy(xi), T)
 
 

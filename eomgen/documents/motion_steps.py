@@ -18,7 +18,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
 from eomgen.model import Coordinate, Input, Parameter, PointForce
-from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, dot, is_zero
+from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, is_zero
 from eomgen.symbolic.print import to_text
 
 AXES = "xyz"
@@ -77,7 +77,7 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
         if not is_zero(system.scope.mass_properties(energy.body).m) and not is_still(energy.velocity):
             of = f"{energy.body}.center"
             formulas += component_pairs(system, "v", of, energy.velocity)
-            formulas.append((Name("speed", of, power=2), dot(energy.velocity, energy.velocity)))
+            formulas.append((Name("speed", of, power=2), energy.velocity @ energy.velocity))
         formulas += spins(system, energy.body, energy.spin)
     words = "The derivatives of the positions, and the angular velocities"
     words += ":" if len(axes(system)) == 2 else " about the axes 1, 2, 3 of the bodies:"

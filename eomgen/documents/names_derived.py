@@ -134,7 +134,8 @@ def _of_bodies(system: System) -> Iterator[tuple[Side, str, Value | None]]:
 
 
 def _spin(body: str, k: int, study: Study, whole: System) -> Scalar:
-    return whole.motion.spin(whole.motion.link(body))[k]
+    found: Scalar = whole.motion.spin(whole.motion.link(body))[k]
+    return found
 
 
 def _rotor_energy(body: str, study: Study, whole: System) -> Scalar:
@@ -197,11 +198,13 @@ def _joint_energy(body: str, study: Study, whole: System) -> Scalar:
 def _load(force: str, number: int, k: int, study: Study, whole: System) -> Scalar:
     load = _applied(force, whole).loads[number]
     assert isinstance(load, (PointForce, Couple))
-    return (load.force if isinstance(load, PointForce) else load.couple)[k]
+    found: Scalar = (load.force if isinstance(load, PointForce) else load.couple)[k]
+    return found
 
 
 def _place(name: str, k: int, study: Study, whole: System) -> Scalar:
-    return dict(points_of_forces(whole))[name][k]
+    found: Scalar = dict(points_of_forces(whole))[name][k]
+    return found
 
 
 def _of(q: str, study: Study, whole: System) -> System:

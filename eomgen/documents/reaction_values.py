@@ -42,7 +42,7 @@ from eomgen.mechanics.free_bodies import (
 from eomgen.model import PointForce, ReactionSymbols
 from eomgen.symbolic.exact import book_form, never_vanishes
 from eomgen.symbolic.expression import (
-    IDENTITY,
+    Matrix,
     Node,
     Scalar,
     Vector,
@@ -395,7 +395,7 @@ def _couple(balance: Balance, component: Component) -> str:
     ]
     if len(couples) == 1:
         return ""
-    axes = [axis for c in couples for axis, e in zip(AXES, IDENTITY, strict=True) if c.effects[0].couple == e]
+    axes = [axis for c in couples for axis, e in zip(AXES, Matrix.IDENTITY, strict=True) if c.effects[0].couple == e]
     where = couples.index(component)
     return axes[where] if len(axes) == len(couples) else str(where + 1)
 

@@ -38,8 +38,6 @@ from eomgen.identification.constrained_rows import (
 from eomgen.mechanics.dynamics import System
 from eomgen.symbolic.exact import LinearSystem, Pivots, exact_state, simplest
 from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
     Fraction,
     Matrix,
     Node,
@@ -48,15 +46,9 @@ from eomgen.symbolic.expression import (
     SpatialInertia,
     State,
     Vector,
-    added,
-    apply,
-    dot,
     is_zero,
-    matrix_of,
-    product,
     substituted,
     symbols_of,
-    transposed,
 )
 from eomgen.symbolic.numeric import PRIME, PRIME_FIELD, NoMeaning, NoValue, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
@@ -443,18 +435,18 @@ def particle(r: Vector) -> SpatialInertia:
 
 def dipole(r: Vector, n: Vector) -> SpatialInertia:
     """The slope of a particle at r along n."""
-    return SpatialInertia(0, n, added(_crossed(r, n), _crossed(n, r)))
+    return SpatialInertia(0, n, _crossed(r, n) + _crossed(n, r))
 
 
 def quadrupole(n: Vector) -> SpatialInertia:
     """Half of the second slope along n: a moment of inertia about all that is across it."""
-    return SpatialInertia(0, ZERO, _crossed(n, n))
+    return SpatialInertia(0, Vector.ZERO, _crossed(n, n))
 
 
 def _crossed(a: Vector, b: Vector) -> Matrix:
     """a.b E - a b^T"""
-    size = dot(a, b)
-    return matrix_of([(size if i == j else 0) - a[i] * b[j] for j in range(3)] for i in range(3))
+    size = a @ b
+    return Matrix.of([(size if i == j else 0) - a[i] * b[j] for j in range(3)] for i in range(3))
 
 
 @dataclass(frozen=True)
@@ -489,15 +481,17 @@ def transfers_of(system: System, states: Sequence[State]) -> Iterator[Transfer]:
         parent = None if link.parent < 0 else motion.links[link.parent].name
         if link.joint is None or len(link.S) > 1:
             continue
-        R = product(link.before.R, link.joint.pose((0,) * len(link.S), motion.scope.value).R)
-        own = [n for column in link.S for n in column if not all(map(is_zero, n))] or IDENTITY
-        axes = tuple((apply(R, n), n) for n in own)
+        R = link.before.R @ link.joint.pose((0,) * len(link.S), motion.scope.value).R
+        own = [n for column in link.S for n in column if not all(map(is_zero, n))] or Matrix.IDENTITY
+        axes = tuple((R @ n, n) for n in own)
         yield from SharedPoint((parent, link.name), (link.before.p, link.point), axes).transfers()
         for i in range(3):
             for j in range(i + 1):
-                E = matrix_of([int({r, c} == {i, j}) for c in range(3)] for r in range(3))
-                turned = product(product(R, E), transposed(R))
-                yield _exchanged((parent, link.name), SpatialInertia(0, ZERO, turned), SpatialInertia(0, ZERO, E))
+                E = Matrix.of([int({r, c} == {i, j}) for c in range(3)] for r in range(3))
+                turned = R @ E @ R.T
+                yield _exchanged(
+                    (parent, link.name), SpatialInertia(0, Vector.ZERO, turned), SpatialInertia(0, Vector.ZERO, E)
+                )
     yield from _alike(system, states)
 
 
@@ -516,7 +510,7 @@ def _shared(system: System, states: Sequence[State]) -> Iterator[SharedPoint]:
         yield from (SharedPoint((a, b), (r, s)) for (a, r), (b, s) in combinations(there.items(), 2))
         for name, r in there.items():
             if not any(any(rates) for rates in _seen(motion.velocity((name, r)), states)):
-                yield SharedPoint((name, None), (r, ZERO))
+                yield SharedPoint((name, None), (r, Vector.ZERO))
 
 
 def _seen(scalars: Sequence[Scalar], states: Sequence[State]) -> tuple[tuple[int, ...], ...]:

@@ -27,22 +27,18 @@ from eomgen.model import Model, ModelOrPath, UniformField
 from eomgen.pipeline import derive
 from eomgen.proof import Certificate
 from eomgen.symbolic.expression import (
+    Matrix,
     Node,
     Scalar,
     ScalarRow,
     SpatialInertia,
     Twist,
+    Vector,
     Wrench,
-    apply,
-    cross,
     depends_on,
     gradient,
     is_zero,
-    minus,
-    plus,
     substituted,
-    transposed,
-    vector_of,
 )
 
 SPACE = ("Izz", "Ixx", "Ixy", "Izx", "Iyz", "mx", "my", "Iyy", "mz", "m")
@@ -161,8 +157,8 @@ def _bodies(system: System) -> Iterator[Column]:
         own = SpatialInertia.about_center(mass.m, mass.com, mass.I)
         B, alpha = motion.B[i], motion.alpha[i]
         rates = [sum((b * x for b, x in zip(row, a, strict=True)), start=alpha[r]) for r, row in enumerate(B)]
-        up = apply(transposed(link.pose.R), system.loads.fields)
-        A = Twist(vector_of(rates[:3]), minus(vector_of(rates[3:]), up))
+        up = link.pose.R.T @ system.loads.fields
+        A = Twist(Vector(rates[:3]), Vector(rates[3:]) - up)
         values = named_entries(own)
         for name in names:
             wrench = _force(_unit(name), A, link.twist)
@@ -180,13 +176,13 @@ def _unit(name: str) -> SpatialInertia:
         I[i][j] = I[j][i] = 1
     elif name in MOMENTS:
         h[MOMENTS[name]] = 1
-    return SpatialInertia(int(name == "m"), vector_of(h), tuple(map(tuple, I)))  # type: ignore[arg-type]
+    return SpatialInertia(int(name == "m"), Vector(h), Matrix.of(I))
 
 
 def _force(inertia: SpatialInertia, A: Twist, xi: Twist) -> Wrench:
     """I A + xi x* (I xi)."""
     momentum = inertia.momentum(xi)
-    turning = Wrench(plus(cross(xi.w, momentum.tau), cross(xi.v, momentum.f)), cross(xi.w, momentum.f))
+    turning = Wrench(xi.w.cross(momentum.tau) + xi.v.cross(momentum.f), xi.w.cross(momentum.f))
     return inertia.momentum(A).plus(turning)
 
 

@@ -52,18 +52,12 @@ from eomgen.symbolic.expression import (
     Node,
     Scalar,
     Vector,
-    cross,
     depends_on,
     derivative,
-    dot,
     is_zero,
-    minus,
     over,
-    plus,
     sqrt,
     substituted,
-    times,
-    vector_of,
 )
 from eomgen.symbolic.numeric import tolerances
 
@@ -471,12 +465,12 @@ class WrongItems:
         F, e, p = push.force, self.cut.along, self.cut.about
         if e is not None:
             reported = "stands with its other component: sin and cos are exchanged"
-            yield Otherwise("wrong_axis", SHARED, reported, cross(F, e)[2], is_size=True)
+            yield Otherwise("wrong_axis", SHARED, reported, F.cross(e)[2], is_size=True)
             yield Otherwise("factor", SHARED, FULL, self._strength(acting, push), is_size=True)
         elif p is not None and push.place is not None and not push.is_couple:
-            d = minus(push.place, p)
+            d = push.place - p
             reported = "has the other lever arm: sin and cos are exchanged"
-            yield Otherwise("wrong_axis", SHARED, reported, dot(d, F), is_size=True)
+            yield Otherwise("wrong_axis", SHARED, reported, d @ F, is_size=True)
             yield Otherwise("factor", SHARED, DISTANT, _size(d) * self._strength(acting, push), is_size=True)
             for k, value in enumerate((d[0] * F[1], -d[1] * F[0])):
                 reported = f"stands with its component along {'yx'[k]} alone"
@@ -485,7 +479,7 @@ class WrongItems:
                 reported = f"acts at {where}: its lever arm is wrong"
                 if share != 1:
                     reported = f"stands with the factor {share} at {where}: its size and its lever arm are wrong"
-                value = share * cross(minus(q, p), F)[2] + push.couple
+                value = share * (q - p).cross(F)[2] + push.couple
                 yield Otherwise("wrong_point", PLACED + (share != 1), reported, value)
 
     def _strength(self, acting: ActingForce, push: PlacedPush) -> Scalar:
@@ -510,11 +504,11 @@ class WrongItems:
         mine = [(spot.name, spot.place) for spot in self.free.spots if node or push.body in spot.bodies]
         yield from ((where, q, Fraction(1)) for where, q in mine)
         for (one, a), (other, b) in combinations(mine[:MOST_POINTS], 2) if acting.kind == "load" and not node else ():
-            yield f"the middle of {one} and {other}", times(Fraction(1, 2), plus(a, b)), Fraction(1)
+            yield f"the middle of {one} and {other}", Fraction(1, 2) * (a + b), Fraction(1)
         for line in acting.spread:
             a, b = (self.free.system.motion.position(place) for place in (line.start, line.end))
             for share, where in SHARES:
-                q = vector_of(x + share * (y - x) for x, y in zip(a, b, strict=True))
+                q = Vector(x + share * (y - x) for x, y in zip(a, b, strict=True))
                 for much in (Fraction(1), Fraction(2), Fraction(1, 2)):
                     yield f"{where} of its line", q, much
 
@@ -561,4 +555,4 @@ class WrongItems:
 
 def _size(v: Vector) -> Scalar:
     nonzero = [x for x in v if not is_zero(x)]
-    return nonzero[0] if len(nonzero) == 1 else sqrt(dot(v, v))
+    return nonzero[0] if len(nonzero) == 1 else sqrt(v @ v)

@@ -27,9 +27,7 @@ from eomgen.symbolic.expression import (
     Node,
     Scalar,
     Vector,
-    dot,
     is_zero,
-    minus,
     over,
     parse,
     substituted,
@@ -219,7 +217,7 @@ class _Editor:
             text = f"the moment of inertia of {name} is missing: its mass is taken as that of a particle"
             yield self._massive("missing_term", text, name, mass.com, nothing)
         for point, r in self.parts.operator.base.motion.points[name].items():
-            d = minus(r, mass.com)
+            d = r - mass.com
             if all(map(is_zero, d)):
                 continue
             text = f"{name} is treated as if its mass centre were at its {point}"
@@ -228,7 +226,7 @@ class _Editor:
             yield self._massive("wrong_point", text, name, r, nothing)
             if plane:
                 text = f"the moment of inertia of {name} about its {point} stands where that about its mass centre is"
-                about = (own[0] + mass.m * dot(d, d),)
+                about = (own[0] + mass.m * (d @ d),)
                 yield self._massive("wrong_point", f"{text} needed (Steiner)", name, mass.com, about)
         yield from self._other_shapes(name, mass) if plane else ()
 

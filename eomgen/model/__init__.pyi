@@ -12,9 +12,6 @@ from eomgen.model.composite import Composite as Composite
 # One piece where it is in the body
 from eomgen.model.composite import PlacedPiece as PlacedPiece
 
-# k A
-from eomgen.model.composite import matrix_times as matrix_times
-
 # Pose of a piece's frame in the body: rotated as `turned` says, then by `angle` about `axis`
 from eomgen.model.composite import pose_of as pose_of
 

@@ -14,23 +14,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
-from eomgen.symbolic.expression import (
-    ZERO,
-    Matrix,
-    Pose,
-    Vector,
-    added,
-    cos,
-    is_zero,
-    over,
-    plus,
-    product,
-    rotation,
-    sin,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Pose, Vector, cos, is_zero, over, sin
 
 
 @dataclass(frozen=True)
@@ -70,15 +54,10 @@ class Composite:
         placed = tuple(PlacedPiece(piece, _placed(piece, m, value)) for piece, m in zip(pieces, masses, strict=True))
         m = value(mass) if mass is not None else sum(part.sign * part.mass.m for part in placed)
         com = _center(placed, _weights(pieces, masses, value))
-        I: Matrix = (ZERO, ZERO, ZERO)
+        I: Matrix = Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO))
         for part in placed:
-            I = added(I, matrix_times(part.sign, part.mass.about(com)))
+            I = I + part.sign * part.mass.about(com)
         return Composite(placed, MassProperties(m, com, I))
-
-
-def matrix_times(k: Any, A: Matrix) -> Matrix:
-    """k A"""
-    return (times(k, A[0]), times(k, A[1]), times(k, A[2]))
 
 
 def masses_of(pieces: Sequence[Any], mass: Any, value: ValueOf) -> tuple[Any, ...]:
@@ -118,7 +97,7 @@ def _placed(piece: Any, m: Any, value: ValueOf) -> MassProperties:
     """The mass properties of a piece in the body's axes."""
     own = piece.shape.of_mass(m, value)
     pose = pose_of(piece, value)
-    I = product(product(pose.R, own.I), transposed(pose.R))
+    I = pose.R @ own.I @ pose.R.T
     return MassProperties(m, pose.point(own.com), I)
 
 
@@ -127,7 +106,7 @@ def pose_of(piece: Any, value: ValueOf) -> Pose:
     R = oriented(piece.turned, value)
     if piece.angle is not None:
         angle = value(piece.angle)
-        R = product(R, rotation(unit(vector(piece.axis, value, Z)), cos(angle), sin(angle)))
+        R = R @ Matrix.rotation(unit(vector(piece.axis, value, Z)), cos(angle), sin(angle))
     return Pose(R, vector(piece.at, value))
 
 
@@ -141,8 +120,8 @@ def _weights(pieces: Sequence[Any], masses: Sequence[Any], value: ValueOf) -> li
 def _center(placed: Sequence[PlacedPiece], weights: Sequence[Any]) -> Vector:
     total = sum(weights)
     if is_zero(total):
-        return ZERO  # without mass, nothing has a centre
-    first: Vector = ZERO
+        return Vector.ZERO  # without mass, nothing has a centre
+    first: Vector = Vector.ZERO
     for weight, part in zip(weights, placed, strict=True):
-        first = plus(first, times(weight, part.mass.com))
-    return vector_of(over(x, total) for x in first)
+        first = first + weight * part.mass.com
+    return Vector(over(x, total) for x in first)

@@ -30,19 +30,7 @@ from eomgen.model.model import Model
 from eomgen.model.part import PartRule
 from eomgen.model.parts import Body, Coordinate
 from eomgen.model.trusses import in_parts
-from eomgen.symbolic.expression import (
-    Expression,
-    Matrix,
-    Pose,
-    apply,
-    cos,
-    plus,
-    product,
-    rotation,
-    sin,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, sin
 
 SMALL = "xyz"  # the sequence of the three turns
 
@@ -81,12 +69,12 @@ class DisplacedJoint(Joint):
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         places = len(self.along)
         still = self.placed.pose(self._standing(value), value)
-        R = product(still.R, self._rotation(s[places:])) if self.about else still.R
-        return Pose(R, plus(still.p, vector_of((*s[:places], *[0] * (3 - places)))))
+        R = still.R @ self._rotation(s[places:]) if self.about else still.R
+        return Pose(R, still.p + Vector((*s[:places], *[0] * (3 - places))))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
-        R_CP = transposed(self.pose(s, value).R)
-        along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[: len(self.along)])
+        R_CP = self.pose(s, value).R.T
+        along = tuple(linear(R_CP @ e) for e in (X, Y, Z)[: len(self.along)])
         if len(self.about) == 1:
             return (*along, angular(Z))
         return (*along, *turning_columns(SMALL, s[3:])) if self.about else along
@@ -102,7 +90,7 @@ class DisplacedJoint(Joint):
         return tuple(value(e) for e in self.placed.variables("plane" if len(self.along) == 2 else "space"))
 
     def _rotation(self, turns: Scalars) -> Matrix:
-        return rotation(Z, cos(turns[0]), sin(turns[0])) if len(turns) == 1 else rotation_by(SMALL, turns)
+        return Matrix.rotation(Z, cos(turns[0]), sin(turns[0])) if len(turns) == 1 else rotation_by(SMALL, turns)
 
 
 def freed(model: Model) -> Model:

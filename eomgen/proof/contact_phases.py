@@ -35,7 +35,7 @@ from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
-from eomgen.symbolic.expression import Scalar, State, apply
+from eomgen.symbolic.expression import Scalar, State
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
@@ -298,7 +298,7 @@ class _Bodies:
             mass = self.system.scope.mass_properties(link.name)
             v = self.system.motion.velocity((link.name, mass.com))
             motions += [*v, *link.twist.w]
-            momenta += [mass.m * x for x in v] + list(apply(mass.I, link.twist.w))
+            momenta += [mass.m * x for x in v] + list(mass.I @ link.twist.w)
         for link, k, armature in SystemInertia(self.system.motion).rotors:
             motions.append(link.s_rate[k])
             momenta.append(armature * link.s_rate[k])

@@ -41,26 +41,7 @@ from eomgen.proof.in_numbers import (
     way_through,
 )
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression import (
-    ZERO,
-    Fraction,
-    Numbers,
-    Pose,
-    Scalar,
-    State,
-    Twist,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    minus,
-    plus,
-    product,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Fraction, Pose, Scalar, State, Twist, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- declared work ---------------------------------------------------------------------------------------
@@ -75,7 +56,7 @@ from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 Term = tuple[Scalar, Any]
 """(a scalar that moves, the work for a unit of it)"""
-Placed = tuple[str | None, tuple[Scalar, ...], Numbers]
+Placed = tuple[str | None, tuple[Scalar, ...], Vector]
 """(body, a place of it as a function of the coordinates, the force there in ground axes)"""
 HALF = Fraction(1, 2)
 SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
@@ -187,7 +168,7 @@ class _Declared(InNumbers):
             pull = ActingElement(self.system, self.state, act).law[0]
             for body, sign in zip(act.bodies, (1, -1), strict=True):
                 if body is not None:
-                    yield from self._of_couple(body, (0, 0, sign * pull))
+                    yield from self._of_couple(body, Vector((0, 0, sign * pull)))
         else:
             for _, place, force in self._placed(act):
                 yield from zip(place, force, strict=True)
@@ -215,14 +196,14 @@ class _Declared(InNumbers):
         found: Pushes = {}
         for act in acts:
             if isinstance(act, CoupleOn):
-                add_push(found, act.body, self._couple(act), ZERO)
+                add_push(found, act.body, self._couple(act), Vector.ZERO)
             elif isinstance(act, Element) and not act.points:
                 pull = ActingElement(self.system, self.state, act).law[0]
                 for body, sign in zip(act.bodies, (1, -1), strict=True):
-                    add_push(found, body, (0, 0, sign * pull), ZERO)
+                    add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
             elif not isinstance(act, (PushOnCoordinate, GivenEnergy)):
                 for body, place, force in self._placed(act):
-                    add_push(found, body, cross(self.vector(place), force), force)
+                    add_push(found, body, self.vector(place).cross(force), force)
         return found
 
     def _placed(self, act: Act) -> Iterator[Placed]:
@@ -237,7 +218,7 @@ class _Declared(InNumbers):
             g = self.vector(self.scene.vector(act.acceleration))
             for name in act.bodies or [link.name for link in self.motion.links]:
                 mass = self.system.scope.mass_properties(name)
-                yield name, self.scene.position((name, mass.com)), times(self.one(mass.m), g)
+                yield name, self.scene.position((name, mass.com)), self.one(mass.m) * g
         elif isinstance(act, Element):
             yield from self._of_element(act)
 
@@ -248,21 +229,21 @@ class _Declared(InNumbers):
         ]
         A, B = map(self.vector, places)
         q = [self.vector(self.scene.vector(each)) for each in line.intensities]
-        gap = minus(B, A)
-        sixth = fifty_digits().functions["sqrt"](dot(gap, gap)) / 6
+        gap = B - A
+        sixth = fifty_digits().functions["sqrt"](gap @ gap) / 6
         for halves, sixths in SIMPSON:
-            here = times(sixth * sixths / 2, plus(times(2 - halves, q[0]), times(halves, q[1])))
+            here = sixth * sixths / 2 * ((2 - halves) * q[0] + halves * q[1])
             yield line.body, _between(places, halves), here
 
     def _of_element(self, element: Element) -> Iterator[Placed]:
         acting = ActingElement(self.system, self.state, element)
         for point, sign in zip(element.points, (1, -1), strict=True):
             place = self.scene.place(point)
-            yield place[0], self.scene.position(place), times(sign * acting.law[0], acting.direction)
+            yield place[0], self.scene.position(place), sign * acting.law[0] * acting.direction
 
-    def _couple(self, act: CoupleOn) -> Numbers:
+    def _couple(self, act: CoupleOn) -> Vector:
         given = self.at([self.system.scope.value(x) for x in act.couple])
-        own = vector_of(given if len(given) == 3 else (0, 0, *given))
+        own = Vector(given if len(given) == 3 else (0, 0, *given))
         return self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
 
 
@@ -353,15 +334,15 @@ def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -
     carried = (Twist() if link.parent < 0 else system.motion.links[link.parent].twist).at(link.local.p)
     turning = _turns(link, variable)
     column = link.S[variable][0 if turning else 1]
-    n, Q = apply(here.R, column), product(here.R, transposed(home.R))
-    own = link.twist.w if turning else plus(link.twist.v, cross(link.twist.w, link.point))
-    against = minus(apply(link.pose.R, own), apply(parent.R, carried.w if turning else carried.v))
+    n, Q = here.R @ column, here.R @ home.R.T
+    own = link.twist.w if turning else link.twist.v + link.twist.w.cross(link.point)
+    against = link.pose.R @ own - parent.R @ (carried.w if turning else carried.v)
     requested = (
-        dot(n, (Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
+        n @ Vector((Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
         Q[0][0] + Q[1][1] + Q[2][2] - 1,
-        dot(n, minus(here.p, home.p)),
-        dot(column, column),
-        dot(against, apply(link.pose.R, column)),
+        n @ (here.p - home.p),
+        column @ column,
+        against @ (link.pose.R @ column),
     )
     sine, cosine, way, square, rate = evaluate(requested, state, fifty_digits())
     size = square**0.5
@@ -383,7 +364,7 @@ class ActingElement(InNumbers):
     def wrong(self, applied: Applied) -> str:
         """Message if the loads or the energy of the element are not those of its law; ""."""
         pull, energy = self.law
-        reach: Any = 1 + max(map(abs, (x for end in self.ends for x in end)), default=0)
+        reach: Any = 1 + max((end.largest for end in self.ends), default=0)
         stated = pushes_of(self.motion, self.state, applied.loads)
         if body := pushed_otherwise(stated, self.of_pull(pull), (1 + abs(pull)) * reach):
             return f"pushes '{body}' otherwise than its length and rate say"
@@ -398,16 +379,16 @@ class ActingElement(InNumbers):
     # -- geometry --------------------------------------------------------------------------------------------
 
     @cached_property
-    def ends(self) -> tuple[Numbers, ...]:
+    def ends(self) -> tuple[Vector, ...]:
         return tuple(self.vector(self.scene.position(self.scene.place(p))) for p in self.element.points)
 
     @cached_property
-    def direction(self) -> Numbers:
+    def direction(self) -> Vector:
         """Direction of the pull on the first end, a unit vector; 0 for a spring whose ends coincide."""
         along = self.element.along
-        v: Numbers = minus(self.ends[1], self.ends[0]) if along is None else self.vector(self.scene.vector(along))
+        v: Vector = self.ends[1] - self.ends[0] if along is None else self.vector(self.scene.vector(along))
         if along is None and self._is_spring_without_length and not any(v):
-            return ZERO  # it pulls nothing, in no direction
+            return Vector.ZERO  # it pulls nothing, in no direction
         return direction_at(v)
 
     @property
@@ -425,7 +406,7 @@ class ActingElement(InNumbers):
             return second - first, w_2 - w_1
         speeds = [self.vector(self.motion.velocity(self.scene.place(p))) for p in self.element.points]
         n = self.direction
-        return dot(minus(self.ends[1], self.ends[0]), n), dot(minus(speeds[1], speeds[0]), n)
+        return (self.ends[1] - self.ends[0]) @ n, (speeds[1] - speeds[0]) @ n
 
     def _turned(self, body: str | None) -> tuple[Any, Any]:
         """Angle of the axes about z, with the whole turns of the body, and its rate."""
@@ -460,10 +441,10 @@ class ActingElement(InNumbers):
         if not isinstance(slack, str):
             return self.at((self.system.scope.value(slack),))[0]
         first, second = (self.scene.position(self.scene.place(p)) for p in self.element.points)
-        apart = self.vector([self.scene.start(x) for x in minus(second, first)])
+        apart = self.vector([self.scene.start(x) for x in second - first])
         if self.element.along is not None:
-            return dot(apart, self.direction)
-        return dot(apart, direction_at(apart)) if any(apart) else 0
+            return apart @ self.direction
+        return apart @ direction_at(apart) if any(apart) else 0
 
     # -- acts ------------------------------------------------------------------------------------------------
 
@@ -472,11 +453,11 @@ class ActingElement(InNumbers):
         found: Pushes = {}
         if not self.element.points:
             for body, sign in zip(self.element.bodies, (1, -1), strict=True):
-                add_push(found, body, (0, 0, sign * pull), ZERO)
+                add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
             return found
         for point, place, sign in zip(self.element.points, self.ends, (1, -1), strict=True):
-            f: Numbers = times(sign * pull, self.direction)
-            add_push(found, self.scene.place(point)[0], cross(place, f), f)
+            f: Vector = sign * pull * self.direction
+            add_push(found, self.scene.place(point)[0], place.cross(f), f)
         return found
 
 
@@ -519,13 +500,14 @@ class _Stop:
 
     body: str | None
     place: Vector
-    center: Numbers
+    center: Vector
     a: Any
-    axis: Numbers
+    axis: Vector
     passes: bool
 
-    def touched(self, d: Numbers) -> Numbers:
-        return plus(self.center, times(self.a, cross(self.axis, d)))
+    def touched(self, d: Vector) -> Vector:
+        touched: Vector = self.center + self.axis.cross(d) * self.a
+        return touched
 
 
 @dataclass(frozen=True)
@@ -543,9 +525,9 @@ class _Strung(InNumbers):
         for row, rope in zip(rows, self._ropes, strict=True):
             due: Pushes = {}
             for first, second, d in rope:
-                add_push(due, first.body, cross(first.touched(d), d), d)
-                add_push(due, second.body, cross(second.touched(d), times(-1, d)), times(-1, d))
-            size = 1 + max(abs(x) for first, *_ in rope for x in first.center)
+                add_push(due, first.body, first.touched(d).cross(d), d)
+                add_push(due, second.body, second.touched(d).cross(-d), -d)
+            size = 1 + max(first.center.largest for first, *_ in rope)
             stated = pushes_of(self.motion, self.state, row.pushes)
             if body := pushed_otherwise(stated, due, size):
                 return f"pulls '{body}' otherwise than it runs"
@@ -561,16 +543,16 @@ class _Strung(InNumbers):
             return ""
         declared = self.one(self._scene.value(self.thread.length))
         first, second = (stop.center for stop in self._stops)
-        apart: Numbers = minus(second, first)
-        square: Any = dot(apart, apart)
+        apart: Vector = second - first
+        square: Any = apart @ apart
         wrong = abs(square - declared**2) > tolerances.COMPUTED * (1 + square)
         return f"is {float(square) ** 0.5:.10g} long for {float(declared):.10g}" if wrong else ""
 
     @cached_property
-    def _ropes(self) -> list[list[tuple[_Stop, _Stop, Numbers]]]:
+    def _ropes(self) -> list[list[tuple[_Stop, _Stop, Vector]]]:
         """The strands of one tension each: (from, to, direction)."""
         ways = self.thread.ways or (None,) * (len(self._stops) - 1)
-        ropes: list[list[tuple[_Stop, _Stop, Numbers]]] = []
+        ropes: list[list[tuple[_Stop, _Stop, Vector]]] = []
         for (first, second), way in zip(pairwise(self._stops), ways, strict=True):
             strand = (first, second, self._direction(first, second) if way is None else self._typed(way))
             if ropes and first.passes:
@@ -579,35 +561,37 @@ class _Strung(InNumbers):
                 ropes.append([strand])
         return ropes
 
-    def _direction(self, first: _Stop, second: _Stop) -> Numbers:
+    def _direction(self, first: _Stop, second: _Stop) -> Vector:
         """Direction of the line that is tangent to both stops."""
-        D: Numbers = minus(second.center, first.center)
+        D: Vector = second.center - first.center
         self._refuse_turned_over(first, second, D)
         along = direction_at(D)
         n = first.axis if first.a != 0 else second.axis
-        same: Any = dot(n, second.axis)
+        same: Any = n @ second.axis
         offset: Any = first.a - (same if second.a != 0 else 0) * second.a
-        distance: Any = dot(D, along)
+        distance: Any = D @ along
         if abs(offset) > distance:
             raise NoValue("one wrap lies within the other")
         functions = fifty_digits().functions
         lean = -functions["asin"](offset / distance)
-        return plus(times(functions["cos"](lean), along), times(functions["sin"](lean), cross(n, along)))
+        direction: Vector = along * functions["cos"](lean) + n.cross(along) * functions["sin"](lean)
+        return direction
 
-    def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Numbers) -> None:
+    def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Vector) -> None:
         """Raises NoValue where a strand runs backwards: a line along an axis has the sense that it has at the start."""
-        at_start = [self._scene.value_at_start(x) for x in minus(second.place, first.place)]
-        if sum(float(x) * (y or 0.0) for x, y in zip(D, at_start, strict=True)) < 0:
+        at_start = [self._scene.value_at_start(x) for x in second.place - first.place]
+        here: list[Any] = list(D)
+        if sum(float(x) * (y or 0.0) for x, y in zip(here, at_start, strict=True)) < 0:
             raise NoValue("a strand runs the other way than at the start")
 
-    def _typed(self, way: Any) -> Numbers:
+    def _typed(self, way: Any) -> Vector:
         """A direction that is given, of length 1."""
         named = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
         return self.vector(named[way]) if isinstance(way, str) else direction_at(self.vector(self._scene.vector(way)))
 
-    def _lengthening(self, first: _Stop, second: _Stop, d: Numbers) -> Any:
+    def _lengthening(self, first: _Stop, second: _Stop, d: Vector) -> Any:
         """Relative velocity d . (v_2 - v_1) of the two surfaces."""
-        return dot(d, minus(*(self.velocity(stop.body, stop.touched(d)) for stop in (second, first))))
+        return d @ (self.velocity(second.body, second.touched(d)) - self.velocity(first.body, first.touched(d)))
 
     # -- as it is declared -----------------------------------------------------------------------------------
 
@@ -632,7 +616,7 @@ class _Strung(InNumbers):
             radius = scene.radius(item.body) if item.radius is None else scene.value(item.radius)
             axis = z if item.axis is None else direction_at(self.vector(scene.vector(item.axis)))
             if not (fixed or scene.plane):
-                axis = vector_of(dot(self.vector(row), axis) for row in scene.orientation(item.body))
+                axis = Vector(self.vector(row) @ axis for row in scene.orientation(item.body))
             a = self.one(radius)
             yield _Stop(item.body, r, self.vector(r), -a if item.turn == "ccw" else a, axis, bool(item.slip))
 

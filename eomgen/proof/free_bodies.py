@@ -38,26 +38,7 @@ from eomgen.mechanics.free_bodies import (
 )
 from eomgen.mechanics.kinematics import BodyLink, SystemInertia
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
-from eomgen.symbolic.expression import (
-    ZERO,
-    Matrix,
-    Node,
-    Scalar,
-    State,
-    Vector,
-    Wrench,
-    apply,
-    cross,
-    gradient,
-    matrix_of,
-    minus,
-    plus,
-    pullback,
-    symbols_of,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, Wrench, gradient, pullback, symbols_of
 from eomgen.symbolic.numeric import NoValue, balanced, evaluate, fifty_digits, rank, tolerances
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
@@ -286,10 +267,10 @@ class _Formulas:
         """Pose and motion of every joint: E^T by rows, r and r' in the parent's axes, s in the body's."""
         found = []
         for link in self.system.motion.links:
-            r = link.local.point(times(-1, link.point))
-            spin = ZERO
+            r = link.local.point(-link.point)
+            spin = Vector.ZERO
             for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
-                spin = plus(spin, times(rate, w))
+                spin = spin + rate * w
             rows = (x for row in link.local.R for x in row)
             found.append((*rows, *r, *self.system.scope.time_derivative(r), *spin))
         return found
@@ -381,13 +362,13 @@ class _Bodies(InNumbers):
         """(w, wd, acceleration of its origin) of every body in its axes, outward from the ground."""
         found: list[tuple[Vector, Vector, Vector]] = []
         for link, own, rate in zip(self.links, *self._moving, strict=True):
-            E = transposed(_turn(own))
-            r, velocity, s = (vector_of(own[k : k + 3]) for k in (9, 12, 15))
-            w_p, wd_p, acc_p = found[link.parent] if link.parent >= 0 else (ZERO, ZERO, ZERO)
-            carried = apply(E, w_p)
-            acc = plus(acc_p, plus(cross(wd_p, r), cross(w_p, plus(cross(w_p, r), times(2, velocity)))))
-            wd = plus(plus(apply(E, wd_p), vector_of(rate[15:18])), cross(carried, s))
-            found.append((plus(carried, s), wd, apply(E, plus(acc, vector_of(rate[12:15])))))
+            E = _turn(own).T
+            r, velocity, s = (Vector(own[k : k + 3]) for k in (9, 12, 15))
+            w_p, wd_p, acc_p = found[link.parent] if link.parent >= 0 else (Vector.ZERO, Vector.ZERO, Vector.ZERO)
+            carried = E @ w_p
+            acc = acc_p + (wd_p.cross(r) + w_p.cross(w_p.cross(r) + 2 * velocity))
+            wd = E @ wd_p + Vector(rate[15:18]) + carried.cross(s)
+            found.append((carried + s, wd, E @ (acc + Vector(rate[12:15]))))
         return found
 
     @property
@@ -425,14 +406,14 @@ class _Bodies(InNumbers):
         values = _in_parts(self.at([x for _, wrench, _ in pushes for x in (*wrench.tau, *wrench.f)]), 6)
         sizes = [1 if lam is None else self.state[lam] for *_, lam in pushes]
         return [
-            (body, Wrench(times(size, vector_of(x[:3])), times(size, vector_of(x[3:]))))
+            (body, Wrench(size * Vector(x[:3]), size * Vector(x[3:])))
             for (body, *_), size, x in zip(pushes, sizes, values, strict=True)
         ]
 
     @property
     def _applied(self) -> list[Wrench]:
         """All of them together on every body."""
-        total = {link.name: Wrench(ZERO, ZERO) for link in self.links}
+        total = {link.name: Wrench(Vector.ZERO, Vector.ZERO) for link in self.links}
         for body, push in self._pushes:
             total[body] = total[body].plus(push)
         return list(total.values())
@@ -441,13 +422,13 @@ class _Bodies(InNumbers):
     def _through_joints(self) -> list[Wrench]:
         """Wrench that every body needs through its joint, about its origin in its axes; leaves pass theirs on."""
         found = [
-            Wrench(minus(taken.tau, given.tau), minus(taken.f, given.f))
+            Wrench(taken.tau - given.tau, taken.f - given.f)
             for taken, given in zip(self._inertia, self._applied, strict=True)
         ]
         for i in reversed(range(len(found))):
             parent, own = self.links[i].parent, self._moving[0][i]
             if parent >= 0:
-                carried = found[i].turned(_turn(own)).moved(vector_of(own[9:12]))
+                carried = found[i].turned(_turn(own)).moved(Vector(own[9:12]))
                 found[parent] = found[parent].plus(carried)
         return found
 
@@ -472,7 +453,7 @@ class _Bodies(InNumbers):
         for own, joint, wrench, (f, tau) in zip(
             self.formulas.speeds, self._moving[0], self._through_joints, self._sizes, strict=True
         ):
-            for k, y in enumerate((*apply(_turn(joint), wrench.f), *wrench.tau)):
+            for k, y in enumerate((*(_turn(joint) @ wrench.f), *wrench.tau)):
                 for symbol in own:
                     value = next(values)
                     yield place[symbol], value * y, abs(value) * (f if k < 3 else tau)
@@ -493,9 +474,9 @@ class _Bodies(InNumbers):
 
 def _taken(mass: Sequence[Any], w: Vector, wd: Vector, acc: Vector) -> Wrench:
     """Moment I wd + w x I w + c x f and force f = m (acc + wd x c + w x (w x c))."""
-    m, c, I = mass[0], vector_of(mass[1:4]), matrix_of((mass[4:7], mass[7:10], mass[10:13]))
-    f = times(m, plus(acc, plus(cross(wd, c), cross(w, cross(w, c)))))
-    return Wrench(plus(plus(apply(I, wd), cross(w, apply(I, w))), cross(c, f)), f)
+    m, c, I = mass[0], Vector(mass[1:4]), Matrix.of((mass[4:7], mass[7:10], mass[10:13]))
+    f = m * (acc + (wd.cross(c) + w.cross(w.cross(c))))
+    return Wrench(I @ wd + w.cross(I @ w) + c.cross(f), f)
 
 
 def _size(vector: Sequence[Any]) -> Any:
@@ -504,7 +485,7 @@ def _size(vector: Sequence[Any]) -> Any:
 
 def _turn(joint: Sequence[Any]) -> Matrix:
     """Rotation matrix from the child's axes to the parent's."""
-    return matrix_of((joint[0:3], joint[3:6], joint[6:9]))
+    return Matrix.of((joint[0:3], joint[3:6], joint[6:9]))
 
 
 def _in_parts(values: Sequence[Any], length: int) -> list[list[Any]]:
@@ -614,4 +595,4 @@ class _Named(InNumbers):
             total = [x + share * y for x, y in zip(total, own, strict=True)]
         if self.system.scope.model.space == "plane":
             return tuple(total)
-        return self.carried(self.motion.links[on].name, (total[0], total[1], total[2]), direction=True)
+        return self.carried(self.motion.links[on].name, Vector((total[0], total[1], total[2])), direction=True)

@@ -13,22 +13,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import Motion
 from eomgen.model import Couple, PointForce
-from eomgen.symbolic.expression import (
-    ZERO,
-    Matrix,
-    Numbers,
-    Scalar,
-    State,
-    apply,
-    cross,
-    dot,
-    matrix_of,
-    minus,
-    plus,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Scalar, State, Vector
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 SAMPLES = "times of samples"
@@ -37,16 +22,17 @@ FINER_STEP = STEP / 10**4  # where the way bends sharply
 SECOND_STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
 
 
-def direction_at(v: Numbers) -> Numbers:
+def direction_at(v: Vector) -> Vector:
     """v over its length.
 
     Raises:
         NoValue: it has none.
     """
-    size = fifty_digits().functions["sqrt"](dot(v, v))
+    size = fifty_digits().functions["sqrt"](v @ v)
     if size == 0:
         raise NoValue("a direction of length 0")
-    return times(1 / size, v)
+    unit: Vector = v * (1 / size)
+    return unit
 
 
 def with_inputs(system: System, known: State) -> State:
@@ -72,40 +58,40 @@ class InNumbers:
     def one(self, x: Scalar) -> Any:
         return self.at((x,))[0]
 
-    def vector(self, v: Sequence[Scalar]) -> Numbers:
-        return vector_of(self.at(v))
+    def vector(self, v: Sequence[Scalar]) -> Vector:
+        return Vector(self.at(v))
 
-    def carried(self, body: str | None, place: Numbers, *, direction: bool = False) -> Numbers:
+    def carried(self, body: str | None, place: Vector, *, direction: bool = False) -> Vector:
         """Place or direction of a body in ground axes."""
         if body is None:
             return place
         R, p = self._stand(body)
-        turned = apply(R, place)
-        return turned if direction else plus(p, turned)
+        turned = R @ place
+        return turned if direction else p + turned
 
     @cached_property
-    def _stands(self) -> dict[str, tuple[Matrix, Numbers]]:
+    def _stands(self) -> dict[str, tuple[Matrix, Vector]]:
         return {}
 
-    def _stand(self, body: str) -> tuple[Matrix, Numbers]:
+    def _stand(self, body: str) -> tuple[Matrix, Vector]:
         """R and p of a body, worked once."""
         if body not in self._stands:
             pose = self.motion.link(body).pose
             own = self.at([*(x for row in pose.R for x in row), *pose.p])
-            self._stands[body] = matrix_of((own[0:3], own[3:6], own[6:9])), vector_of(own[9:12])
+            self._stands[body] = Matrix.of((own[0:3], own[3:6], own[6:9])), Vector(own[9:12])
         return self._stands[body]
 
-    def velocity(self, body: str | None, P: Numbers) -> Numbers:
+    def velocity(self, body: str | None, P: Vector) -> Vector:
         """Velocity of the material point of a body at P: R (v + w x R^T (P - p))."""
         if body is None:
-            return ZERO
+            return Vector.ZERO
         (R, p), twist = self._stand(body), self.motion.link(body).twist
         own = self.at((*twist.w, *twist.v))
-        w, v = vector_of(own[:3]), vector_of(own[3:])
-        return apply(R, plus(v, cross(w, apply(transposed(R), minus(P, p)))))
+        w, v = Vector(own[:3]), Vector(own[3:])
+        return R @ (v + w.cross(R.T @ (P - p)))
 
 
-Pushes = dict[str, tuple[Numbers, Numbers]]
+Pushes = dict[str, tuple[Vector, Vector]]
 """(moment about the ground's origin, force) on each body, in ground axes."""
 
 
@@ -116,23 +102,23 @@ def pushes_of(motion: Motion, state: State, loads: Iterable[Any]) -> Pushes:
         if isinstance(load, PointForce):
             scalars = (*motion.position(load.place), *motion.in_ground_axes(load.force, load.axes))
             values = evaluate(scalars, state, fifty_digits())
-            add_push(found, load.place[0], cross(vector_of(values[:3]), vector_of(values[3:])), vector_of(values[3:]))
+            add_push(found, load.place[0], Vector(values[:3]).cross(Vector(values[3:])), Vector(values[3:]))
         elif isinstance(load, Couple):
             couple = evaluate(motion.in_ground_axes(load.couple, load.axes), state, fifty_digits())
-            add_push(found, load.body, vector_of(couple), ZERO)
+            add_push(found, load.body, Vector(couple), Vector.ZERO)
     return found
 
 
-def add_push(pushes: Pushes, body: str | None, moment: Numbers, force: Numbers) -> None:
+def add_push(pushes: Pushes, body: str | None, moment: Vector, force: Vector) -> None:
     """One more push; the ground bears all."""
     if body is not None:
-        tau, f = pushes.get(body, (ZERO, ZERO))
-        pushes[body] = plus(tau, moment), plus(f, force)
+        tau, f = pushes.get(body, (Vector.ZERO, Vector.ZERO))
+        pushes[body] = tau + moment, f + force
 
 
 def pushed_otherwise(found: Pushes, due: Pushes, size: Any) -> str:
     """First body on which a wrench differs from the due one, relative to the size of forces times arms; ""."""
-    nothing = (ZERO, ZERO)
+    nothing = (Vector.ZERO, Vector.ZERO)
     for body in dict.fromkeys((*found, *due)):
         pairs = zip(found.get(body, nothing), due.get(body, nothing), strict=True)
         apart: list[Any] = [x - y for a, b in pairs for x, y in zip(a, b, strict=True)]

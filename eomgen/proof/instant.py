@@ -32,29 +32,7 @@ from eomgen.proof.degrees_of_freedom import Nearby
 from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through, with_inputs
 from eomgen.proof.states import closed_state
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    Call,
-    Matrix,
-    Node,
-    Numbers,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    matrix_of,
-    minus,
-    parse_equation,
-    plus,
-    product,
-    symbols_of,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Matrix, Node, Scalar, Vector, is_zero, parse_equation, symbols_of
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, rank, tolerances
 
 DIFFERENCES = "differences at 50 digits"
@@ -118,25 +96,25 @@ class Seen:
         w, e: spin and angular acceleration.
     """
 
-    p: Numbers
-    v: Numbers
-    a: Numbers
+    p: Vector
+    v: Vector
+    a: Vector
     R: Matrix
     R1: Matrix
     R2: Matrix
-    w: Numbers
-    e: Numbers
+    w: Vector
+    e: Vector
 
-    def velocity(self, place: Numbers) -> Numbers:
-        return plus(self.v, cross(self.w, minus(place, self.p)))
+    def velocity(self, place: Vector) -> Vector:
+        return self.v + self.w.cross(place - self.p)
 
-    def acceleration(self, place: Numbers) -> Numbers:
-        r = minus(place, self.p)
-        return plus(self.a, plus(cross(self.e, r), cross(self.w, cross(self.w, r))))
+    def acceleration(self, place: Vector) -> Vector:
+        r = place - self.p
+        return self.a + (self.e.cross(r) + self.w.cross(self.w.cross(r)))
 
 
-NONE: Matrix = (ZERO, ZERO, ZERO)
-REST = Seen(ZERO, ZERO, ZERO, IDENTITY, NONE, NONE, ZERO, ZERO)
+NONE = Matrix((Vector.ZERO, Vector.ZERO, Vector.ZERO))
+REST = Seen(Vector.ZERO, Vector.ZERO, Vector.ZERO, Matrix.IDENTITY, NONE, NONE, Vector.ZERO, Vector.ZERO)
 
 
 @dataclass(frozen=True)
@@ -193,8 +171,8 @@ class _Proof:
             return f"{reported} for {left}"
         return ""
 
-    def here(self, scalars: Sequence[Scalar]) -> Numbers:
-        return vector_of(evaluate(tuple(scalars), self.way.now, fifty_digits()))
+    def here(self, scalars: Sequence[Scalar]) -> Vector:
+        return Vector(evaluate(tuple(scalars), self.way.now, fifty_digits()))
 
     def one(self, x: Scalar) -> Any:
         return evaluate((x,), self.way.now, fifty_digits())[0]
@@ -206,15 +184,15 @@ class _Proof:
 
     def _seen(self, pose: Any) -> Seen:
         now, first, second = self.along([*pose.p, *(x for row in pose.R for x in row)])
-        R, R1, R2 = (matrix_of((x[3:6], x[6:9], x[9:12])) for x in (now, first, second))
-        p, v, a = (vector_of(x[:3]) for x in (now, first, second))
+        R, R1, R2 = (Matrix.of((x[3:6], x[6:9], x[9:12])) for x in (now, first, second))
+        p, v, a = (Vector(x[:3]) for x in (now, first, second))
         return Seen(p, v, a, R, R1, R2, _turning(R1, R), _turning(R2, R))
 
     @cached_property
     def size(self) -> tuple[Any, Any]:
         """Largest velocity and largest acceleration of the bodies."""
-        speeds = [abs(x) for body in self.bodies.values() for x in (*body.v, *body.w)]
-        rates = [abs(x) for body in self.bodies.values() for x in (*body.a, *body.e)]
+        speeds = [x.largest for body in self.bodies.values() for x in (body.v, body.w)]
+        rates = [x.largest for body in self.bodies.values() for x in (body.a, body.e)]
         return max(speeds, default=0), max(rates, default=0)
 
     def differs(self, stated: Sequence[Any], found: Sequence[Any], order: int, tolerance: float = 0.0) -> bool:
@@ -297,12 +275,12 @@ class _Proof:
             i, j = (self.bodies[body] for body in pair)
             point = self.here(center.point)
             if center.at_infinity:
-                apart = minus(j.velocity(i.p), i.velocity(i.p))
-                left: tuple[Any, ...] = (j.w[2] - i.w[2], dot(apart, point) / _size(point))
+                apart = j.velocity(i.p) - i.velocity(i.p)
+                left: tuple[Any, ...] = (j.w[2] - i.w[2], apart @ point / _size(point))
             else:
-                place = (point[0], point[1], 0)
-                left = minus(j.velocity(place), i.velocity(place))[:2]
-            if self.differs(left, (0,) * len(left), 1, self.tolerance * (1 + max(map(abs, point)))):
+                place = Vector((point[0], point[1], 0))
+                left = (j.velocity(place) - i.velocity(place))[:2]
+            if self.differs(left, (0,) * len(left), 1, self.tolerance * (1 + point.largest)):
                 return center.name
         return ""
 
@@ -313,7 +291,7 @@ class _Proof:
             return None
         for three in list(combinations(mechanism.blocks, 3))[:MOST_TRIPLES]:
             points = [_unit(self.here(mechanism.centers[pair].point)) for pair in combinations(three, 2)]
-            volume: Any = dot(points[0], cross(points[1], points[2]))
+            volume: Any = points[0] @ points[1].cross(points[2])
             if abs(volume) > self.tolerance:
                 return f"those of {', '.join(three)}"
         return ""
@@ -339,10 +317,10 @@ class _Proof:
         if motion.inflection is not None and self.accelerated:
             (x, y, _), radius = self.here(motion.inflection[0]), self.one(motion.inflection[1])
             for c, s in ((5, 0), (-3, 4)):
-                place = (x + c * radius / 5, y + s * radius / 5, 0)
+                place = Vector((x + c * radius / 5, y + s * radius / 5, 0))
                 v = seen.velocity(place)
                 if (size := _size(v)) > tolerances.COMPUTED * self.size[0]:  # not the centre of rotation itself
-                    yield "the inflection circle", (cross(v, seen.acceleration(place))[2] / size,), 2
+                    yield "the inflection circle", (v.cross(seen.acceleration(place))[2] / size,), 2
         if motion.slowest is not None:
             first, last, least = motion.slowest
             ends = [seen.velocity(self.here(place)) for _, place in motion.ends]
@@ -352,9 +330,9 @@ class _Proof:
         """Message if a body's kind of motion at the instant, or in the long run, is wrong; ""."""
         for motion in motions:
             seen, still = self.bodies[motion.body], (0, 0, 0)
-            turns, moves = (self.differs(still, x, 1, self.tolerance) for x in (seen.w, seen.velocity(ZERO)))
+            turns, moves = (self.differs(still, x, 1, self.tolerance) for x in (seen.w, seen.velocity(Vector.ZERO)))
             slides = turns and self.differs(
-                (0,), (dot(seen.w, seen.velocity(ZERO)) / _size(seen.w),), 1, self.tolerance
+                (0,), (seen.w @ seen.velocity(Vector.ZERO) / _size(seen.w),), 1, self.tolerance
             )
             word = ("helical motion" if slides else "rotation") if turns else "translation" if moves else "rest"
             if motion.now != word:
@@ -384,23 +362,23 @@ class _Proof:
                     return f"{what.replace('_', ' ')} of {point} in {body}"
         return "" if relative else None
 
-    def _parts(self, point: str, body: str) -> Iterator[tuple[str, int, Numbers]]:
+    def _parts(self, point: str, body: str) -> Iterator[tuple[str, int, Vector]]:
         """(part of a `Composition`, its order, the part by differences)."""
         system = self.state.system
         motion, carrier = system.motion, self.bodies[body]
         pose = motion.link(body).pose
         place = motion.position(motion.place(point))
-        r, v, a = map(vector_of, self.along(place))
-        _, v_r, a_r = map(vector_of, self.along(apply(transposed(pose.R), minus(place, pose.p))))
-        v_r, a_r = apply(carrier.R, v_r), apply(carrier.R, a_r)
-        arm = apply(transposed(carrier.R), minus(r, carrier.p))
-        v_t, a_t = plus(carrier.v, apply(carrier.R1, arm)), plus(carrier.a, apply(carrier.R2, arm))
+        r, v, a = map(Vector, self.along(place))
+        _, v_r, a_r = map(Vector, self.along(pose.R.T @ (place - pose.p)))
+        v_r, a_r = carrier.R @ v_r, carrier.R @ a_r
+        arm = carrier.R.T @ (r - carrier.p)
+        v_t, a_t = carrier.v + carrier.R1 @ arm, carrier.a + carrier.R2 @ arm
         yield from (("velocity", 1, v), ("relative_velocity", 1, v_r), ("transport_velocity", 1, v_t))
         yield from (("acceleration", 2, a), ("relative_acceleration", 2, a_r), ("transport_acceleration", 2, a_t))
-        yield "coriolis", 2, minus(a, plus(a_t, a_r))
-        outwards = minus(r, carrier.p)
-        yield "euler", 2, cross(carrier.e, outwards)
-        yield "centripetal", 2, cross(carrier.w, cross(carrier.w, outwards))
+        yield "coriolis", 2, a - (a_t + a_r)
+        outwards = r - carrier.p
+        yield "euler", 2, carrier.e.cross(outwards)
+        yield "centripetal", 2, carrier.w.cross(carrier.w.cross(outwards))
 
     # -- the law ---------------------------------------------------------------------------------------------
 
@@ -417,29 +395,31 @@ class _Proof:
         return ""
 
 
-def _turning(rate: Matrix, R: Matrix) -> Numbers:
+def _turning(rate: Matrix, R: Matrix) -> Vector:
     """Angular velocity by the skew part of R' R^T, and angular acceleration by that of R'' R^T."""
-    A = product(rate, transposed(R))
+    A = rate @ R.T
     half = fifty_digits().number(1) / 2
-    return times(half, (A[2][1] - A[1][2], A[0][2] - A[2][0], A[1][0] - A[0][1]))
+    turning: Vector = Vector((A[2][1] - A[1][2], A[0][2] - A[2][0], A[1][0] - A[0][1])) * half
+    return turning
 
 
-def _size(v: Numbers) -> Any:
-    square: Any = dot(v, v)
+def _size(v: Vector) -> Any:
+    square: Any = v @ v
     return square**0.5
 
 
-def _unit(v: Numbers) -> Numbers:
-    return times(1 / _size(v), v)
+def _unit(v: Vector) -> Vector:
+    unit: Vector = v * (1 / _size(v))
+    return unit
 
 
-def _least(start: Numbers, end: Numbers) -> Any:
+def _least(start: Vector, end: Vector) -> Any:
     """The least size of v between two values, on the way from the one to the other."""
-    step: Numbers = minus(end, start)
-    square: Any = dot(step, step)
-    along: Any = dot(start, step)
+    step: Vector = end - start
+    square: Any = step @ step
+    along: Any = start @ step
     part = min(max(-along / square, 0), 1) if square else 0
-    v: Numbers = plus(start, times(part, step))
+    v: Vector = start + part * step
     return _size(v)
 
 
@@ -476,7 +456,7 @@ def _degrees_of_freedom_left(system: System, values: Mapping[Node, Any]) -> int:
 #     q +- h q' + h^2 q''/2,  t +- h;     r' = (r+ - r-)/2h,  r'' = (r+ - 2 r + r-)/h^2
 
 
-UNIT: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+UNIT = Matrix.IDENTITY
 
 
 @dataclass(frozen=True)
@@ -512,13 +492,13 @@ class NearbyStates:
         now, first, second = self._way.along(scalars)
         return now, first, second if self._accelerations is not None else [math.nan] * len(now)
 
-    def around(self, place: Vector) -> tuple[Numbers, Numbers, Numbers]:
+    def around(self, place: Vector) -> tuple[Vector, Vector, Vector]:
         """A place a moment before, now, and a moment later."""
-        now, first, second = map(vector_of, self._way.along(place))
-        moved, bent = times(SECOND_STEP, first), times(SECOND_STEP**2 / 2, second)
-        return minus(plus(now, bent), moved), now, plus(plus(now, bent), moved)
+        now, first, second = map(Vector, self._way.along(place))
+        moved, bent = SECOND_STEP * first, SECOND_STEP**2 / 2 * second
+        return now + bent - moved, now, now + bent + moved
 
-    def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Numbers, Numbers]]:
+    def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Vector, Vector]]:
         """(m, r, v): with P the integral of d d^T dm about the mass centre C, at C +- e_i and C +- (e_i + e_j)
 
             m_i = (P_ii - sum_j P_ij)/2,     m_ij = P_ij/2,     and at C the rest of m.
@@ -530,17 +510,15 @@ class NearbyStates:
             raise NoValue("rotors in a joint are no particles of the body")
         mass = self.scene.mass(body)
         P = self._second_moments(body, mass.I)
-        arms = [(times(1, UNIT[i]), (P[i][i] - sum(P[i][j] for j in range(3) if j != i)) / 2) for i in range(3)]
-        arms += [(plus(UNIT[i], UNIT[j]), P[i][j] / 2) for i, j in ((0, 1), (0, 2), (1, 2))]
-        ends = [(end, m) for arm, m in arms if m for end in (arm, minus(ZERO, arm))]
+        arms = [(1 * UNIT[i], (P[i][i] - sum(P[i][j] for j in range(3) if j != i)) / 2) for i in range(3)]
+        arms += [(UNIT[i] + UNIT[j], P[i][j] / 2) for i, j in ((0, 1), (0, 2), (1, 2))]
+        ends = [(end, m) for arm, m in arms if m for end in (arm, Vector.ZERO - arm)]
         (whole,) = self.along((mass.m,))[0]
-        held = [(ZERO, whole - sum(m for _, m in ends)), *ends]
+        held = [(Vector.ZERO, whole - sum(m for _, m in ends)), *ends]
         origin, R = self.scene.origin(body), self.scene.axes(body)
-        places = [plus(origin, apply(R, plus(mass.com, arm))) for arm, _ in held]
+        places = [origin + R @ (mass.com + arm) for arm, _ in held]
         now, rates, _ = self.along([x for place in places for x in place])
-        return [
-            (m, vector_of(now[3 * k : 3 * k + 3]), vector_of(rates[3 * k : 3 * k + 3])) for k, (_, m) in enumerate(held)
-        ]
+        return [(m, Vector(now[3 * k : 3 * k + 3]), Vector(rates[3 * k : 3 * k + 3])) for k, (_, m) in enumerate(held)]
 
     def _second_moments(self, body: str, I: Matrix) -> list[list[Any]]:
         """P = tr(I)/2 - I in body axes; a body of which the moment about z alone is known is thin."""
@@ -578,12 +556,12 @@ class NearbyStates:
             self._add_effort(pushes, effort)
         for name, (moment, force) in pushes.items():
             if body in (None, name):
-                rates = vector_of(self.along(self.scene.origin(name))[1])
+                rates = Vector(self.along(self.scene.origin(name))[1])
                 flat = self.along([x for row in self.scene.axes(name) for x in row])
-                W = product(_rows(flat[1]), transposed(_rows(flat[0])))
-                w = (W[2][1], W[0][2], W[1][0])
-                arm = vector_of(self.along(self.scene.origin(name))[0])
-                total = total + dot(force, rates) + dot(minus(moment, cross(arm, force)), w)
+                W = _rows(flat[1]) @ _rows(flat[0]).T
+                w = Vector((W[2][1], W[0][2], W[1][0]))
+                arm = Vector(self.along(self.scene.origin(name))[0])
+                total = total + force @ rates + (moment - arm.cross(force)) @ w
         for effort in loads.efforts if body is None else ():
             link = system.motion.link(effort.body)
             (push,) = evaluate((effort.effort,), known, fifty_digits())
@@ -597,13 +575,13 @@ class NearbyStates:
         turn, slide = link.S[effort.variable]
         if not (all(map(is_zero, turn)) or all(map(is_zero, slide))):
             raise NoValue("a joint that turns and slides at once")
-        along = apply(link.pose.R, slide if all(map(is_zero, turn)) else turn)
+        along = link.pose.R @ (slide if all(map(is_zero, turn)) else turn)
         flat = self.along((effort.effort, *along, *link.pose.point(link.point)))[0]
-        push, place = times(flat[0], vector_of(flat[1:4])), vector_of(flat[4:7])
+        push, place = flat[0] * Vector(flat[1:4]), Vector(flat[4:7])
         parent = None if link.parent < 0 else motion.links[link.parent].name
         for name, sign in ((effort.body, 1), (parent, -1)):
-            own: Numbers = times(sign, push)
-            add_push(pushes, name, *((own, ZERO) if all(map(is_zero, slide)) else (cross(place, own), own)))
+            own: Vector = sign * push
+            add_push(pushes, name, *((own, Vector.ZERO) if all(map(is_zero, slide)) else (place.cross(own), own)))
 
     def acting(self, force: str) -> Any:
         """Force of an element between two points, or moment between two bodies, by its declaration."""
@@ -646,7 +624,7 @@ class NearbyStates:
 
 
 def _rows(flat: Sequence[Any]) -> Matrix:
-    return matrix_of((flat[0:3], flat[3:6], flat[6:9]))
+    return Matrix.of((flat[0:3], flat[3:6], flat[6:9]))
 
 
 def second_definition(state: NumericState, call: Call) -> str:

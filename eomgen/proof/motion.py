@@ -18,7 +18,7 @@ from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.identities import energy_function, given_power
-from eomgen.symbolic.expression import Fraction, Scalar, State, apply, depends_on, dot, gradient, is_zero
+from eomgen.symbolic.expression import Fraction, Scalar, State, depends_on, gradient, is_zero
 from eomgen.symbolic.numeric import evaluate, fifty_digits, tolerances
 
 HALF = Fraction(1, 2)
@@ -432,8 +432,8 @@ def _of_motion(system: System) -> Iterator[Scalar]:
     for link in system.motion.links:
         mass, w = scope.mass_properties(link.name), link.twist.w
         v = link.twist.at(mass.com).v
-        yield HALF * mass.m * dot(v, v)
-        yield HALF * dot(w, apply(mass.I, w))
+        yield HALF * mass.m * (v @ v)
+        yield HALF * (w @ (mass.I @ w))
         for push in () if link.joint is None else link.joint.pushes():
             rate = scope.time_derivative((scope.value(push.way),))[0]
             yield HALF * scope.value(push.armature) * rate * rate
@@ -463,4 +463,4 @@ def _of_weights(system: System, act: PushOfMass) -> Iterator[Scalar]:
     g = system.scope.vector(act.acceleration)
     for name in act.bodies or [link.name for link in system.motion.links]:
         mass = system.scope.mass_properties(name)
-        yield -mass.m * dot(g, system.motion.position((name, mass.com)))
+        yield -mass.m * (g @ system.motion.position((name, mass.com)))

@@ -17,7 +17,7 @@ from eomgen.mechanics.linearization import NAME, SmallMotions
 from eomgen.model import rotation_of
 from eomgen.proof.degrees_of_freedom import Going, Nearby, Numbers50
 from eomgen.proof.in_numbers import STEP
-from eomgen.symbolic.expression import Matrix, Node, apply, cross, plus, transposed, vector_of
+from eomgen.symbolic.expression import Matrix, Node, Vector
 from eomgen.symbolic.numeric import fifty_digits
 
 DigitColumn = Sequence[Any]
@@ -133,8 +133,8 @@ class Differences:
             standing = any(turn.standing for turn in mine.values())
             given |= dict(zip(four, _unit(_product(arm, e) if standing else _product(e, arm)), strict=True))
         for turn in {turn.four: turn for turn in self._spins.values()}.values():
-            v = vector_of(step.get(label, 0) * h for label, own in self._spins.items() if own.four == turn.four)
-            w = apply(transposed(self._axes(turn)), v)
+            v = Vector(step.get(label, 0) * h for label, own in self._spins.items() if own.four == turn.four)
+            w = self._axes(turn).T @ v
             given |= {x: here[x] + d for x, d in zip(turn.speeds, w, strict=True)}
         return given
 
@@ -147,9 +147,9 @@ class Differences:
         if label not in self._spins:
             return going.state[label], going.a[label]
         turn = self._spins[label]
-        w, rate, before = (vector_of(way[x] for x in turn.speeds) for way in (going.state, going.a, self.origin.state))
+        w, rate, before = (Vector(way[x] for x in turn.speeds) for way in (going.state, going.a, self.origin.state))
         R = self._axes(turn)
-        return apply(R, w)[turn.axis], apply(R, plus(cross(before, w), rate))[turn.axis]
+        return (R @ w)[turn.axis], (R @ (before.cross(w) + rate))[turn.axis]
 
     def _read(self, late: Going, early: Going) -> Iterator[tuple[DigitColumn, DigitColumn]]:
         """Values of the printed coordinates, and their first and second time derivatives."""

@@ -46,21 +46,7 @@ from eomgen.model import (
 )
 from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    Node,
-    Numbers,
-    Scalar,
-    State,
-    Symbols,
-    cross,
-    dot,
-    minus,
-    plus,
-    times,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Symbols, Vector
 from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
@@ -239,7 +225,7 @@ def _by_remark(parts: Mapping[str, Any]) -> dict[str, str]:
 # a/2, at half of a from where it begins.
 
 
-Quaternion = tuple[Any, Numbers]
+Quaternion = tuple[Any, Vector]
 
 
 def misplaced(system: System, state: State) -> str:
@@ -254,7 +240,7 @@ def misplaced(system: System, state: State) -> str:
     bodies = (values[k : k + 13] for k in range(0, len(values), 13))
     stands = [_stand(own) for own in bodies]
     for link, here in zip(links, stands, strict=True):
-        above = stands[link.parent] if link.parent >= 0 else _Stand(ZERO, *IDENTITY, 0)
+        above = stands[link.parent] if link.parent >= 0 else _Stand(Vector.ZERO, *Matrix.IDENTITY, 0)
         if wrong := _Seated(system, state, link).wrong(above, here):
             return f"'{link.name}' {wrong}"
     return ""
@@ -264,18 +250,19 @@ def misplaced(system: System, state: State) -> str:
 class _Stand:
     """A body in numbers: its place, the rows of its axes, in the plane its angle."""
 
-    p: Numbers
-    x: Numbers
-    y: Numbers
-    z: Numbers
+    p: Vector
+    x: Vector
+    y: Vector
+    z: Vector
     angle: Any
 
-    def from_above(self, v: Numbers) -> Numbers:
+    def from_above(self, v: Vector) -> Vector:
         """A vector of the ground in the axes of the body: R^T v."""
-        return plus(plus(times(v[0], self.x), times(v[1], self.y)), times(v[2], self.z))
+        turned: Vector = self.x * v[0] + self.y * v[1] + self.z * v[2]
+        return turned
 
-    def column(self, k: int) -> Numbers:
-        return vector_of((self.x[k], self.y[k], self.z[k]))
+    def column(self, k: int) -> Vector:
+        return Vector((self.x[k], self.y[k], self.z[k]))
 
 
 def _angle(link: BodyLink) -> Scalar:
@@ -283,7 +270,7 @@ def _angle(link: BodyLink) -> Scalar:
 
 
 def _stand(own: Sequence[Any]) -> _Stand:
-    p, x, y, z = (vector_of(own[k : k + 3]) for k in (0, 3, 6, 9))
+    p, x, y, z = (Vector(own[k : k + 3]) for k in (0, 3, 6, 9))
     return _Stand(p, x, y, z, own[12])
 
 
@@ -296,55 +283,55 @@ class _Seated(InNumbers):
     def wrong(self, above: _Stand, here: _Stand) -> str:
         joint = self.link.joint
         moves = () if joint is None else (*(TurnAbout(t.axis, t.angle) for t in joint.turned or ()), *joint.moves())
-        place, e = self._seat, (self.one(1), ZERO)
+        place, e = self._seat, (self.one(1), Vector.ZERO)
         for move in moves:
             way, turn = self._moved(move)
-            place, e = plus(place, _turned(e, way)), _after(e, turn)
-        place = minus(place, _turned(e, self.vector(self._own_point)))
-        stated: Numbers = above.from_above(minus(here.p, above.p))
+            place, e = place + _turned(e, way), _after(e, turn)
+        place = place - _turned(e, self.vector(self._own_point))
+        stated: Vector = above.from_above(here.p - above.p)
         if _apart(stated, place):
             return "is not where its joint says"
-        if any(_apart(above.from_above(here.column(k)), _turned(e, axis)) for k, axis in enumerate(IDENTITY)):
+        if any(_apart(above.from_above(here.column(k)), _turned(e, axis)) for k, axis in enumerate(Matrix.IDENTITY)):
             return "is not turned as its joint says"
         functions = fifty_digits().functions
-        heading: Numbers = (functions["cos"](here.angle), functions["sin"](here.angle), 0)
+        heading = Vector((functions["cos"](here.angle), functions["sin"](here.angle), 0))
         flat = self.link.angle is not None
         return "has another angle than its axes" if flat and _apart(heading, here.column(0)) else ""
 
     # -- as it is declared -----------------------------------------------------------------------------------
 
     @property
-    def _seat(self) -> Numbers:
+    def _seat(self) -> Vector:
         """Place of the joint: a point of the parent, or `at`."""
         joint = self.link.joint
         if joint is None:
-            return ZERO
+            return Vector.ZERO
         if joint.on is not None and "." in joint.on:
             return self.vector(self.motion.place(joint.on)[1])
-        return self.vector(self.motion.scope.ground_place(joint.at)) if joint.seated else ZERO
+        return self.vector(self.motion.scope.ground_place(joint.at)) if joint.seated else Vector.ZERO
 
     @property
     def _own_point(self) -> Sequence[Scalar]:
         joint = self.link.joint
         named = joint is not None and joint.point is not None
-        return self.motion.points[self.link.name][joint.point.rpartition(".")[2]] if named else ZERO
+        return self.motion.points[self.link.name][joint.point.rpartition(".")[2]] if named else Vector.ZERO
 
-    def _moved(self, move: Move) -> tuple[Numbers, Quaternion]:
+    def _moved(self, move: Move) -> tuple[Vector, Quaternion]:
         """(how far, how it turns)"""
-        still = (self.one(1), ZERO)
+        still = (self.one(1), Vector.ZERO)
         if isinstance(move, SlideAlong):
-            return times(self._typed(move.way), self._unit(move.axis)), still
+            return self._typed(move.way) * self._unit(move.axis), still
         if isinstance(move, TurnAbout):
             half, functions = self._typed(move.angle) / 2, fifty_digits().functions
-            return ZERO, (functions["cos"](half), times(functions["sin"](half), self._unit(move.axis)))
+            return Vector.ZERO, (functions["cos"](half), functions["sin"](half) * self._unit(move.axis))
         if isinstance(move, QuaternionTurn):
             e0, e1, e2, e3 = self.at([self.motion.scope.names[name] for name in move.quaternion])
-            return ZERO, (e0, (e1, e2, e3))
+            return Vector.ZERO, (e0, Vector((e1, e2, e3)))
         return self._walked(move), still
 
-    def _walked(self, route: WayAlongPieces) -> Numbers:
+    def _walked(self, route: WayAlongPieces) -> Vector:
         left, heading, functions = self._typed(route.way), self._typed(route.heading), fifty_digits().functions
-        place: Numbers = ZERO
+        place: Vector = Vector.ZERO
         for piece in route.pieces:
             length = self._typed(piece.line) if piece.arc is None else self._typed(piece.arc) * self._typed(piece.angle)
             way = left if piece is route.pieces[-1] else min(left, length)
@@ -353,7 +340,7 @@ class _Seated(InNumbers):
                 turn = way / self._typed(piece.arc) * (1 if piece.turn == "ccw" else -1)
                 way = 2 * self._typed(piece.arc) * functions["sin"](abs(turn) / 2) * (1 if way >= 0 else -1)
             across = heading + turn / 2
-            place = plus(place, times(way, (functions["cos"](across), functions["sin"](across), 0)))
+            place = place + way * Vector((functions["cos"](across), functions["sin"](across), 0))
             left, heading = left - length, heading + turn
             if left <= 0:
                 break
@@ -365,7 +352,7 @@ class _Seated(InNumbers):
         """Value of a declared expression; 0 for a missing one."""
         return self.one(0 if expression is None else self.motion.scope.value(expression))
 
-    def _unit(self, axis: Any) -> Numbers:
+    def _unit(self, axis: Any) -> Vector:
         """A declared direction, of length 1; None: z."""
         entries = (0, 0, 1) if axis is None else axis
         given = [x if isinstance(x, int) else self.motion.scope.value(x) for x in entries]
@@ -375,18 +362,18 @@ class _Seated(InNumbers):
 def _after(first: Quaternion, second: Quaternion) -> Quaternion:
     """The turn that is the second in the axes that the first one left."""
     (a, u), (b, v) = first, second
-    real: Any = a * b - dot(u, v)
-    return real, plus(plus(times(a, v), times(b, u)), cross(u, v))
+    real: Any = a * b - u @ v
+    return real, a * v + b * u + u.cross(v)
 
 
-def _turned(e: Quaternion, v: Numbers) -> Numbers:
+def _turned(e: Quaternion, v: Vector) -> Vector:
     e0, u = e
-    return plus(v, times(2, cross(u, plus(cross(u, v), times(e0, v)))))
+    return v + 2 * u.cross(u.cross(v) + e0 * v)
 
 
-def _apart(a: Numbers, b: Numbers) -> bool:
-    gap: Sequence[Any] = minus(a, b)
-    most: Any = max(map(abs, b))
+def _apart(a: Vector, b: Vector) -> bool:
+    gap: Sequence[Any] = a - b
+    most = b.largest
     return any(abs(x) > tolerances.ZERO_AT_50 * (1 + most) for x in gap)
 
 
@@ -406,7 +393,7 @@ def _apart(a: Numbers, b: Numbers) -> bool:
 # with 1 N across it, both at P and opposite on both bodies. That the rows' wrenches are such is looked at too.
 
 
-Y, Z = (0, 1, 0), (0, 0, 1)
+Y, Z = Vector((0, 1, 0)), Vector((0, 0, 1))
 
 
 @dataclass(frozen=True)
@@ -418,9 +405,9 @@ class Touch:
         held: directions in which they cannot part, ground axes.
     """
 
-    first: Numbers
-    second: Numbers
-    held: tuple[Numbers, ...]
+    first: Vector
+    second: Vector
+    held: tuple[Vector, ...]
 
 
 @dataclass(frozen=True)
@@ -429,8 +416,8 @@ class _Form:
 
     radius: Any
     tube: Any = 0
-    axis: Numbers | None = None
-    semiaxes: Numbers | None = None
+    axis: Vector | None = None
+    semiaxes: Vector | None = None
 
 
 def meetings_of(system: System) -> dict[str, Meeting]:
@@ -465,12 +452,12 @@ class _Contact(InNumbers):
     @property
     def wrong(self) -> str:
         touch = self._touch
-        distance: Numbers = minus(touch.first, touch.second)
-        size = 1 + max(map(abs, touch.first))
-        if max(map(abs, distance)) > tolerances.COMPUTED * size:
+        distance = touch.first - touch.second
+        size = 1 + touch.first.largest
+        if distance.largest > tolerances.COMPUTED * size:
             return "its two points of contact are apart"
-        slip = minus(self.velocity(self._body, touch.first), self.velocity(self.meeting.surface.on, touch.first))
-        held = (slip,) if self.meeting.sticks else tuple(times(dot(slip, e), e) for e in touch.held)
+        slip = self.velocity(self._body, touch.first) - self.velocity(self.meeting.surface.on, touch.first)
+        held = (slip,) if self.meeting.sticks else tuple(slip @ e * e for e in touch.held)
         if self._rigid and any(abs(x) > tolerances.COMPUTED * (1 + size) for part in held for x in part):
             return "its two points of contact part or slip"
         return self._wrong_force(touch)
@@ -487,31 +474,31 @@ class _Contact(InNumbers):
 
     def _misplaced(self, touch: Touch, label: str, pushes: Sequence[Push]) -> bool:
         """True if pushes are not a unit force at the contact on its body, and the opposite one on the other."""
-        found: dict[str, tuple[Numbers, Numbers]] = {}
+        found: dict[str, tuple[Vector, Vector]] = {}
         for push in pushes:
             wrench = self.motion.body_wrench(push)
             if wrench is not None:
                 body, W = wrench
-                f, tau = found.get(body, (ZERO, ZERO))
-                found[body] = plus(f, self.vector(W.f)), plus(tau, self.vector(W.tau))
+                f, tau = found.get(body, (Vector.ZERO, Vector.ZERO))
+                found[body] = f + self.vector(W.f), tau + self.vector(W.tau)
         forces = []
         for body, (own_force, own_couple) in found.items():
             f, tau = (self.carried(body, x, direction=True) for x in (own_force, own_couple))
-            about_contact: Numbers = minus(tau, cross(minus(touch.first, self.carried(body, ZERO)), f))
-            if max(map(abs, about_contact)) > tolerances.COMPUTED * (1 + max(map(abs, touch.first))):
+            about_contact = tau - (touch.first - self.carried(body, Vector.ZERO)).cross(f)
+            if about_contact.largest > tolerances.COMPUTED * (1 + touch.first.largest):
                 return True
-            forces.append(f if body == self._body else times(-1, f))
+            forces.append(f if body == self._body else -f)
         return any(self._misdirected(touch, label, f) for f in forces)
 
-    def _misdirected(self, touch: Touch, label: str, f: Numbers) -> bool:
+    def _misdirected(self, touch: Touch, label: str, f: Vector) -> bool:
         """True if a force on the first body is not of length 1, or not in its direction."""
-        along = sum(dot(f, e) ** 2 for e in touch.held)
-        wrong: list[Any] = [dot(f, f) - 1, along - 1 if label[0] == "n" else along]
+        along = sum((f @ e) ** 2 for e in touch.held)
+        wrong: list[Any] = [f @ f - 1, along - 1 if label[0] == "n" else along]
         if not isinstance(self.meeting.surface, BodyLine):
             n = touch.held[0]
-            wrong += [dot(f, n) - 1] if label == "n" else []
+            wrong += [f @ n - 1] if label == "n" else []
             if not self._space and label == "t":
-                wrong += minus(f, (n[1], -n[0], 0))
+                wrong += f - Vector((n[1], -n[0], 0))
         return any(abs(x) > tolerances.COMPUTED for x in wrong)
 
     @cached_property
@@ -527,25 +514,25 @@ class _Contact(InNumbers):
     def _rigid(self) -> bool:
         """True if point and surface are fixed in their bodies: else velocities of material points are others."""
         what, surface = self.meeting.what, self.meeting.surface
-        own = self._scene.place(what.point)[1] if isinstance(what, TouchingPoint) else ZERO
+        own = self._scene.place(what.point)[1] if isinstance(what, TouchingPoint) else Vector.ZERO
         seats = [own] if isinstance(surface, (BodyLine, Groove)) else [own, self._anchor]
         return not any(self.motion.moves(tuple(seat)) for seat in seats)
 
     @cached_property
-    def _anchor(self) -> Numbers:
+    def _anchor(self) -> Vector:
         """Place `at` of the surface in its body's axes, over the graph; by default the point's place at the start."""
         surface = self.meeting.surface
         assert not isinstance(surface, (BodyLine, Groove))
         if surface.at is not None:
             return self._scene.ground_place(surface.at)
         if isinstance(surface, RoundSurface):
-            return ZERO
+            return Vector.ZERO
         what = self.meeting.what
         assert isinstance(what, TouchingPoint)
-        return vector_of(map(self._scene.start, self._scene.position(self._scene.place(what.point))))
+        return Vector(map(self._scene.start, self._scene.position(self._scene.place(what.point))))
 
     @property
-    def _center(self) -> Numbers:
+    def _center(self) -> Vector:
         """The point, or the centre of a round surface, ground axes."""
         what, scene = self.meeting.what, self._scene
         place = scene.place(what.point) if isinstance(what, TouchingPoint) else scene.own_place(what.body, what.center)
@@ -579,60 +566,62 @@ class _Contact(InNumbers):
         if isinstance(surface, Groove):
             normal = Z if surface.normal is None else self.vector(self._scene.vector(surface.normal))
             edge = self.carried(surface.on, self.vector(self._scene.vector(surface.along)), direction=True)
-            return Touch(C, C, (direction_at(cross(normal, edge)),))
+            return Touch(C, C, (direction_at(normal.cross(edge)),))
         if isinstance(surface, BodyLine):
             a, b = (self.carried(surface.on, self.vector(r)) for _, r in self._scene.line(surface.on))
-            along = direction_at(minus(b, a))
-            foot = plus(a, times(dot(along, minus(C, a)), along))
+            along = direction_at(b - a)
+            foot = a + along @ (C - a) * along
             return Touch(C, foot, tuple(_across(along)) if self._space else (_quarter_turn(along),))
         A = self.carried(surface.on, self.vector(self._anchor))
         if isinstance(surface, FlatSurface):
             normal = self.vector(self._scene.vector(surface.normal))
             n = direction_at(self.carried(surface.on, normal, direction=True))
             P = self._lowest(C, n)
-            return Touch(P, minus(P, times(dot(n, minus(P, A)), n)), (n,))
+            return Touch(P, P - n @ (P - A) * n, (n,))
         return self._on_round(surface, C, A)
 
-    def _on_round(self, surface: RoundSurface, C: Numbers, A: Numbers) -> Touch:
+    def _on_round(self, surface: RoundSurface, C: Vector, A: Vector) -> Touch:
         """A ball, or the section of a tyre where its centre line is nearest, on a ball or pipe about A."""
         form, side = self._form, -1 if surface.inside else 1
         if form.axis is not None:
-            h = minus(minus(C, A), times(dot(minus(C, A), form.axis), form.axis))
-            C = minus(C, times(side * form.radius, direction_at(h)))
+            h = C - A - (C - A) @ form.axis * form.axis
+            C = C - side * form.radius * direction_at(h)
         if surface.axis is not None:
             axis = self.vector(self._scene.vector(surface.axis))
             a = direction_at(self.carried(surface.on, axis, direction=True))
-            A = plus(A, times(dot(minus(C, A), a), a))
-        out = direction_at(minus(C, A))
+            A = A + (C - A) @ a * a
+        out = direction_at(C - A)
         r = self._scene.radius(str(surface.on)) if surface.radius is None else self._scene.value(surface.radius)
         section = form.radius if form.axis is None else form.tube
-        first, second = minus(C, times(side * section, out)), plus(A, times(self.one(r), out))
-        return Touch(first, second, (times(side, out),))
+        first, second = C - side * section * out, A + self.one(r) * out
+        return Touch(first, second, (side * out,))
 
-    def _lowest(self, C: Numbers, n: Numbers) -> Numbers:
+    def _lowest(self, C: Vector, n: Vector) -> Vector:
         """The point of a round body that is farthest along -n."""
         form, body = self._form, getattr(self.meeting.what, "body", None)
         if form.semiaxes is not None:
-            axes = [self.carried(body, e, direction=True) for e in ((1, 0, 0), Y, Z)]
-            x = direction_at(vector_of(-s * dot(n, e) for s, e in zip(form.semiaxes, axes, strict=True)))
+            axes = [self.carried(body, e, direction=True) for e in (Vector((1, 0, 0)), Y, Z)]
+            x = direction_at(Vector(-s * (n @ e) for s, e in zip(form.semiaxes, axes, strict=True)))
             for s, k, e in zip(form.semiaxes, x, axes, strict=True):
-                C = plus(C, times(s * k, e))
+                C = C + s * k * e
             return C
-        d = n if form.axis is None else direction_at(minus(n, times(dot(form.axis, n), form.axis)))
-        return minus(minus(C, times(form.radius, d)), times(form.tube, n))
+        d = n if form.axis is None else direction_at(n - form.axis @ n * form.axis)
+        lowest: Vector = C - d * form.radius - n * form.tube
+        return lowest
 
     @property
     def _space(self) -> bool:
         return self.system.scope.model.space == "space"
 
 
-def _quarter_turn(a: Numbers) -> Numbers:
-    return (-a[1], a[0], 0)
+def _quarter_turn(a: Vector) -> Vector:
+    return Vector((-a[1], a[0], 0))
 
 
-def _across(a: Numbers) -> Iterator[Numbers]:
+def _across(a: Vector) -> Iterator[Vector]:
     """Two unit vectors across a unit vector."""
-    k = min(range(3), key=lambda i: abs(a[i]))
-    first = direction_at(cross(a, vector_of(int(i == k) for i in range(3))))
+    lengths: list[Any] = [abs(x) for x in a]
+    k = lengths.index(min(lengths))
+    first = direction_at(a.cross(Vector(int(i == k) for i in range(3))))
     yield first
-    yield cross(a, first)
+    yield a.cross(first)

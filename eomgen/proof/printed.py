@@ -153,7 +153,8 @@ class ReadBack:
         if of in known:
             return known[of]
         if call.name in SPINS:
-            return self._spin(of)[SPINS.index(call.name)]
+            found: Scalar = self._spin(of)[SPINS.index(call.name)]
+            return found
         if call.name in FUNCTIONS and FUNCTIONS[call.name].source == OutputSource.BALANCE:
             raise DerivationError(f"'{call}' is a reaction, and proven as such")
         return Quantities(self.equations.system).value(call)

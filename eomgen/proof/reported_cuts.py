@@ -18,7 +18,7 @@ from eomgen.mechanics.dynamics import EquationsOfMotion, System, exact_accelerat
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import declared_pushes
 from eomgen.proof.in_numbers import SECOND_STEP, InNumbers, way_through, with_inputs
-from eomgen.symbolic.expression import Node, apply
+from eomgen.symbolic.expression import Node
 from eomgen.symbolic.numeric import of_50_digits as precise
 from eomgen.symbolic.numeric import tolerances
 
@@ -139,7 +139,7 @@ class _Cut(InNumbers):
         mine = [push for push in self.pushes if push.name in own]
         place = link.pose.point(mass.com)
         R, w = link.pose.R, link.twist.w
-        L = apply(R, apply(mass.I, w))
+        L = R @ (mass.I @ w)
         way = way_through(self.system, self._moving, SECOND_STEP, order=2)
         at, _, a = way.along(place)
         rates = way.rates(L)

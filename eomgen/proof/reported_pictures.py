@@ -400,7 +400,7 @@ class _Shown(InNumbers):
         own = self.vector(self.scene.vector(act.force))
         pushed = self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
         at = self.placed(self.scene.position(place))
-        return at, np.array([float(x) for x in pushed[: self.d]])
+        return at, np.array(pushed[: self.d], dtype=float)
 
     def _reaction(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
         """(place, resultant) of the reactions of a joint or constraint; None where some have no single value."""
@@ -426,7 +426,7 @@ class _Shown(InNumbers):
                 if push is None or size is None or not np.isfinite(size):
                     return None
                 pushed = self.carried(push.axes, self.vector(push.force), direction=True)
-                total += float(size) * np.array([float(x) for x in pushed[: self.d]])
+                total += float(size) * np.array(pushed[: self.d], dtype=float)
                 at = self.placed(self.motion.position(push.place))
                 at = at if push.beyond is None else at + self.placed(push.beyond)
         return None if at is None else (at, total)

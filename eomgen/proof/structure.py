@@ -47,7 +47,7 @@ from eomgen.proof.free_bodies import named_otherwise
 from eomgen.proof.masses import other_data
 from eomgen.proof.posed_model import apart, meetings_of
 from eomgen.proof.reported_sections import ReportedSections, ReportedWork, sections_reported, works_reported
-from eomgen.symbolic.expression import ZERO, Node, Scalar, Vector, parse, symbols_of
+from eomgen.symbolic.expression import Node, Scalar, Vector, parse, symbols_of
 from eomgen.symbolic.numeric import FLOAT, evaluate, fifty_digits, tolerances
 
 IN_NUMBERS = "floating point"
@@ -337,8 +337,8 @@ class _Proof:
 
     def _ends(self, plan: VelocityPlan, block: RigidBlock) -> Iterator[tuple[str, list[tuple[str, Vector]]]]:
         ends = {(truss, member): pair for truss, member, pair in plan.system.scope.model.truss_members}
-        yield from ((body, [(body, ZERO), (body, (1, 2, 0))]) for body in block.bodies)
-        yield from ((member[1], [(node, ZERO) for node in ends[member]]) for member in block.members)
+        yield from ((body, [(body, Vector.ZERO), (body, Vector((1, 2, 0)))]) for body in block.bodies)
+        yield from ((member[1], [(node, Vector.ZERO) for node in ends[member]]) for member in block.members)
 
     def _at(self, plan: VelocityPlan, scalars: Sequence[Scalar]) -> list[float]:
         return [float(x) for x in plan.numbers(scalars)]

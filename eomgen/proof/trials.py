@@ -43,13 +43,13 @@ from eomgen.proof.posed_model import apart, meetings_of, misplaced
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
 from eomgen.symbolic.exact import rounding_decides
-from eomgen.symbolic.expression import Scalar, State, apply, dot, inner, is_zero, matrix_of, transposed, vector_of
+from eomgen.symbolic.expression import Matrix, Scalar, State, Vector, inner, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 if TYPE_CHECKING:
     from eomgen.codegen import RightHandSide
 
-DIRECTIONS = ((2, 3, 5), (7, -4, 3))  # about which moments of inertia are compared
+DIRECTIONS = (Vector((2, 3, 5)), Vector((7, -4, 3)))  # about which moments of inertia are compared
 NOWHERE = "no state with values was found, at the start, near it or at random"
 
 
@@ -171,9 +171,9 @@ class Trials:
             now, motions = evaluate(poses, state, digits), evaluate(twists, state, digits)
             for k, link in enumerate(links):
                 rates, here, twist = all_rates[12 * k :], now[12 * k :], motions[6 * k : 6 * k + 6]
-                R_now = matrix_of((here[0:3], here[3:6], here[6:9]))
-                spin = spin_between(R_now, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
-                velocity = apply(transposed(R_now), vector_of(rates[9:12]))
+                R_now = Matrix.of((here[0:3], here[3:6], here[6:9]))
+                spin = spin_between(R_now, Matrix.of((rates[0:3], rates[3:6], rates[6:9])))
+                velocity = R_now.T @ Vector(rates[9:12])
                 pairs = zip(twist, (*spin, *velocity), strict=True)
                 if any(abs(a - b) > tolerances.DIFFERENCE_AT_50 * (1 + abs(a)) for a, b in pairs):
                     return f"the twist of '{link.name}' is not the rate of its pose"
@@ -336,10 +336,11 @@ class Trials:
             if len(inertia) <= 1:  # about z alone
                 continue
             tensor = scope.mass_properties(name).I
-            for x, y, z in DIRECTIONS:
+            for direction in DIRECTIONS:
+                x, y, z = direction
                 products = (x * x, y * y, z * z, 2 * x * y, 2 * y * z, 2 * z * x)
                 typed = inner([scope.value(e) for e in inertia], products[: len(inertia)])
-                pairs.append((name, typed, dot((x, y, z), apply(tensor, (x, y, z)))))
+                pairs.append((name, typed, direction @ (tensor @ direction)))
 
         def check(state: State) -> str:
             values = iter(evaluate([x for _, *both in pairs for x in both], state, fifty_digits()))

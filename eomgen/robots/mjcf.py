@@ -51,7 +51,7 @@ from eomgen.robots.tables import (
     without_empty,
 )
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
-from eomgen.symbolic.expression import IDENTITY
+from eomgen.symbolic.expression import Matrix
 from eomgen.symbolic.numeric import tolerances
 
 TABLES = ("points", "coordinates", "speeds", "inputs", "bodies", "constraints", "forces")
@@ -136,7 +136,7 @@ def _body(r: CompiledRobot, k: int) -> None:
         xx, yy, zz = (decimal_of_double(x) for x in m.body_inertia[k])
         tensor = tensor_of(xx, yy, zz, ZERO, ZERO, ZERO)
         center = decimals(decimal_of_double(x) for x in m.body_ipos[k])
-        body |= with_mass({"mass": mass}, center, six(tensor if R == IDENTITY else inertia_in(R, tensor)))
+        body |= with_mass({"mass": mass}, center, six(tensor if R == Matrix.IDENTITY else inertia_in(R, tensor)))
     if r.points.get(k):
         body["points"] = dict(r.points[k])
     joints = range(m.body_jntadr[k], m.body_jntadr[k] + m.body_jntnum[k])

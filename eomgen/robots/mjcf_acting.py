@@ -17,7 +17,6 @@ from eomgen.robots.tables import (
     ZERO,
     Entries,
     LegalNames,
-    Nine,
     decimal_of_double,
     decimal_text,
     decimals,
@@ -27,7 +26,7 @@ from eomgen.robots.tables import (
     turn_of,
     turned_by,
 )
-from eomgen.symbolic.expression import IDENTITY, apply
+from eomgen.symbolic.expression import Matrix
 from eomgen.symbolic.numeric import tolerances
 
 CONNECT, WELD, JOINT, TENDON = range(4)  # the numbers of MuJoCo: of equalities,
@@ -333,7 +332,7 @@ def motors_in_space(r: CompiledRobot) -> None:
                 axes = parent
                 if m.jnt_type[j] == BALL:
                     turn = turn_by(m.body_quat[body])[0]
-                    along = in_file(apply(turn, decimals(along)))
+                    along = in_file(turn @ decimals(along))
             if not any(along) or law == "0":
                 continue
             pushed = [_times(x, law) for x in along]
@@ -467,7 +466,7 @@ def _thrust(r: CompiledRobot, k: int, w: str) -> bool:
     bias = decimal_of_double(m.actuator_biasprm[k][0]) if m.actuator_biastype[k] == AFFINE else Decimal(0)
     pushed = False
     for kind, part in (("force", slice(0, 3)), ("couple", slice(3, 6))):
-        along = in_file(apply(R, decimals(decimal_of_double(x) for x in m.actuator_gear[k][part])))
+        along = in_file(R @ decimals(decimal_of_double(x) for x in m.actuator_gear[k][part]))
         if not any(along) or not (gain or bias):
             continue
         law = [signed_sum([(gain * x, w)], bias * x) for x in along]
@@ -567,9 +566,9 @@ class CompiledRobot:
         return [float(x) for values in given if values is not None for x in np.ravel(values[k])]
 
 
-def turn_by(quaternion: Any) -> tuple[Nine, list[Entries]]:
+def turn_by(quaternion: Any) -> tuple[Matrix, list[Entries]]:
     """A quaternion as a rotation and as turns of a model file."""
     e = [Decimal(float(x)) for x in quaternion]
     length = sum((x * x for x in e), ZERO).sqrt()
     turns = turn_of([x / length for x in e])
-    return (turned_by(e) if turns else IDENTITY), turns
+    return (turned_by(e) if turns else Matrix.IDENTITY), turns

@@ -36,7 +36,7 @@ from eomgen.robots.tables import (
 )
 from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely
 from eomgen.robots.xml_tree import XmlElement, xml_tree
-from eomgen.symbolic.expression import IDENTITY, Pose, apply
+from eomgen.symbolic.expression import Matrix, Pose, Vector
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m", "screw": "rad"}
 TWO_AXES = ("universal", "revolute2")
@@ -226,7 +226,7 @@ class _Reading:
     def _pose(self, name: str, below: tuple[str, ...] = (), stop: str = "__model__") -> Pose:
         """Pose of a link, joint or frame in the model's axes, or in those of a frame to which it counts."""
         if name in ("__model__", "", stop):
-            return Pose(IDENTITY, ORIGIN)
+            return Pose(Matrix.IDENTITY, Vector(ORIGIN))
         if name == "world":
             return self._placed().inverse()
         element = self.links.get(name) or self.joints.get(name) or self.frames.get(name)
@@ -259,7 +259,7 @@ class _Reading:
         pose = next((child for child in self.model.children if child.tag == "pose"), None)
         if pose is not None and pose.attributes.get("relative_to", "world") != "world":
             pose.seen = False  # relative to a thing that is not imported: reported among the parts left out
-            return Pose(IDENTITY, ORIGIN)
+            return Pose(Matrix.IDENTITY, Vector(ORIGIN))
         frame = self.model.get("placement_frame") or "__model__"
         if pose is not None:
             pose.seen = True
@@ -356,9 +356,9 @@ class _Reading:
         if frame is None and own.old and flag is None:
             frame = own.frame
         if frame is None:
-            return in_file(apply(at.R, axis))
+            return in_file(at.R @ axis)
         R = self._pose(child).inverse().then(self._pose(frame)).R
-        return in_file(apply(R, axis))
+        return in_file(R @ axis)
 
     def _limit(self, limit: XmlElement | None, unit: str) -> list[str]:
         """Limits as remarks."""

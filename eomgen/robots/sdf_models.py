@@ -25,8 +25,6 @@ from eomgen.robots.tables import (
     ORIGIN,
     ZERO,
     Entries,
-    Nine,
-    Triple,
     computed,
     decimal_of_double,
     decimals,
@@ -39,7 +37,7 @@ from eomgen.robots.tables import (
 )
 from eomgen.robots.urdf import with_mass
 from eomgen.robots.xml_tree import XmlElement, xml_tree
-from eomgen.symbolic.expression import IDENTITY, Pose, apply, minus, plus
+from eomgen.symbolic.expression import Matrix, Pose, Vector
 
 LARGEST = 20_000_000  # bytes of a file
 DEEPEST = 30  # models one within the other
@@ -274,14 +272,14 @@ class MassPart:
     """A mass, its centre and its inertia about that, all in the axes of the link."""
 
     mass: Decimal
-    center: Triple
-    tensor: Nine
+    center: Vector
+    tensor: Matrix
 
 
 def own_pose(pose: XmlElement | None) -> Pose:
     """Pose by an element <pose>: x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
     if pose is None or not pose.text:
-        return Pose(IDENTITY, ORIGIN)
+        return Pose(Matrix.IDENTITY, ORIGIN)
     if pose.get("rotation_format") == "quat_xyzw":
         *place, x, y, z, w = pose.value(7)
         if not any((x, y, z, w)):
@@ -347,9 +345,9 @@ def _by_density(
     return with_mass({"mass": computed(wanted)}, center, six(scaled))
 
 
-def _about(part: MassPart, center: Triple) -> Nine:
+def _about(part: MassPart, center: Vector) -> Matrix:
     """I + m (d^2 1 - d d^T): the inertia of a part about another point."""
-    d: Any = minus(part.center, center)
+    d: Any = part.center - center
     square = sum((x * x for x in d), ZERO)
     xx, yy, zz, xy, yz, zx = (
         part.tensor[i][j] + part.mass * ((square if i == j else ZERO) - d[i] * d[j])
@@ -373,7 +371,7 @@ def _part(shape: XmlElement, usual: XmlElement | None, at: Pose, files: tuple[st
             f"one of {', '.join((*SIZES, 'mesh'))}, or give mass",
         )
     own = _mesh(what, density, files) if what.tag == "mesh" else _simple(what, density)
-    return MassPart(own.mass, plus(at.p, apply(at.R, own.center)), inertia_in(at.R, own.tensor))
+    return MassPart(own.mass, at.p + at.R @ own.center, inertia_in(at.R, own.tensor))
 
 
 def _simple(what: XmlElement, density: Decimal) -> MassPart:
@@ -393,7 +391,7 @@ def _simple(what: XmlElement, density: Decimal) -> MassPart:
 
 def _diagonal(mass: Decimal, moments: Sequence[Decimal], down: Decimal = ZERO) -> MassPart:
     x, y, z = (mass * moment for moment in moments)
-    return MassPart(mass, (ZERO, ZERO, -down), tensor_of(x, y, z, ZERO, ZERO, ZERO))
+    return MassPart(mass, Vector((ZERO, ZERO, -down)), tensor_of(x, y, z, ZERO, ZERO, ZERO))
 
 
 def _box(s: Sequence[Decimal], density: Decimal, pi: Decimal) -> MassPart:

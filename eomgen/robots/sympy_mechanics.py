@@ -32,27 +32,22 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.frozen import dataclass
 from eomgen.model import Model, loads
 from eomgen.robots.sympy_joints import Words, file_texts, lagrangian_method, speeds_as_rates, tables_of_joints
-from eomgen.robots.tables import Entries, Nine, Triple, toml_text, without_empty
+from eomgen.robots.tables import Entries, toml_text, without_empty
 from eomgen.symbolic.exact import LinearSystem, vanishes
 from eomgen.symbolic.expression import (
-    IDENTITY,
     LONGEST,
     Fraction,
+    Matrix,
     Node,
     Scalar,
-    apply,
+    Vector,
     depends_on_any,
-    dot,
     gradient,
     is_zero,
-    plus,
-    product,
     pullback,
     substituted,
     symbols_of,
     tangent,
-    times,
-    transposed,
 )
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import text_size
@@ -217,7 +212,7 @@ class _Energies:
         }
         self.words = Words(self.q, formed.u, rates)
         self.constraints: list[Scalar] = []
-        self.turned: dict[Any, Nine] = {formed.ground: IDENTITY}
+        self.turned: dict[Any, Matrix] = {formed.ground: Matrix.IDENTITY}
         own = [u for u in formed.u if u not in rates]
         self.own = dict(
             zip([self.words.nodes[self.words.of(u)] for u in own], self._speeds(own, kinematic), strict=True)
@@ -269,32 +264,32 @@ class _Energies:
             )
         return self.words.scalar(expression)
 
-    def _rotation(self, frame: Any) -> Nine:
+    def _rotation(self, frame: Any) -> Matrix:
         """R of a frame in the ground: products of those of neighbours, each of which is short."""
         if frame not in self.turned:
             path = frame._dict_list(self.formed.ground, 0)
             above = path[1]
             step = above.dcm(frame)
-            R: Any = tuple(tuple(self._scalar(step[i, j]) for j in range(3)) for i in range(3))
-            self.turned[frame] = product(self._rotation(above), R)
+            R = Matrix.of((self._scalar(step[i, j]) for j in range(3)) for i in range(3))
+            self.turned[frame] = self._rotation(above) @ R
         return self.turned[frame]
 
-    def _vector(self, vector: Any, axes: Any = None) -> Triple:
+    def _vector(self, vector: Any, axes: Any = None) -> Vector:
         """Components in the ground's axes, or in those of a frame."""
-        total: Any = (0, 0, 0)
+        total = Vector((0, 0, 0))
         for components, frame in getattr(vector, "args", ()):
-            own: Any = tuple(self._scalar(x) for x in components)
+            own = Vector(self._scalar(x) for x in components)
             if frame is not axes:
-                own = apply(self._rotation(frame), own)
-                own = own if axes is None else apply(transposed(self._rotation(axes)), own)
-            total = plus(total, own)
-        return total  # type: ignore[no-any-return]
+                own = self._rotation(frame) @ own
+                own = own if axes is None else self._rotation(axes).T @ own
+            total = total + own
+        return total
 
     def tables(self) -> Entries:
         formed, words = self.formed, self.words
         q = [words.nodes[words.of(x)] for x in self.q]
         w = [words.nodes[words.of(x.diff(dynamicsymbols._t))] for x in self.q]
-        energies, moved = [self._scalar(formed.T)], list[tuple[Triple, Triple]]()
+        energies, moved = [self._scalar(formed.T)], list[tuple[Vector, Vector]]()
         for mass in formed.masses:
             energies += self._mass(mass, moved, q, w)
         V = self._scalar(formed.V)
@@ -342,18 +337,18 @@ class _Energies:
     def _texts(self, scalars: Sequence[Scalar]) -> list[Any]:
         return file_texts(scalars, self.words.names.given)
 
-    def _mass(self, mass: MovingMass, moved: list[tuple[Triple, Triple]], q: list[Node], w: list[Node]) -> list[Scalar]:
+    def _mass(self, mass: MovingMass, moved: list[tuple[Vector, Vector]], q: list[Node], w: list[Node]) -> list[Scalar]:
         """m v^2/2 and omega . I omega/2; (m v, v) and (H, omega) in the ground's axes are appended to `moved`."""
         m, v = self._scalar(mass.mass), self._vector(mass.velocity)
-        moved.append((times(m, v), v))
-        T = HALF * m * dot(v, v)
+        moved.append((m * v, v))
+        T = HALF * m * (v @ v)
         if mass.I is None:
             return [T]
-        I: Any = tuple(tuple(self._scalar(mass.I[i, j]) for j in range(3)) for i in range(3))
+        I = Matrix.of((self._scalar(mass.I[i, j]) for j in range(3)) for i in range(3))
         omega = self._vector(mass.omega, mass.frame)
-        H, R = apply(I, omega), self._rotation(mass.frame)
-        moved.append((apply(R, H), apply(R, omega)))
-        return [T + HALF * dot(omega, H)]
+        H, R = I @ omega, self._rotation(mass.frame)
+        moved.append((R @ H, R @ omega))
+        return [T + HALF * (omega @ H)]
 
     def _rate(self, outputs: Sequence[Scalar], q: list[Node], w: list[Node]) -> tuple[Scalar, ...]:
         """d/dt of functions of q, q' and t where q'' = 0."""
@@ -363,14 +358,14 @@ class _Energies:
         """Scalars as functions of q and w alone, with accelerations 0."""
         return substituted(substituted(tuple(scalars), self.known), self.known)
 
-    def _work(self, pushes: Sequence[tuple[Triple, Triple]], w: list[Node]) -> list[Scalar]:
+    def _work(self, pushes: Sequence[tuple[Vector, Vector]], w: list[Node]) -> list[Scalar]:
         """sum F . dv/dw"""
         forces = self._in_rates([x for force, _ in pushes for x in force])
         rates = self._in_rates([x for _, rate in pushes for x in rate])
         return list(pullback(rates, forces, w)) if pushes else [0] * len(w)
 
     def _inertial(
-        self, energies: Sequence[Scalar], moved: Sequence[tuple[Triple, Triple]], q: list[Node], w: list[Node]
+        self, energies: Sequence[Scalar], moved: Sequence[tuple[Vector, Vector]], q: list[Node], w: list[Node]
     ) -> list[Scalar]:
         """d/dt dT/dw - dT/dq - sum d(m v)/dt . dv/dw - sum dH/dt . domega/dw; 0 of rates of places."""
         T = self._in_rates([sum(energies[1:], start=0)])[0]

@@ -17,15 +17,12 @@ from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
 from eomgen.model import rotation_of
 from eomgen.resources import check_patience
-from eomgen.symbolic.expression import IDENTITY, Fraction, apply, plus, product, rotation, transposed
+from eomgen.symbolic.expression import Fraction, Matrix, Vector
 from eomgen.symbolic.numeric import tolerances
 
 # -------- numbers ---------------------------------------------------------------------------------------------
 # Decimals of robot files: places, turns and inertias by 40 digits, written with 17; angles that are parts of pi.
 
-
-Triple = tuple[Any, Any, Any]
-Nine = tuple[Triple, Triple, Triple]
 
 DIGITS = 40
 WRITTEN = 17  # digits of a computed number: those of a double
@@ -33,15 +30,14 @@ SURE = 13  # digits by which a decimal is taken for a part of pi
 PARTS = 24  # of pi, that people write
 
 ZERO = Decimal(0)
-ORIGIN: Triple = (ZERO, ZERO, ZERO)
+ORIGIN = Vector((ZERO, ZERO, ZERO))
 EXACTLY = Context(prec=DIGITS)
 """in which robots are read"""
 
 
-def decimals(values: Iterable[Any]) -> Triple:
+def decimals(values: Iterable[Any]) -> Vector:
     """Three decimals."""
-    x, y, z = (Decimal(value) for value in values)
-    return x, y, z
+    return Vector(Decimal(value) for value in values)
 
 
 def decimal_of_double(x: float) -> Decimal:
@@ -88,21 +84,21 @@ def sine_cosine(angle: Decimal) -> tuple[Any, Any]:
     return sine, cosine
 
 
-def turning(axis: Sequence[Decimal], angle: Decimal) -> Nine:
+def turning(axis: Sequence[Decimal], angle: Decimal) -> Matrix:
     """The rotation by an angle about an axis of any length."""
     sine, cosine = sine_cosine(angle)
     with localcontext(EXACTLY):
         length = sum((x * x for x in axis), ZERO).sqrt()
         n: Any = tuple(x / length for x in axis)
-        return rotation(n, cosine, sine)
+        return Matrix.rotation(n, cosine, sine)
 
 
-def roll_pitch_yaw(angles: Triple) -> tuple[Nine, list[dict[str, Any]]]:
+def roll_pitch_yaw(angles: Vector) -> tuple[Matrix, list[dict[str, Any]]]:
     """R = Rz(yaw) Ry(pitch) Rx(roll), and the turns of a model file that make it, those by 0 left out."""
-    R, turns = IDENTITY, []
+    R, turns = Matrix.IDENTITY, []
     for axis, angle in zip(((0, 0, 1), (0, 1, 0), (1, 0, 0)), reversed(angles), strict=True):
         if angle != 0:
-            R = product(R, turning(decimals(axis), angle))
+            R = R @ turning(decimals(axis), angle)
             turns.append({"axis": list(axis), "angle": angle_text(angle)})
     return R, turns
 
@@ -113,14 +109,14 @@ def in_radians(degrees: Decimal) -> Decimal:
         return Decimal(mpmath.nstr(mpmath.mpf(str(degrees)) * mpmath.pi / 180, DIGITS))
 
 
-def turned_by(quaternion: Sequence[Decimal]) -> Nine:
+def turned_by(quaternion: Sequence[Decimal]) -> Matrix:
     """The rotation of a quaternion of any length, scalar first."""
     length = sum((x * x for x in quaternion), ZERO).sqrt()
-    R: Nine = rotation_of("quaternion", tuple(x / length for x in quaternion))
+    R: Matrix = rotation_of("quaternion", tuple(x / length for x in quaternion))
     return R
 
 
-def quaternion_of(R: Nine) -> tuple[Decimal, Decimal, Decimal, Decimal]:
+def quaternion_of(R: Matrix) -> tuple[Decimal, Decimal, Decimal, Decimal]:
     """The quaternion of a rotation, scalar first, from its largest component."""
     with localcontext(EXACTLY):
         d = [R[i][i] for i in range(3)]
@@ -164,17 +160,17 @@ def _plain(x: Decimal) -> Decimal:
     return short.normalize() if abs(short - x) < tolerances.SAME_TURN else computed(x)
 
 
-def inertia_in(R: Nine, tensor: Nine) -> Nine:
+def inertia_in(R: Matrix, tensor: Matrix) -> Matrix:
     """R I R^T."""
-    return product(product(R, tensor), transposed(R))
+    return R @ tensor @ R.T
 
 
-def tensor_of(xx: Decimal, yy: Decimal, zz: Decimal, xy: Decimal, yz: Decimal, zx: Decimal) -> Nine:
+def tensor_of(xx: Decimal, yy: Decimal, zz: Decimal, xy: Decimal, yz: Decimal, zx: Decimal) -> Matrix:
     """A symmetric matrix."""
-    return (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
+    return Matrix.of(((xx, xy, zx), (xy, yy, yz), (zx, yz, zz)))
 
 
-def six(I: Nine) -> list[Decimal]:
+def six(I: Matrix) -> list[Decimal]:
     """xx, yy, zz, xy, yz, zx of a tensor; of a diagonal one three."""
     found = [computed(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[0][2])]
     return found if any(found[3:]) else found[:3]
@@ -320,13 +316,13 @@ class Seat:
     """
 
     on: str | None
-    at: Triple = ORIGIN
-    R: Nine = IDENTITY
+    at: Vector = ORIGIN
+    R: Matrix = Matrix.IDENTITY
     turns: Sequence[Entries] = ()
 
-    def fields(self, beyond: Triple = ORIGIN) -> Entries:
+    def fields(self, beyond: Vector = ORIGIN) -> Entries:
         """The keys of a joint there, `beyond` further on in the turned axes."""
-        at = plus(self.at, apply(self.R, beyond)) if any(beyond) else self.at
+        at = self.at + self.R @ beyond if any(beyond) else self.at
         found: Entries = {} if self.on is None else {"on": self.on}
         if any(at):
             found["at"] = in_file(at)
@@ -340,7 +336,7 @@ class Moved:
     """One joint: its keys in addition to those of its seat, and the point of the body at which it sits, body axes."""
 
     keys: Entries
-    pivot: Triple = ORIGIN
+    pivot: Vector = ORIGIN
     name: str = ""
 
 

@@ -24,9 +24,7 @@ from eomgen.robots.tables import (
     LeftOut,
     LegalNames,
     Moved,
-    Nine,
     Seat,
-    Triple,
     computed,
     decimals,
     gap,
@@ -40,7 +38,7 @@ from eomgen.robots.tables import (
     without_empty,
 )
 from eomgen.robots.xml_tree import XmlElement, xml_tree
-from eomgen.symbolic.expression import IDENTITY, cross
+from eomgen.symbolic.expression import Matrix, Vector
 from eomgen.symbolic.numeric import tolerances
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
@@ -83,10 +81,10 @@ def urdf(data: bytes, name: str, *, floating: bool) -> Imported:
     return _Reading.of(root).tables(floating)
 
 
-def origin_of(element: XmlElement | None) -> tuple[Triple, Nine, list[Entries]]:
+def origin_of(element: XmlElement | None) -> tuple[Vector, Matrix, list[Entries]]:
     """(place, rotation, its turns) of an <origin>."""
     if element is None:
-        return ORIGIN, IDENTITY, []
+        return ORIGIN, Matrix.IDENTITY, []
     R, turns = roll_pitch_yaw(element.vector("rpy", "0 0 0"))
     return element.vector("xyz", "0 0 0"), R, turns
 
@@ -112,11 +110,11 @@ def massive(inertial: XmlElement | None) -> Entries:
             if entries[k] < 0:
                 tensor.read.discard(key)
                 entries[k] = ZERO
-        moments = six(inertia_in(R, tensor_of(*entries)) if R != IDENTITY else tensor_of(*entries))
+        moments = six(inertia_in(R, tensor_of(*entries)) if R != Matrix.IDENTITY else tensor_of(*entries))
     return with_mass(found, center, moments)
 
 
-def with_mass(found: Entries, center: Triple, moments: list[Decimal]) -> Entries:
+def with_mass(found: Entries, center: Vector, moments: list[Decimal]) -> Entries:
     """A body with its centre and its inertia; a body that has neither mass nor inertia is a frame."""
     if found["mass"] == 0 and not any(moments):
         return {}
@@ -264,7 +262,7 @@ class _Reading:
             return self._planar(found, raw, axis)
         return [self._one_axis(found, raw, joint, axis, driven)]
 
-    def _one_axis(self, found: Entries, raw: str, joint: XmlElement, axis: Triple, driven: bool) -> Moved:
+    def _one_axis(self, found: Entries, raw: str, joint: XmlElement, axis: Vector, driven: bool) -> Moved:
         """A hinge or a slide, its coordinate with its limits as a remark, its motor and its damper."""
         q, kind = self.coordinate[raw], _need_kind(joint)
         unit = ONE_AXIS[kind]
@@ -301,12 +299,12 @@ class _Reading:
         follows = gap(q, [(-factor, self.coordinate[other])], -offset, weighed=not same)
         found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": follows}
 
-    def _planar(self, found: Entries, raw: str, normal: Triple) -> list[Moved]:
+    def _planar(self, found: Entries, raw: str, normal: Vector) -> list[Moved]:
         """Two slides across the normal and a turn about it."""
         k = min(range(3), key=lambda i: abs(normal[i]))
         e = decimals(int(i == k) for i in range(3))
-        first = cross(e, normal)
-        across = [first, cross(normal, first)]
+        first = e.cross(normal)
+        across = [first, normal.cross(first)]
         if normal[0] == normal[1] == 0:
             across = [decimals([1, 0, 0]), decimals([0, 1, 0])]
         q = self.coordinate[raw]
@@ -322,7 +320,7 @@ class _Reading:
         return free_joint(found, stem, self.names)
 
 
-def free_joint(found: Entries, stem: str, names: LegalNames, start: Triple = ORIGIN, turn: Any = (1, 0, 0, 0)) -> Moved:
+def free_joint(found: Entries, stem: str, names: LegalNames, start: Vector = ORIGIN, turn: Any = (1, 0, 0, 0)) -> Moved:
     """A joint in which nothing is held, its turn by a quaternion."""
     places = [names.new(f"{stem}_{letter}") for letter in "xyz"]
     found["coordinates"] |= {

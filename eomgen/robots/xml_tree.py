@@ -10,8 +10,7 @@ from xml.parsers import expat
 
 from eomgen.errors import ModelError
 from eomgen.frozen import dataclass
-from eomgen.robots.tables import Triple
-from eomgen.symbolic.expression import LARGEST_EXPONENT, MOST_DIGITS
+from eomgen.symbolic.expression import LARGEST_EXPONENT, MOST_DIGITS, Vector
 
 DEEPEST = 200  # elements one within the other
 
@@ -55,10 +54,9 @@ class XmlElement:
         """A number among the attributes, exactly as it is written."""
         return self._decimals(self.get(key, default) if default is not None else self.need(key), 1, key)[0]
 
-    def vector(self, key: str, default: str) -> Triple:
+    def vector(self, key: str, default: str) -> Vector:
         """Three numbers in an attribute."""
-        x, y, z = self._decimals(self.get(key, default) or default, 3, key)
-        return x, y, z
+        return Vector(self._decimals(self.get(key, default) or default, 3, key))
 
     def value(self, size: int = 1) -> tuple[Decimal, ...]:
         """The numbers that stand in the element."""

@@ -20,22 +20,7 @@ from eomgen.model import (
 )
 from eomgen.scene.forms import PointForm, RodForm, SymbolForm
 from eomgen.scene.scene import Mark, SceneFrame
-from eomgen.symbolic.expression import (
-    ZERO,
-    Fraction,
-    Node,
-    Vector,
-    apply,
-    cross,
-    dot,
-    function,
-    is_zero,
-    minus,
-    over,
-    plus,
-    sqrt,
-    times,
-)
+from eomgen.symbolic.expression import Fraction, Node, Vector, function, is_zero, over, sqrt
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 
@@ -51,7 +36,7 @@ def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
         marks = skeleton(system, link, frame)
         point = part.shape is not None and part.shape.is_point
         if (point or not marks) and not is_block(system, link):
-            marks.append(Mark(PointForm(ZERO), frame, "body", link.name))
+            marks.append(Mark(PointForm(Vector.ZERO), frame, "body", link.name))
     return marks
 
 
@@ -72,18 +57,18 @@ def wedge_of(system: System, link: BodyLink) -> PolygonForm | None:
         return None
     motion, own = system.motion, link.point
     base = next(v for w, v in link.S if all(map(is_zero, w)))
-    up: Vector = (-base[1], base[0], 0)
+    up: Vector = Vector((-base[1], base[0], 0))
     for other in motion.links:
         if other.parent != motion.index[link.name] or other.joint is None or not other.joint.straight or not other.S:
             continue
-        seat, along = other.before.p, apply(other.before.R, apply(other.relative.R, other.S[0][1]))
-        height, fall = dot(up, minus(seat, own)), dot(up, along)
+        seat, along = other.before.p, other.before.R @ (other.relative.R @ other.S[0][1])
+        height, fall = up @ (seat - own), up @ along
         if motion.moves(seat) or motion.moves(along):
             continue
         if all(abs(x) > tolerances.COMPUTED for x in evaluate((height, fall), parameters_as_drawn(system), FLOAT)):
-            toe = minus(seat, times(over(height, fall), along))
-            top = plus(seat, times(Fraction(1, 8), minus(seat, toe)))
-            heel = minus(top, times(over(dot(up, minus(top, own)), dot(up, up)), up))
+            toe = seat - over(height, fall) * along
+            top = seat + Fraction(1, 8) * (seat - toe)
+            heel = top - over(up @ (top - own), up @ up) * up
             return PolygonForm((toe, heel, top))
     return None
 
@@ -94,7 +79,7 @@ def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[lis
     frames: list[SceneFrame] = []
     marks: list[Mark] = []
     for piece in pieces or ():
-        own = (PointForm(ZERO),) if piece.shape.is_point else piece.shape.forms(system.scope.value)
+        own = (PointForm(Vector.ZERO),) if piece.shape.is_point else piece.shape.forms(system.scope.value)
         for form in seen(system, own):
             if piece.hole and isinstance(form, (ArcForm, PolygonForm)):
                 marks.append(Mark(replace(form, hole=not form.hole), first + len(frames), "hole", body))
@@ -142,7 +127,7 @@ def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
     if not hung:
         return None if all(is_zero(x) for row in mass.I for x in row) else ("rotor", axis)
     inner = gimbal_of(system, hung[0])
-    across = cross(axis, apply(hung[0].before.R, hung[0].S[0][0])) if inner else ZERO
+    across = axis.cross(hung[0].before.R @ hung[0].S[0][0]) if inner else Vector.ZERO
     if inner is None or hung[0].before.p != link.point or all(map(is_zero, across)):
         return None
     return "ring" if inner[0] == "rotor" else "outer_ring", across
@@ -157,7 +142,7 @@ def shaft_of(system: System, link: BodyLink) -> Vector | None:
         return None
     before = [other for other in system.motion.links[: system.motion.index[link.name]] if other.parent == GROUND]
     second = any(_turns(other) and other.before.p == link.before.p for other in before)
-    return link.S[0][0] if second else minus(ZERO, link.S[0][0])
+    return link.S[0][0] if second else Vector.ZERO - link.S[0][0]
 
 
 def _turns(link: BodyLink) -> bool:
@@ -225,7 +210,7 @@ def inertia_mark(mass: MassProperties, frame: int, body: str) -> list[Mark]:
     if all(map(is_zero, (A, B, C))):
         return [Mark(PointForm(mass.com), frame, "body", body)]
     size = tuple(_half_axis(x, m) for x in (B + C - A, C + A - B, A + B - C))
-    return [Mark(EllipsoidForm(mass.com, (size[0], size[1], size[2])), frame, "inertia", body)]
+    return [Mark(EllipsoidForm(mass.com, Vector((size[0], size[1], size[2]))), frame, "inertia", body)]
 
 
 def without_veils(marks: Sequence[Mark], *, alone: bool) -> list[Mark]:

@@ -47,23 +47,16 @@ from eomgen.scene.forms import (
 )
 from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
     Fraction,
+    Matrix,
     Node,
     Pose,
     Scalar,
     Vector,
-    apply,
-    cross,
     function,
     is_zero,
-    minus,
-    plus,
     substituted,
     symbols_of,
-    times,
-    vector_of,
 )
 from eomgen.symbolic.numeric import FLOAT, evaluate
 
@@ -103,8 +96,8 @@ def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector
     above = 0 if grounded else link.parent + 1
     if guides := link.joint.guides(system.scope.value, link.before):
         return [Mark(form, above, "track", link.name) for form in guides]
-    along = apply(link.before.R, apply(link.relative.R, own))
-    upward = (-along[1], along[0], 0)
+    along = link.before.R @ (link.relative.R @ own)
+    upward = Vector((-along[1], along[0], 0))
     point, bare = part.shape is not None and part.shape.is_point, part.shape is None and part.parts is None
     wedge, block = wedge_of(system, link), is_block(system, link)
     on_wedge = not grounded and wedge_of(system, system.motion.links[link.parent]) is not None
@@ -121,7 +114,7 @@ def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector
 def _hangs(system: System, link: BodyLink, along: Vector) -> bool:
     """True if a body stands or hangs on springs and moves along its weight: no guide is drawn then."""
     weight = system.loads.fields
-    if all(map(is_zero, weight)) or not all(map(is_zero, cross(along, weight))):
+    if all(map(is_zero, weight)) or not all(map(is_zero, along.cross(weight))):
         return False
     elements = (force.element for force in system.scope.model.forces.values())
     ends = [point for x in elements if x is not None and x.stiffness is not None for point in x.points]
@@ -152,7 +145,7 @@ def _reach(system: System, link: BodyLink, slides: bool) -> list[Mark]:
         found.append(Mark(RodForm(seat, link.pose.point(link.point)), 0, "track" if grounded else "body", link.name))
     alone = sum(other.parent == GROUND for other in motion.links) == 1
     if grounded and alone and not all(map(is_zero, seat)):
-        found.append(Mark(LineForm((ZERO, seat), fine=True), 0, "ground", link.name))
+        found.append(Mark(LineForm((Vector.ZERO, seat), fine=True), 0, "ground", link.name))
     return found
 
 
@@ -238,7 +231,7 @@ def _members(system: System) -> list[Mark]:
     """The members of trusses."""
     at = system.motion.position
     return [
-        Mark(RodForm(at((first, ZERO)), at((second, ZERO))), 0, "member", f"{truss}.{member}")
+        Mark(RodForm(at((first, Vector.ZERO)), at((second, Vector.ZERO))), 0, "member", f"{truss}.{member}")
         for truss, member, (first, second) in system.scope.model.truss_members
     ]
 
@@ -292,7 +285,7 @@ def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
     frame = 0 if surface.on is None else system.motion.index[surface.on] + 1
     if isinstance(surface, FlatSurface):
         n = unit(scope.vector(surface.normal))
-        along = (n[1], -n[0], 0) if scope.model.space == "plane" else None
+        along = Vector((n[1], -n[0], 0)) if scope.model.space == "plane" else None
         at = _level(system, meeting, surface)
         return [Mark(TrackForm(at, along, n), frame, "track", of)] if system.symbols.q and at is not None else []
     if isinstance(surface, RoundSurface) and surface.at is not None:
@@ -309,7 +302,7 @@ def _level(system: System, meeting: Meeting, surface: FlatSurface) -> Vector | N
         return scene.ground_place(surface.at) if surface.on is None else scene.vector(surface.at)
     if not isinstance(meeting.what, TouchingPoint):
         return None
-    return vector_of(map(scene.start, scene.position(scene.place(meeting.what.point))))
+    return Vector(map(scene.start, scene.position(scene.place(meeting.what.point))))
 
 
 def _round(system: System, meeting: Meeting) -> list[Mark]:
@@ -325,7 +318,7 @@ def _round(system: System, meeting: Meeting) -> list[Mark]:
     frame = system.motion.index[what.body] + 1
     if what.axis is not None:
         return [Mark(WheelForm(at, system.scope.vector(what.axis), r), frame, "body", what.body)]
-    ball = EllipsoidForm(at, (r, r, r) if what.semiaxes is None else system.scope.vector(what.semiaxes))
+    ball = EllipsoidForm(at, Vector((r, r, r) if what.semiaxes is None else system.scope.vector(what.semiaxes)))
     return [Mark(form, frame, "body", what.body) for form in seen(system, (ball,))]
 
 
@@ -339,7 +332,7 @@ def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: st
         n = unit(system.scope.vector(surface.normal))
         if system.symbols.q and system.motion.moves(at):
             return []
-        return [Mark(SymbolForm("roller", at, (n[1], -n[0], 0)), 0, "support", of)]
+        return [Mark(SymbolForm("roller", at, Vector((n[1], -n[0], 0))), 0, "support", of)]
     if isinstance(surface, Groove) and surface.on is not None:
         place, link = system.motion.place(meeting.what.point), system.motion.link(surface.on)
         along = system.scope.vector(surface.along)
@@ -347,7 +340,7 @@ def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: st
     if isinstance(surface, BodyLine):
         (_, A), (_, B) = SystemScene(system.motion).line(surface.on)
         R = system.motion.link(surface.on).pose.R
-        along = apply(R, (B[0] - A[0], B[1] - A[1], B[2] - A[2]))
+        along = R @ Vector((B[0] - A[0], B[1] - A[1], B[2] - A[2]))
         return [Mark(SymbolForm("slider", at, along), 0, "joint", of)]
     return []
 
@@ -371,7 +364,7 @@ def _held(system: System, rows: Sequence[Any], of: str) -> list[Mark]:
     if "n" in parts and not between:
         (row,) = (row for row in rows if row.component == "n")
         x, y, _ = row.pushes[0].force
-        return [Mark(SymbolForm("roller", at, (y, -x, 0)), 0, "support", of)]
+        return [Mark(SymbolForm("roller", at, Vector((y, -x, 0))), 0, "support", of)]
     return [Mark(SymbolForm("hinge", at), 0, "joint", of)]
 
 
@@ -391,12 +384,12 @@ def walls(system: System, grounded: Sequence[Vector], free: Vector, of: str) -> 
     scene, known = SystemScene(system.motion), parameters_as_drawn(system)
     found = []
     for at in grounded:
-        way = tuple(map(scene.start, minus(free, at)))
+        way = tuple(map(scene.start, free - at))
         still = dict.fromkeys(symbols_of(way), 0.0)  # the share of a virtual displacement
         dx, dy, _ = (float(x) for x in evaluate(way, still | known, FLOAT))
         if math.hypot(dx, dy) > 0:
             level = abs(dy) >= abs(dx)
-            along: Vector = (int(math.copysign(1, dy)), 0, 0) if level else (0, -int(math.copysign(1, dx)), 0)
+            along: Vector = Vector((int(math.copysign(1, dy)), 0, 0) if level else (0, -int(math.copysign(1, dx)), 0))
             found.append(Mark(SymbolForm("wall", at, along), 0, "support", of))
     return found
 
@@ -451,7 +444,7 @@ def applied_marks(system: System) -> Iterator[Mark]:
                 at = motion.position(load.place)
                 yield Mark(ArrowForm(at, f, "N", text=applied.name), 0, "force", applied.name)
             elif isinstance(load, Couple):
-                at = motion.position(load.place or (load.body, ZERO))
+                at = motion.position(load.place or (load.body, Vector.ZERO))
                 couple = _known(system, motion.in_ground_axes(load.couple, load.axes))
                 yield Mark(CoupleForm(at, couple, applied.name), 0, "force", applied.name)
     yield from _drives(system)
@@ -459,7 +452,7 @@ def applied_marks(system: System) -> Iterator[Mark]:
 
 def _known(system: System, v: Vector) -> Vector:
     """A load in which an unknown number, to be found, is drawn as 1."""
-    return vector_of(substituted(v, dict.fromkeys(system.symbols.unknowns.values(), 1)))
+    return Vector(substituted(v, dict.fromkeys(system.symbols.unknowns.values(), 1)))
 
 
 def _drives(system: System) -> Iterator[Mark]:
@@ -472,7 +465,7 @@ def _drives(system: System) -> Iterator[Mark]:
             value = system.scope.value(effort.drive)
             at = link.pose.point(link.point)
             turns = not all(map(is_zero, w))
-            along = apply(link.pose.R, times(value, w if turns else v))
+            along = link.pose.R @ (value * (w if turns else v))
             form = CoupleForm(at, along) if turns else ArrowForm(at, along, "N", outward=True)
             yield Mark(form, 0, "force", link.name)
 
@@ -493,9 +486,9 @@ class Resultant:
 
     def of(self, values: Mapping[str, Scalar]) -> Vector:
         """The resultant, ground axes [N]."""
-        total = ZERO
+        total = Vector.ZERO
         for name, along in self.units.items():
-            total = plus(total, times(values[name], along))
+            total = total + values[name] * along
         return total
 
 
@@ -516,7 +509,7 @@ def resultants(system: System, names: Container[str]) -> Iterator[Resultant]:
     for owner, components in owners.items():
         seat, units = (
             _seat(system, owner),
-            {f"reaction_{axis}({owner})": e for axis, e in zip(along, IDENTITY, strict=False)},
+            {f"reaction_{axis}({owner})": e for axis, e in zip(along, Matrix.IDENTITY, strict=False)},
         )
         if seat is not None and all(name in names for name in units):
             yield Resultant(owner, motion.position(seat), units)
@@ -541,8 +534,8 @@ def _contact(motion: Motion, components: Sequence[Component]) -> Resultant | Non
         (push,) = mine
         if push.place is None:
             return None
-        places.add(plus(push.place, push.beyond or ZERO))
-        units[name] = push.force if plane else apply(pose.R, push.force)
+        places.add(push.place + (push.beyond or Vector.ZERO))
+        units[name] = push.force if plane else pose.R @ push.force
     return Resultant(owner, pose.point(places.pop()), units) if len(places) == 1 else None
 
 

@@ -24,7 +24,7 @@ from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
 from eomgen.scene.strokes import Drawing, SceneNumbers, Stroke
 from eomgen.simulation import Phase, Trajectory
-from eomgen.symbolic.expression import Fraction, Node, Pose, Scalar, Vector, vector_of
+from eomgen.symbolic.expression import Fraction, Matrix, Node, Pose, Scalar, Vector
 
 Piece = tuple[SceneNumbers, np.ndarray]
 """A scene over its own instants, and their places among those of the whole."""
@@ -69,7 +69,7 @@ def _phase_numbers(
             named = [system.symbols.graph.symbol(f"({axis} of {resultant.owner})") for axis in "xyz"[: len(force)]]
             given |= dict(zip(named, force, strict=True))
             padded: list[Scalar] = [*named, 0]
-            arrows.append((resultant, vector_of(padded[:3])))
+            arrows.append((resultant, Vector(padded[:3])))
         scene = replace(scene, marks=(*scene.marks, *reaction_marks(arrows)))
     else:
         scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role != "force"))
@@ -173,15 +173,15 @@ class _Joined:
         )
         if self.pieces[0][0].scene.plane:
             x, y, c, s = entries
-            return replace(own, pose=Pose(((c, -s, 0), (s, c, 0), (0, 0, 1)), (x, y, 0)))
-        R = (vector_of(entries[3:6]), vector_of(entries[6:9]), vector_of(entries[9:12]))
-        return replace(own, pose=Pose(R, vector_of(entries[:3])))
+            return replace(own, pose=Pose(Matrix.of(((c, -s, 0), (s, c, 0), (0, 0, 1))), Vector((x, y, 0))))
+        R = (Vector(entries[3:6]), Vector(entries[6:9]), Vector(entries[9:12]))
+        return replace(own, pose=Pose(Matrix.of(R), Vector(entries[:3])))
 
     def points(self) -> Iterator[tuple[str, Any]]:
         """The named points."""
         tables = [dict(numbers.scene.points) for numbers, _ in self.pieces]
         for name in dict.fromkeys(name for table in tables for name in table):
-            yield name, vector_of(self._numbers([table.get(name) for table in tables]))
+            yield name, Vector(self._numbers([table.get(name) for table in tables]))
 
     def marks(self) -> Iterator[Mark]:
         """All marks that one of the scenes has."""

@@ -39,24 +39,17 @@ from eomgen.scene.forms import (
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
 from eomgen.study import model_to_study, study_of
 from eomgen.symbolic.expression import (
-    ZERO,
     Fraction,
+    Matrix,
     Node,
     Pose,
     Scalar,
     Vector,
     collected,
-    cross,
     derivative,
-    dot,
     function,
     is_zero,
-    matrix_of,
-    minus,
-    plus,
     substituted,
-    times,
-    vector_of,
 )
 
 
@@ -84,7 +77,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
         *name_marks(system),
     ]
     if system.scope.model.space == "space":
-        marks.append(Mark(AxesForm(ZERO), 0, "axes", ""))
+        marks.append(Mark(AxesForm(Vector.ZERO), 0, "axes", ""))
     points = tuple(named_points(system))
     return Scene(system, tuple(frames), points, ordered(marks, ROLES), equations)
 
@@ -105,7 +98,7 @@ def named_points(system: System) -> Iterator[tuple[str, Vector]]:
             yield link.name, link.pose.p
             continue
         for name in model.body_points(link.name):
-            yield f"{link.name}.{name}", motion.position((link.name, motion.points[link.name].get(name, ZERO)))
+            yield f"{link.name}.{name}", motion.position((link.name, motion.points[link.name].get(name, Vector.ZERO)))
 
 
 def name_marks(system: System) -> Iterator[Mark]:
@@ -115,7 +108,7 @@ def name_marks(system: System) -> Iterator[Mark]:
         yield Mark(LabelForm(name, motion.scope.vector(place)), 0, "point", name)
     for k, link in enumerate(motion.links, start=1):
         if is_node(link.name):
-            yield Mark(LabelForm(link.name.rpartition(".")[2], ZERO), k, "point", link.name)
+            yield Mark(LabelForm(link.name.rpartition(".")[2], Vector.ZERO), k, "point", link.name)
             continue
         for name in model.bodies[link.name].points:
             yield Mark(LabelForm(name, motion.points[link.name][name]), k, "point", f"{link.name}.{name}")
@@ -126,9 +119,9 @@ def _middle(system: System, link: BodyLink) -> Vector:
     """Place of a body's name: its mass centre, else half-way along its middle piece."""
     if (center := system.motion.points[link.name].get("center")) is not None:
         return center
-    places = places_of_body(system, link) or [ZERO]
+    places = places_of_body(system, link) or [Vector.ZERO]
     half = len(places) // 2
-    return times(Fraction(1, 2), plus(places[max(half - 1, 0)], places[min(half, len(places) - 1)]))
+    return Fraction(1, 2) * (places[max(half - 1, 0)] + places[min(half, len(places) - 1)])
 
 
 # -------- sizes -----------------------------------------------------------------------------------------------
@@ -137,7 +130,7 @@ def _middle(system: System, link: BodyLink) -> Vector:
 
 MOST = 12  # lengths, or coordinates, that a picture has room for
 TIERS = (3, 5, 4, 6)  # of angles at one place, one after the other [symbol units]
-OBLIQUE: Vector = (Fraction(3, 5), Fraction(4, 5), 0)  # along which the radius of a circle is drawn
+OBLIQUE: Vector = Vector((Fraction(3, 5), Fraction(4, 5), 0))  # along which the radius of a circle is drawn
 
 
 def size_marks(system: System, marks: Iterable[Mark]) -> list[Mark]:
@@ -179,7 +172,7 @@ def _ground_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:
 
 def _between(places: Iterable[Vector], names: dict[Node, str], frame: int, of: str) -> Iterator[Mark]:
     for a, b in combinations(places, 2):
-        if (name := _length(minus(b, a), names)) is not None:
+        if (name := _length(b - a, names)) is not None:
             yield Mark(DimensionForm(a, b, name), frame, "dimension", of)
 
 
@@ -197,11 +190,11 @@ def _of_forms(marks: Iterable[Mark], names: dict[Node, str]) -> Iterator[Mark]:
     for mark in marks:
         form = mark.form
         if isinstance(form, ArcForm) and type(form.radius) is Node and form.radius in names:
-            rim = plus(form.at, times(form.radius, OBLIQUE))
+            rim = form.at + form.radius * OBLIQUE
             yield Mark(DimensionForm(form.at, rim, names[form.radius], 0), mark.frame, "dimension", mark.of)
         elif isinstance(form, PolygonForm):
             for a, b in pairwise((*form.points, form.points[0])):
-                if (name := _length(minus(b, a), names)) is not None:
+                if (name := _length(b - a, names)) is not None:
                     yield Mark(DimensionForm(a, b, name, 2), mark.frame, "dimension", mark.of)
 
 
@@ -250,20 +243,20 @@ def _way(system: System, link: BodyLink, q: Node) -> Mark | None:
     """
     if not link.is_placed:
         return None
-    place = system.motion.points[link.name].get("center", ZERO)
+    place = system.motion.points[link.name].get("center", Vector.ZERO)
     p = system.motion.position((link.name, place))
-    rate = vector_of(derivative(x, q) for x in p)
-    second = vector_of(derivative(x, q) for x in rate)
-    start = vector_of(substituted(p, {q: 0}))
+    rate = Vector(derivative(x, q) for x in p)
+    second = Vector(derivative(x, q) for x in rate)
+    start = Vector(substituted(p, {q: 0}))
     if all(map(holds_identically, second)):
-        return Mark(DimensionForm(start, p, q.name, 5), 0, "dimension", q.name) if _is_one(dot(rate, rate)) else None
-    center = vector_of(collected(x + y) for x, y in zip(p, second, strict=True))
-    arm = minus(p, center)
+        return Mark(DimensionForm(start, p, q.name, 5), 0, "dimension", q.name) if _is_one(rate @ rate) else None
+    center = Vector(collected(x + y) for x, y in zip(p, second, strict=True))
+    arm = p - center
     if not all(holds_identically(derivative(x, q)) for x in center):
         return None
-    x, y, _ = minus(start, center)
+    x, y, _ = start - center
     begin = function("atan2", y, x)
-    turns = cross(arm, rate)[2] - dot(arm, arm), cross(arm, rate)[2] + dot(arm, arm)
+    turns = arm.cross(rate)[2] - arm @ arm, arm.cross(rate)[2] + arm @ arm
     sense = next((k for k, left in zip((1, -1), turns, strict=True) if holds_identically(left)), None)
     return (
         None if sense is None else Mark(AngleForm(center, begin, begin + sense * q, q.name, 7), 0, "dimension", q.name)
@@ -304,7 +297,7 @@ def scene_of_inertia(
         if m <= 0:
             continue
         marks += _ellipsoid(moments[body], m, len(frames), body)
-        pose = Pose(matrix_of(map(_vector, zip(*rows, strict=True))), _vector(com))
+        pose = Pose(Matrix.of(map(_vector, zip(*rows, strict=True))), _vector(com))
         frames.append(SceneFrame(f"{body}, principal", system.motion.index[body] + 1, pose))
     return replace(scene, frames=tuple(frames), marks=ordered(marks, ROLES))
 
@@ -314,16 +307,16 @@ def _ellipsoid(moments: Sequence[float], m: float, frame: int, body: str) -> Ite
     largest = max(moments)
     size = math.sqrt(5 * sum(moments) / (6 * m))  # of the shortest half-axis: of a ball its radius
     half = [size * min(math.sqrt(largest / I) if I > 0 else LONGEST_AXIS, LONGEST_AXIS) for I in moments]
-    yield Mark(EllipsoidForm(ZERO, _vector(half)), frame, "inertia", body)
-    yield Mark(PointForm(ZERO), frame, "center", body)
+    yield Mark(EllipsoidForm(Vector.ZERO, _vector(half)), frame, "inertia", body)
+    yield Mark(PointForm(Vector.ZERO), frame, "center", body)
     for k, length in enumerate(half):
         end = _vector(BEYOND * length * (i == k) for i in range(3))
-        yield Mark(LineForm((minus(ZERO, end), end), fine=True), frame, "reaction", body)
+        yield Mark(LineForm((Vector.ZERO - end, end), fine=True), frame, "reaction", body)
         yield Mark(LabelForm(str(k + 1), end), frame, "axes", body)
 
 
 def _vector(v: Iterable[float]) -> Vector:
-    return vector_of(map(Fraction, v))
+    return Vector(map(Fraction, v))
 
 
 # -- cut free ----------------------------------------------------------------------------------------------------

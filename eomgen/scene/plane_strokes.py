@@ -22,6 +22,7 @@ from eomgen.scene.strokes import (
     drawn_with,
 )
 from eomgen.scene.symbols import PLANE, TEETH
+from eomgen.symbolic.expression import Vector
 
 HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0
 ROUND = 73  # points of a circle
@@ -138,7 +139,7 @@ def _broken(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
 def _symbol(form: forms.SymbolForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A symbol of the table, turned and in its size."""
     at = numbers.spot(form.at, mark)
-    x = _unit(numbers.way(form.along, mark)) if form.along is not None else _unit(numbers.way((1, 0, 0), mark))
+    x = _unit(numbers.way(form.along, mark)) if form.along is not None else _unit(numbers.way(Vector((1, 0, 0)), mark))
     y = np.column_stack([-x[:, 1], x[:, 0]])
     found = []
     for role, part in PLANE[form.symbol]:
@@ -289,7 +290,7 @@ def _axes(form: forms.AxesForm, mark: Mark, numbers: SceneNumbers, sizes: Pictur
     at = numbers.spot(form.at, mark)
     found, letters = [], []
     for name, way in (("x", (1, 0, 0)), ("y", (0, 1, 0))):
-        tip = at + 3 * sizes.unit * _unit(numbers.way(way, mark))
+        tip = at + 3 * sizes.unit * _unit(numbers.way(Vector(way), mark))
         found += _arrow_strokes(at, tip, mark, sizes)
         letters.append(Letter(name, tip, mark.role, mark.of))
     return found, letters

@@ -31,6 +31,7 @@ from eomgen.scene.strokes import (
     drawn_with,
 )
 from eomgen.scene.symbols import SPACE, TEETH
+from eomgen.symbolic.expression import Vector
 
 ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest
 SEEN = 0.0012  # of the extent: chords need not be nearer to their arc
@@ -144,7 +145,7 @@ def _quads(grid: np.ndarray) -> np.ndarray:
 
 
 def _prism(form: PrismForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    ends = [numbers.spots(tuple((x, y, z) for x, y in form.points), mark) for z in (form.low, form.high)]
+    ends = [numbers.spots(tuple(Vector((x, y, z)) for x, y in form.points), mark) for z in (form.low, form.high)]
     rims = [np.concatenate([end, end[:, :1]], axis=1) for end in ends]
     walls = np.stack([rims[0][:, :-1], rims[0][:, 1:], rims[1][:, 1:], rims[1][:, :-1]], axis=2)
     return [_faces(walls, mark), *(_faces(end[:, None], mark) for end in ends)], []
@@ -243,7 +244,7 @@ def _track(form: forms.TrackForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
 def _symbol(form: forms.SymbolForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A symbol of the table, its axis turned, in its size."""
     at = numbers.spot(form.at, mark)
-    z = _unit(numbers.way(form.along if form.along is not None else (0, 0, 1), mark))
+    z = _unit(numbers.way(form.along if form.along is not None else Vector((0, 0, 1)), mark))
     x, y = _crossing(z)
     found = []
     for role, part in SPACE[form.symbol]:
@@ -349,7 +350,7 @@ def _axes(form: forms.AxesForm, mark: Mark, numbers: SceneNumbers, sizes: Pictur
     found: list[Stroke] = []
     letters: list[Letter] = []
     for name, e in zip("xyz", np.eye(3, dtype=int).tolist(), strict=True):
-        tip = at + 4 * sizes.unit * _unit(numbers.way((e[0], e[1], e[2]), mark))
+        tip = at + 4 * sizes.unit * _unit(numbers.way(Vector((e[0], e[1], e[2])), mark))
         found += _arrow_strokes(at, tip, mark, sizes)
         letters.append(Letter(name, tip, mark.role, mark.of))
     return found, letters

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Any
 
 from eomgen.model import ArcForm, BoxForm, EllipsoidForm, Form, LineForm, PolygonForm, RevolutionForm
-from eomgen.symbolic.expression import ZERO, Fraction, Vector
+from eomgen.symbolic.expression import Fraction, Vector
 
 TEETH = 8  # of a spring
 
@@ -28,7 +28,7 @@ def _line(*points: tuple[float, float]) -> Form:
 
 
 def _spots(points: Iterable[tuple[float, float]]) -> tuple[Vector, ...]:
-    return tuple((_exact(x), _exact(y), 0) for x, y in points)
+    return tuple(Vector((_exact(x), _exact(y), 0)) for x, y in points)
 
 
 def _polygon(*points: tuple[float, float]) -> Form:
@@ -37,7 +37,7 @@ def _polygon(*points: tuple[float, float]) -> Form:
 
 def _circle(x: float, y: float, radius: float) -> Form:
     r = _exact(radius)
-    return ArcForm((_exact(x), _exact(y), 0), r, r, close="chord")
+    return ArcForm(Vector((_exact(x), _exact(y), 0)), r, r, close="chord")
 
 
 def _square(half: float) -> Form:
@@ -91,27 +91,27 @@ PLANE: dict[str, SymbolParts] = {
 
 def _ball(radius: float) -> Form:
     r = _exact(radius)
-    return EllipsoidForm(ZERO, (r, r, r))
+    return EllipsoidForm(Vector.ZERO, Vector((r, r, r)))
 
 
 def _drum(radius: float, half: float) -> Form:
     r, h = _exact(radius), _exact(half)
-    return RevolutionForm(ZERO, ((0, -h), (r, -h), (r, h), (0, h)), (r,))
+    return RevolutionForm(Vector.ZERO, ((0, -h), (r, -h), (r, h), (0, h)), (r,))
 
 
 def _block(x: float, y: float, z: float) -> Form:
-    return BoxForm(ZERO, (_exact(x), _exact(y), _exact(z)))
+    return BoxForm(Vector.ZERO, Vector((_exact(x), _exact(y), _exact(z))))
 
 
 def _ring(inner: float, outer: float, half: float) -> Form:
     r, R, h = map(_exact, (inner, outer, half))
-    return RevolutionForm(ZERO, ((r, -h), (R, -h), (R, h), (r, h), (r, -h)), (r,))
+    return RevolutionForm(Vector.ZERO, ((r, -h), (R, -h), (R, h), (r, h), (r, -h)), (r,))
 
 
 def _pins(near: float, far: float) -> SymbolParts:
     """Both ends of a shaft along z."""
     ends = [(_exact(sign * near), _exact(sign * far)) for sign in (1, -1)]
-    return tuple(("body", LineForm(((0, 0, a), (0, 0, b)))) for a, b in ends)
+    return tuple(("body", LineForm((Vector((0, 0, a)), Vector((0, 0, b))))) for a, b in ends)
 
 
 SPACE: dict[str, SymbolParts] = {
@@ -122,7 +122,9 @@ SPACE: dict[str, SymbolParts] = {
     "tube": (("joint", _drum(0.6, 1.6)),),
     "coil": (("ground", _spiral()),),
     "cross": (("joint", _drum(0.25, 1.2)), ("joint", _block(2.4, 0.5, 0.5))),
-    "shaft": (("body", RevolutionForm(ZERO, ((0, 1), (_exact(0.5), 1), (_exact(0.5), 8), (0, 8)), (_exact(0.5),))),),
+    "shaft": (
+        ("body", RevolutionForm(Vector.ZERO, ((0, 1), (_exact(0.5), 1), (_exact(0.5), 8), (0, 8)), (_exact(0.5),))),
+    ),
     "rotor": (("body", _drum(2.6, 0.4)),),
     "ring": (("body", _ring(3.7, 4.1, 0.3)),),
     "outer_ring": (("body", _ring(5.1, 5.5, 0.3)),),

@@ -30,7 +30,7 @@ from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Mark, Scene
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
-from eomgen.symbolic.expression import ZERO, Node, Pose, Scalar, Vector, cross, is_zero, plus, times, transposed
+from eomgen.symbolic.expression import Matrix, Node, Pose, Scalar, Vector, is_zero
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 
 SWING = 0.12  # of the extent, by which the point that moves most is swung out
@@ -103,9 +103,9 @@ class VirtualDisplacement:
         plan, s, pose = self.equation.plan, self._share, link.pose
         if link.name not in plan.moving:
             return pose
-        v, w = plan.raw_velocity((link.name, ZERO)), plan.raw_spin(link.name)
-        axes = [plus(e, times(s, cross(w, e))) for e in transposed(pose.R)]
-        return Pose(transposed((axes[0], axes[1], axes[2])), plus(pose.p, times(s, v)))
+        v, w = plan.raw_velocity((link.name, Vector.ZERO)), plan.raw_spin(link.name)
+        axes = [e + s * w.cross(e) for e in pose.R.T]
+        return Pose(Matrix.of((axes[0], axes[1], axes[2])).T, pose.p + s * v)
 
     def _frames(self, shares: np.ndarray) -> np.ndarray:
         system, scene = self._displaced, self.scene
@@ -130,7 +130,7 @@ class VirtualDisplacement:
                     for place, m in SystemScene(system.motion).masses(None):
                         if not is_zero(m):
                             at = system.motion.position(place)
-                            yield Mark(ArrowForm(at, times(m, load.acceleration), "N"), 0, "force", force.name)
+                            yield Mark(ArrowForm(at, m * load.acceleration, "N"), 0, "force", force.name)
 
     def _released(self, system: System) -> Iterator[Mark]:
         """A unit of the reaction on every body that it acts on, its name at the first."""
@@ -155,7 +155,7 @@ class VirtualDisplacement:
                 key, more = (effect.link, effect.place), effect.times(k)
                 had = found.get(key)
                 if had is not None:
-                    more = replace(more, force=plus(had.force, more.force), couple=plus(had.couple, more.couple))
+                    more = replace(more, force=had.force + more.force, couple=had.couple + more.couple)
                 found[key] = more
         return list(found.values())
 

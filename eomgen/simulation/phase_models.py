@@ -21,23 +21,7 @@ from eomgen.simulation.contacts import Configuration, ContactEvents, bounds_of, 
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
 from eomgen.symbolic.exact import readable_all
-from eomgen.symbolic.expression import (
-    ZERO,
-    Expression,
-    Node,
-    Scalar,
-    Vector,
-    apply,
-    as_expression,
-    dot,
-    is_zero,
-    minus,
-    over,
-    symbols_of,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, as_expression, is_zero, over, symbols_of
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
@@ -508,13 +492,13 @@ def _placed(system: System, row: Row) -> Leave:
             if on is link
         ]
         d = _across(n, others)
-        along = readable_all((dot(n, d),))[0]
+        along = readable_all((n @ d,))[0]
         if not holds_identically(along):
             straight = all(holds_identically(a - b) for a, b in zip(n, d, strict=True))
-            return Leave(link, vector_of(readable_all(tuple(over(x, along) for x in d))), straight)
+            return Leave(link, Vector(readable_all(tuple(over(x, along) for x in d))), straight)
     for link, n in pushed:
         if system.scope.model.space == "plane":
-            return Leave(link, vector_of(readable_all(n)), straight=False, turns=True)
+            return Leave(link, Vector(readable_all(n)), straight=False, turns=True)
     raise DerivationError(
         f"'{row.constraint}' ends, and no body can leave it: the coordinates describe contact only",
         f"constraints.{row.constraint}",
@@ -531,9 +515,9 @@ def _pushed(system: System, row: Row) -> list[tuple[BodyLink, Vector]]:
         link = _root(system, system.motion.link(push.place[0]))
         if link is None:
             continue
-        force = push.force if push.axes is None else apply(system.motion.link(push.axes).pose.R, push.force)
+        force = push.force if push.axes is None else system.motion.link(push.axes).pose.R @ push.force
         if link.parent != GROUND:
-            force = apply(transposed(system.motion.links[link.parent].pose.R), force)
+            force = system.motion.links[link.parent].pose.R.T @ force
         found.append((link, force))
     return found
 
@@ -543,9 +527,9 @@ def _across(n: Vector, others: list[Vector]) -> Vector:
     basis: list[Vector] = []
     for vector in (*others, n):
         for e in basis:
-            vector = minus(vector, times(over(dot(vector, e), dot(e, e)), e))
+            vector = vector - over(vector @ e, e @ e) * e
         if all(holds_identically(x) for x in vector):
-            vector = ZERO
+            vector = Vector.ZERO
         else:
             basis.append(vector)
     return vector

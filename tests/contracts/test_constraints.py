@@ -13,7 +13,7 @@ from eomgen.mechanics.dynamics.system import System
 from eomgen.model.constraints import ALL
 from eomgen.symbolic.expression.derivatives import gradient, tangent
 from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.spatial import ZERO, apply, cross, plus
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 pytestmark = pytest.mark.slow
@@ -332,16 +332,16 @@ def test_a_tie_between_bodies_pushes_equally_on_both(kind, space, fields):
     """sum F = 0, and the moments about the ground's origin differ by gap x F: none when the points meet."""
     system = system_with(kind, space, fields)
     for row in system.constraints.rows:
-        F, M = ZERO, ZERO
+        F, M = Vector.ZERO, Vector.ZERO
         for body, wrench in row.wrenches:
             pose = system.motion.link(body).pose
-            f = apply(pose.R, wrench.f)
-            F, M = plus(F, f), plus(M, plus(apply(pose.R, wrench.tau), cross(pose.p, f)))
-        assert equal(F, ZERO)
+            f = pose.R @ wrench.f
+            F, M = F + f, M + (pose.R @ wrench.tau + pose.p.cross(f))
+        assert equal(F, Vector.ZERO)
         places = [system.motion.position(system.motion.place(f"{body}.P")) for body, _ in row.wrenches]
         (body, wrench), gap = row.wrenches[0], [a - b for a, b in zip(*places, strict=True)]
-        push = apply(system.motion.link(body).pose.R, wrench.f)
-        assert equal(M, cross((gap[0], gap[1], gap[2]), push))
+        push = system.motion.link(body).pose.R @ wrench.f
+        assert equal(M, Vector((gap[0], gap[1], gap[2])).cross(push))
 
 
 ONE_PLACE = [c for c in CASES if (c[0] == "slider" and '"G"' not in c[2]) or (c[0] == "rolling" and "on =" in c[2])]
@@ -361,11 +361,11 @@ def test_a_contact_of_two_bodies_pushes_both_at_one_place(kind, space, fields):
 
 def total(system: System, wrenches) -> tuple[Scalar, ...]:
     """Force and moment about the ground's origin of wrenches on bodies."""
-    F, M = ZERO, ZERO
+    F, M = Vector.ZERO, Vector.ZERO
     for body, wrench in wrenches:
         pose = system.motion.link(body).pose
-        f = apply(pose.R, wrench.f)
-        F, M = plus(F, f), plus(M, plus(apply(pose.R, wrench.tau), cross(pose.p, f)))
+        f = pose.R @ wrench.f
+        F, M = F + f, M + (pose.R @ wrench.tau + pose.p.cross(f))
     return (*F, *M)
 
 

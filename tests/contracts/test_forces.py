@@ -25,7 +25,7 @@ from eomgen.model.forces.load import Couple, PointForce, UniformField
 from eomgen.proof.declared_loads import acting_otherwise, working_otherwise
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import Scalar
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
@@ -283,14 +283,14 @@ Resultant = tuple[Vector, Vector]
 
 def resultant(system: System, loads, about: Vector) -> Resultant:
     """(force, moment about a point of the ground) of forces and couples, ground axes."""
-    F, M = ZERO, ZERO
+    F, M = Vector.ZERO, Vector.ZERO
     for load in loads:
         if isinstance(load, Couple):
-            M = plus(M, system.motion.in_ground_axes(load.couple, load.axes))
+            M = M + system.motion.in_ground_axes(load.couple, load.axes)
         else:
             f = system.motion.in_ground_axes(load.force, load.axes)
-            F = plus(F, f)
-            M = plus(M, cross(minus(system.motion.position(load.place), about), f))
+            F = F + f
+            M = M + (system.motion.position(load.place) - about).cross(f)
     return F, M
 
 
@@ -313,11 +313,11 @@ def test_inner_forces_sum_to_zero(kind, space, fields):
     system = system_with(kind, space, fields)
     loads = applied(system).loads
     F, M = resultant(system, loads, ground_point(system))
-    assert equal(F, ZERO)
+    assert equal(F, Vector.ZERO)
     if "along" in fields:  # the stretch is measured, and the pull acts, along a fixed direction: a couple stays
         first, second = (system.motion.position(load.place) for load in loads)
-        M = minus(M, cross(minus(first, second), loads[0].force))
-    assert equal(M, ZERO)
+        M = M - (first - second).cross(loads[0].force)
+    assert equal(M, Vector.ZERO)
 
 
 EFFORTS = 'torque = "tau", stiffness = "k", rest = 0.2, damping = "c"'
@@ -355,12 +355,12 @@ joint = {{ {joint} }}
 def test_the_effort_of_a_joint_is_an_inner_force(space, joint):
     """Its wrenches on child and parent have no resultant and no moment about any ground point."""
     system = system_with_joint(space, joint)
-    F, M = ZERO, ZERO
+    F, M = Vector.ZERO, Vector.ZERO
     for body, wrench in system.loads.efforts[0].wrenches(system.motion):
         pose = system.motion.link(body).pose
-        f, tau = apply(pose.R, wrench.f), apply(pose.R, wrench.tau)
-        F, M = plus(F, f), plus(M, plus(tau, cross(minus(pose.p, ground_point(system)), f)))
-    assert equal((*F, *M), (*ZERO, *ZERO))
+        f, tau = pose.R @ wrench.f, pose.R @ wrench.tau
+        F, M = F + f, M + (tau + (pose.p - ground_point(system)).cross(f))
+    assert equal((*F, *M), (*Vector.ZERO, *Vector.ZERO))
 
 
 @each("space, joint", JOINTS)
@@ -394,11 +394,11 @@ def test_a_straight_damper_takes_c_times_the_rate_squared():
     system = system_with("damper", PLANE, f'{TWO}, damping = "c"')
     scene = SystemScene(system.motion)
     ends = [load.place for load in applied(system).loads]
-    gap = minus(scene.position(ends[1]), scene.position(ends[0]))
-    velocity = minus(scene.velocity(ends[1]), scene.velocity(ends[0]))
-    power = sum((dot(load.force, scene.velocity(load.place)) for load in applied(system).loads), start=0)
+    gap = scene.position(ends[1]) - scene.position(ends[0])
+    velocity = scene.velocity(ends[1]) - scene.velocity(ends[0])
+    power = sum((load.force @ scene.velocity(load.place) for load in applied(system).loads), start=0)
     c = system.symbols.parameters["c"]
-    assert equal((power * dot(gap, gap),), (-c * dot(gap, velocity) * dot(gap, velocity),))
+    assert equal((power * (gap @ gap),), (-c * (gap @ velocity) * (gap @ velocity),))
 
 
 DISTRIBUTED = [(space, fields) for kind, space, fields in CASES if kind == "distributed"]
@@ -459,10 +459,10 @@ def test_a_force_in_the_axes_of_a_body_turns_with_it(axes):
     system = system_with("force", PLANE, f'point = "lower.P", force = [3, "k"], axes = "{axes}"')
     (load,) = applied(system).loads
     k = system.symbols.parameters["k"]
-    turned = apply(system.motion.link(axes).pose.R, (3, k, 0))
+    turned = system.motion.link(axes).pose.R @ Vector((3, k, 0))
     assert equal(system.motion.in_ground_axes(load.force, load.axes), turned)
     body, wrench = system.motion.body_wrench(load)
-    assert body == "lower" and equal(apply(system.motion.link(body).pose.R, wrench.f), turned)
+    assert body == "lower" and equal(system.motion.link(body).pose.R @ wrench.f, turned)
 
 
 @pytest.mark.parametrize("axes", ["upper", "lower"])
@@ -473,7 +473,7 @@ def test_a_couple_in_the_axes_of_a_body_turns_with_it(space, axes):
     system = system_with("couple", space, f'body = "lower", couple = {plain}, axes = "{axes}"')
     (load,) = applied(system).loads
     lower = system.motion.link("lower")
-    power = dot(apply(system.motion.link(axes).pose.R, load.couple), apply(lower.pose.R, lower.twist.w))
+    power = system.motion.link(axes).pose.R @ load.couple @ (lower.pose.R @ lower.twist.w)
     assert equal(system.loads.force_row(applied(system)), gradient(power, system.symbols.u))
 
 
@@ -490,9 +490,9 @@ def test_a_pull_draws_its_points_together():
     """Attraction is positive: the force on the first point is along the line to the second."""
     system = system_with("between", PLANE, f'{TWO}, pull = "k"')
     first, second = applied(system).loads
-    line = minus(system.motion.position(second.place), system.motion.position(first.place))
+    line = system.motion.position(second.place) - system.motion.position(first.place)
     state = state_of(system)
-    assert at((dot(first.force, line),), state)[0] > 0 > at((dot(second.force, line),), state)[0]
+    assert at((first.force @ line,), state)[0] > 0 > at((second.force @ line,), state)[0]
 
 
 @pytest.mark.parametrize("law", ["k*(r - l)", "k*l^2/r^2", "k*l/r"])
@@ -526,7 +526,7 @@ def test_only_the_direction_of_along_counts(fields):
     system = system_with("spring", PLANE, f'{TWO}, stiffness = "k", length = "l", {fields}')
     first, second = (system.motion.position(load.place) for load in applied(system).loads)
     p = system.symbols.parameters
-    stretch = at((dot(minus(second, first), (3, 4, 0)), p["l"], p["k"]), state_of(system))
+    stretch = at(((second - first) @ Vector((3, 4, 0)), p["l"], p["k"]), state_of(system))
     expected = stretch[2] * (stretch[0] / 5 - stretch[1]) ** 2 / 2
     assert at((applied(system).potential,), state_of(system)) == pytest.approx([expected], rel=1e-13)
 
@@ -546,7 +546,7 @@ def test_a_force_in_a_fixed_direction_does_the_work_of_a_potential():
     force = applied(system)
     (load,) = force.loads
     assert isinstance(load, PointForce)
-    V = -dot(load.force, system.motion.position(load.place))
+    V = -(load.force @ system.motion.position(load.place))
     assert equal(system.motion.scope.from_potential(V), system.loads.force_row(force))
 
 

@@ -16,7 +16,7 @@ from eomgen.mechanics.kinematics.motion import BodyLink, spin_between
 from eomgen.model.joints import ALL
 from eomgen.model.joints.ball import SEQUENCES
 from eomgen.symbolic.expression.formula import cos, sin
-from eomgen.symbolic.expression.spatial import apply, matrix_of, rotation, transposed
+from eomgen.symbolic.expression.spatial import Matrix
 
 SEAT = 'at = [0.1, 0.2, 0.3], turned = { axis = [1, 1, 0], angle = "pi/3" }'
 QUATERNION = 'orientation = "quaternion", quaternion = ["e0", "e1", "e2", "e3"], omega = ["w1", "w2", "w3"]'
@@ -173,8 +173,8 @@ def test_the_subspace_is_the_rate_of_the_pose(kind, space, fields):
     system, link = system_with(kind, space, fields)
     scope, R, p = system.scope, link.relative.R, link.relative.p
     flat = scope.time_derivative(tuple(x for row in R for x in row))
-    spin = spin_between(R, matrix_of((flat[0:3], flat[3:6], flat[6:9])))
-    velocity = apply(transposed(R), scope.rate_of(p))
+    spin = spin_between(R, Matrix.of((flat[0:3], flat[3:6], flat[6:9])))
+    velocity = R.T @ scope.rate_of(p)
     twist = [
         sum((column[k // 3][k % 3] * s for column, s in zip(link.S, link.s_rate, strict=True)), start=0)
         for k in range(6)
@@ -243,7 +243,7 @@ def test_in_the_plane_the_turn_is_the_angle_of_the_pose(kind, space, fields):
     """R = Rot(z, turn)"""
     system, link = system_with(kind, space, fields)
     angle = link.joint.turn(link.s, system.scope.value)
-    R = rotation((0, 0, 1), cos(angle), sin(angle))
+    R = Matrix.rotation((0, 0, 1), cos(angle), sin(angle))
     assert equal([x for row in link.relative.R for x in row], [x for row in R for x in row])
 
 

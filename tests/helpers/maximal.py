@@ -24,7 +24,7 @@ from eomgen.mechanics.kinematics.inertia import SystemInertia
 from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.symbolic.expression.derivatives import gradient
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.numeric.dense import balanced, independent, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
@@ -130,14 +130,14 @@ def _joint(numbers: BodyNumbers, link: BodyLink) -> tuple[np.ndarray, np.ndarray
 
 def _origin(link: BodyLink) -> Vector:
     """The child's origin in the parent's axes."""
-    return link.local.point(times(-1, link.point))
+    return link.local.point(-link.point)
 
 
 def _relative_spin(link: BodyLink) -> Vector:
     """Angular velocity of the child against its parent, child's axes."""
-    spin = ZERO
+    spin = Vector.ZERO
     for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
-        spin = plus(spin, times(rate, w))
+        spin = spin + rate * w
     return spin
 
 

@@ -31,7 +31,6 @@ from eomgen.proof.certificate import certify
 from eomgen.proof.printed import Printed
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression.node import Scalar, linear_terms
-from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
@@ -118,7 +117,7 @@ def test_a_method_goes_its_own_way_and_an_error_on_it_turns_it_red(monkeypatch, 
 
 def turned_rate_matrix(w, wd):
     U = recursion_rate_matrix(w, wd)
-    return (times(-1, U[0]), U[1], U[2])
+    return (-U[0], U[1], U[2])
 
 
 recursion_rate_matrix = recursion.rate_matrix
@@ -129,7 +128,7 @@ link_twist = kinematics._twist
 
 def lighter(motion, link, plane):
     moments = own_moments(motion, link, plane)
-    return replace(moments, h=times(-1, moments.h))
+    return replace(moments, h=-moments.h)
 
 
 def swapped(w):
@@ -189,7 +188,7 @@ def balance_mutants(right: Balance):
             yield f"{equation.body}, {i}", replace(right, equations=equations)
     for j, component in enumerate(right.components):
         for k, effect in enumerate(component.effects if len(component.effects) > 1 else ()):
-            other = replace(effect, force=times(-1, effect.force), couple=times(-1, effect.couple))
+            other = replace(effect, force=-effect.force, couple=-effect.couple)
             wrong = replace(component, effects=(*component.effects[:k], other, *component.effects[k + 1 :]))
             yield component.name, replace(right, components=(*right.components[:j], wrong, *right.components[j + 1 :]))
 
@@ -227,7 +226,7 @@ def without_parent(axes, link, force, couple):
 
 
 def to_the_other_side(axes, i, place):
-    return times(-1, arm(axes, i, place))
+    return -arm(axes, i, place)
 
 
 friction_factor, friction_contacts = contacts.ContactMode.friction_factor, friction.SystemFriction.contacts

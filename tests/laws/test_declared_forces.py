@@ -24,7 +24,6 @@ from eomgen.proof.check import Certificate
 from eomgen.proof.declared_loads import acting_otherwise, working_otherwise
 from eomgen.proof.states import real_state
 from eomgen.symbolic.expression import splines
-from eomgen.symbolic.expression.spatial import times
 
 SPACE = """
 eomgen = 1
@@ -109,9 +108,9 @@ def test_the_declared_work_of_every_kind_of_force_is_that_of_the_equations():
 def turned(load):
     """The load with the other sign."""
     if isinstance(load, PointForce):
-        return replace(load, force=times(-1, load.force))
+        return replace(load, force=-load.force)
     if isinstance(load, Couple):
-        return replace(load, couple=times(-1, load.couple))
+        return replace(load, couple=-load.couple)
     return GeneralizedForce(load.coordinate, -load.value)
 
 

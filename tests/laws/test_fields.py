@@ -26,7 +26,7 @@ from eomgen.questions import outputs_answered as answers
 from eomgen.study import MotionFromStart, Study, study_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.node import Node
-from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
@@ -225,9 +225,9 @@ def test_points_of_the_inflection_circle_have_no_acceleration_across_their_path(
     """v x a = 0 at the point opposite to the centre of rotation, and at the one a quarter further."""
     field = exact_field(seed)
     middle, pole = field.inflection_center(), field.rotation_center()
-    arm = minus(middle, pole)
-    for place in (plus(middle, arm), plus(middle, (-arm[1], arm[0], 0))):
-        assert cross(field.velocity(place), field.acceleration(place)) == (0, 0, 0)
+    arm = middle - pole
+    for place in (middle + arm, middle + Vector((-arm[1], arm[0], 0))):
+        assert field.velocity(place).cross(field.acceleration(place)) == (0, 0, 0)
 
 
 @each("seed", range(12))
@@ -245,7 +245,7 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
     for k in range(2001):
         place = tuple(a + k / 2000 * (b - a) for a, b in zip(start, end, strict=True))
         v = field.velocity(place)
-        speeds.append(float(dot(v, v)) ** 0.5)
+        speeds.append(float(v @ v) ** 0.5)
     assert least <= min(speeds) + 1e-12
     assert least == pytest.approx(min(speeds), abs=2e-2)
 
@@ -452,7 +452,7 @@ def test_the_moving_centrode_touches_the_fixed_one(text):
     system, possible = kinds.system, kinds.possible
     field, pose = system.motion.field(found.body), system.motion.link(found.body).pose
     moved = pose.point(found.moving)
-    assert possible.vanish(*minus(moved, found.fixed))
+    assert possible.vanish(*(moved - found.fixed))
     assert possible.vanish(*field.velocity(found.fixed))
 
 

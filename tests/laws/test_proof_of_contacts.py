@@ -18,7 +18,7 @@ from eomgen.model.forces.elements import Damper, Spring
 from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
 from eomgen.model.joints import ball as orientation
 from eomgen.proof.check import Certificate
-from eomgen.symbolic.expression.spatial import times
+from eomgen.symbolic.expression.spatial import Matrix, Vector
 
 MODELS = Path(__file__).parents[2] / "models"
 TOUCH = "contacts lie on both surfaces, and neither open nor slip"
@@ -120,22 +120,22 @@ def test_contacts_touch_in_the_models(name):
 
 
 def too_high(self, scene, n):
-    return Nearest(times(-self.R, n), 2 * self.R)
+    return Nearest(-self.R * n, 2 * self.R)
 
 
 def other_side(self, scene, n):
     right = own_nearest(self, scene, n)
-    return replace(right, reach=times(-1, right.reach))
+    return replace(right, reach=-right.reach)
 
 
 def on_top(self, scene, n):
     right = own_lowest(self, scene, n)
-    return replace(right, reach=times(-1, right.reach))
+    return replace(right, reach=-right.reach)
 
 
 def turned_the_other_way(scene, track, center, ball):
     right = own_curved(scene, track, center, ball)
-    return replace(right, reach=times(-1, right.reach))
+    return replace(right, reach=-right.reach)
 
 
 own_nearest, own_lowest, own_curved = RollingBall.nearest, Wheel.nearest, rolling.on_curved
@@ -144,7 +144,7 @@ PLANTED = [
     (DISC, RollingBall, "nearest", other_side),
     ("rolling_disc", Wheel, "nearest", on_top),
     ("epicyclic_gear", rolling, "on_curved", turned_the_other_way),
-    (HELD, support, "minus", lambda a, b: tuple(x + y for x, y in zip(a, b, strict=True))),
+    (HELD, support, "Vector", lambda components: -Vector(components)),
 ]
 
 
@@ -161,7 +161,7 @@ def test_products_of_inertia_in_the_wrong_places_are_seen(monkeypatch):
 
     def mixed(scope, body, declared):
         (xx, xy, xz), (_, yy, yz), (_, _, zz) = own(scope, body, declared)
-        return ((xx, yz, xz), (yz, yy, xy), (xz, xy, zz))
+        return Matrix.of(((xx, yz, xz), (yz, yy, xy), (xz, xy, zz)))
 
     text = SOLID.replace("INERTIA", "[3, 4, 5, 0.1, 0.2, 0.3]")
     assert status(certificate_of(text), name) == "holds"
@@ -170,11 +170,11 @@ def test_products_of_inertia_in_the_wrong_places_are_seen(monkeypatch):
 
 
 def pushing(self, scene):
-    return tuple(replace(load, force=times(-1, load.force)) for load in own_loads(self, scene))
+    return tuple(replace(load, force=-load.force) for load in own_loads(self, scene))
 
 
 def turning(self, scene):
-    return tuple(replace(load, couple=times(-1, load.couple)) for load in own_turn(self, scene))
+    return tuple(replace(load, couple=-load.couple) for load in own_turn(self, scene))
 
 
 def stretched(self, scene, length):

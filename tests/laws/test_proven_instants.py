@@ -15,7 +15,6 @@ from eomgen.mechanics.instant import kinematic_state as relative_motion
 from eomgen.mechanics.instant import mechanism
 from eomgen.mechanics.kinematics.motion import Motion, VelocityField
 from eomgen.study import kinematics as velocities
-from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_requested as verb
 
 pytestmark = pytest.mark.slow
@@ -44,9 +43,9 @@ RELATIVE = ("bead.center", "hoop")
 def test_a_wrong_field_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """omega and epsilon against R(t)."""
     right = Motion.field
-    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), w=times(2, f.w)))
+    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), w=2 * f.w))
     assert "spins and angular" in wrong_checks(CRANK)
-    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), e=times(2, f.e)))
+    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), e=2 * f.e))
     assert "spins and angular" in wrong_checks(MODELS / "double_pendulum.toml", at="t = 1/2")
 
 
@@ -74,7 +73,7 @@ def test_a_wrong_pole_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_wrong_part_of_a_relative_motion_is_seen(monkeypatch: pytest.MonkeyPatch, part: str) -> None:
     """a = a_t + a_r + a_C"""
     right = getattr(relative_motion.Composition, part).fget
-    monkeypatch.setattr(relative_motion.Composition, part, property(lambda self: times(3, right(self))))
+    monkeypatch.setattr(relative_motion.Composition, part, property(lambda self: 3 * right(self)))
     assert "a_t + a_r + a_C" in wrong_checks(HOOP, at="t = 1/4", relative=[RELATIVE])
 
 
@@ -96,7 +95,7 @@ def test_the_verb_carries_its_proof(monkeypatch: pytest.MonkeyPatch) -> None:
     assert as_dict(shown(verb(model)))["certificate"]["ok"] is True
     assert as_dict(shown(verb(model), certify=False))["certificate"] is None
     right = Motion.field
-    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), v=times(2, f.v)))
+    monkeypatch.setattr(Motion, "field", lambda *given: replace(f := right(*given), v=2 * f.v))
     assert "do not trust" in shown(verb(model)).wrong
 
 

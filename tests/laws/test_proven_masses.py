@@ -39,7 +39,7 @@ def heavy_rods(monkeypatch: pytest.MonkeyPatch) -> None:
 
     def planted(self: Any, m: Any, value: Any) -> MassProperties:
         found = right(self, m, value)
-        return replace(found, I=tuple(tuple(4 * x for x in row) for row in found.I))
+        return replace(found, I=4 * found.I)
 
     monkeypatch.setattr(Rod, "of_mass", planted)
 

@@ -25,7 +25,6 @@ from eomgen.symbolic.expression import (
     Node,
     Scalar,
     Wrench,
-    apply,
     depends_on,
     is_zero,
     jacobian,
@@ -34,7 +33,6 @@ from eomgen.symbolic.expression import (
     sqrt,
     substituted,
     symbols_of,
-    times,
 )
 from eomgen.symbolic.numeric import PRIME_FIELD, Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import text_size, to_text
@@ -211,9 +209,9 @@ def rows_of_constraint(motion: Motion, name: str) -> tuple[Row, ...]:
 def _held_on_path(motion: Motion, link: BodyLink) -> ConstraintRow:
     """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
     _, v = link.S[0]
-    along = apply(link.pose.R, v)
+    along = link.pose.R @ v
     parent = None if link.parent == GROUND else motion.links[link.parent].name
-    pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), times(-1, along)))
+    pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), -along))
     return ConstraintRow(pushes, None, component="t", material=True)
 
 
@@ -361,7 +359,7 @@ def _in_balance(seen: Motion, carrier: str, wrenches: Wrenches) -> Wrenches:
     for body, W in found:
         pose = seen.link(body).pose
         total = total.plus(W.turned(pose.R).moved(pose.p))
-    return (*found, (carrier, Wrench(times(-1, total.tau), times(-1, total.f))))
+    return (*found, (carrier, Wrench(-total.tau, -total.f)))
 
 
 def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Scalar) -> Scalar:

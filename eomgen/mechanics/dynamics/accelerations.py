@@ -11,24 +11,7 @@ from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, branches_of, inertia_wrench, rate_matrix
 from eomgen.mechanics.kinematics import GROUND, Loads, Motion, SystemInertia
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    Matrix,
-    Scalar,
-    State,
-    Vector,
-    apply,
-    cross,
-    is_zero,
-    matrix_of,
-    over,
-    plus,
-    product,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Scalar, State, Vector, is_zero, over
 from eomgen.symbolic.numeric import NoValue, dense, evaluate, fifty_digits, tolerances
 
 # -------- accelerations ---------------------------------------------------------------------------------------
@@ -165,7 +148,7 @@ def accelerations(loads: Loads, branches: tuple[Branch, ...]) -> tuple[Scalar, .
     rotors: list[Scalar] = [0] * size
     for k, _, value in SystemInertia(motion).added_mass:
         rotors[k] = rotors[k] + value
-    base = (*ZERO, *times(-1, loads.fields))
+    base = (*Vector.ZERO, *(-loads.fields))
     biases, p = _velocity_terms(branches)
     for i, wrench in applied_wrenches(loads, branches).items():
         p[i] = [a - b for a, b in zip(p[i], (*wrench.tau, *wrench.f), strict=True)]
@@ -178,15 +161,15 @@ def _velocity_terms(branches: tuple[Branch, ...]) -> tuple[list[Six], list[Six]]
     spins: list[Vector] = []
     biases, wrenches = [], []
     for branch in branches:
-        w_p = ZERO if branch.parent == GROUND else spins[branch.parent]
+        w_p = Vector.ZERO if branch.parent == GROUND else spins[branch.parent]
         carried_w = _turn(branch, w_p)
-        w = plus(carried_w, branch.w)
-        U_p = rate_matrix(w_p, ZERO)
-        seat = plus(apply(U_p, branch.p), branch.p_bias)
+        w = carried_w + branch.w
+        U_p = rate_matrix(w_p, Vector.ZERO)
+        seat = U_p @ branch.p + branch.p_bias
         if any(not is_zero(x) for x in branch.p_rate):
-            seat = plus(seat, times(2, cross(w_p, branch.p_rate)))
-        biases.append([*plus(branch.w_bias, cross(carried_w, branch.w)), *_turn(branch, seat)])
-        wrench = inertia_wrench(branch.moments, ZERO, rate_matrix(w, ZERO))
+            seat = seat + 2 * w_p.cross(branch.p_rate)
+        biases.append([*(branch.w_bias + carried_w.cross(branch.w)), *_turn(branch, seat)])
+        wrench = inertia_wrench(branch.moments, Vector.ZERO, rate_matrix(w, Vector.ZERO))
         wrenches.append([*wrench.tau, *wrench.f])
         spins.append(w)
     return biases, wrenches
@@ -226,8 +209,8 @@ def _outward(
     reached: list[Six] = []
     for i, branch in enumerate(branches):
         A_p = base if branch.parent == GROUND else reached[branch.parent]
-        wd, acc = vector_of(A_p[:3]), vector_of(A_p[3:])
-        A = [*_turn(branch, wd), *_turn(branch, plus(acc, cross(wd, branch.p)))]
+        wd, acc = Vector(A_p[:3]), Vector(A_p[3:])
+        A = [*_turn(branch, wd), *_turn(branch, acc + wd.cross(branch.p))]
         solved = [x + y for x, y in zip(A, biases[i], strict=True)]
         for e in reversed(eliminated[i]):
             a[e.k] = (e.r - _dot(e.Is, solved)) * over(1, e.d)
@@ -241,7 +224,7 @@ def _matrix(branch: Branch) -> Matrix6:
     columns = []
     for j in range(6):
         unit = [int(i == j) for i in range(6)]
-        wrench = inertia_wrench(branch.moments, vector_of(unit[3:]), rate_matrix(ZERO, vector_of(unit[:3])))
+        wrench = inertia_wrench(branch.moments, Vector(unit[3:]), rate_matrix(Vector.ZERO, Vector(unit[:3])))
         columns.append([*wrench.tau, *wrench.f])
     return [[columns[j][i] for j in range(6)] for i in range(6)]
 
@@ -259,16 +242,16 @@ def _downdated(I: Matrix6, u: Six, scaled: Six) -> Matrix6:
 
 def _carry(branch: Branch, I: Matrix6, p: Six, parent_I: Matrix6, parent_p: Six) -> None:
     """Add X^T I X and X^T p to the parent, X = (E, 0; -E p~, E)."""
-    if branch.E is not IDENTITY:
-        R = transposed(branch.E)
+    if branch.E is not Matrix.IDENTITY:
+        R = branch.E.T
         blocks = [[_congruent(R, _block(I, r, c)) for c in (0, 3)] for r in (0, 3)]
         I = [[blocks[r // 3][c // 3][r % 3][c % 3] for c in range(6)] for r in range(6)]
-        p = [*apply(R, vector_of(p[:3])), *apply(R, vector_of(p[3:]))]
+        p = [*(R @ Vector(p[:3])), *(R @ Vector(p[3:]))]
     moved = _moved(I, branch.p)
     for i in range(6):
         for j in range(i, 6):
             parent_I[i][j] = parent_I[j][i] = parent_I[i][j] + moved[i][j]
-    torque = plus(vector_of(p[:3]), cross(branch.p, vector_of(p[3:])))
+    torque = Vector(p[:3]) + branch.p.cross(Vector(p[3:]))
     for i, x in enumerate((*torque, *p[3:])):
         parent_p[i] = parent_p[i] + x
 
@@ -291,12 +274,12 @@ def _moved(I: Matrix6, r: Vector) -> Matrix6:
 
 
 def _block(I: Matrix6, r: int, c: int) -> Matrix:
-    return matrix_of((I[r + i][c + j] for j in range(3)) for i in range(3))
+    return Matrix.of((I[r + i][c + j] for j in range(3)) for i in range(3))
 
 
 def _congruent(R: Matrix, block: Matrix) -> Matrix:
     """R block R^T"""
-    return product(product(R, block), transposed(R))
+    return R @ block @ R.T
 
 
 def _times(I: Matrix6, x: Six) -> Six:
@@ -312,7 +295,7 @@ def _dot(a: Six, b: Six) -> Scalar:
 
 
 def _turn(branch: Branch, a: Vector) -> Vector:
-    return a if branch.E is IDENTITY else apply(branch.E, a)
+    return a if branch.E is Matrix.IDENTITY else branch.E @ a
 
 
 # -------- stabilization ---------------------------------------------------------------------------------------

@@ -21,7 +21,6 @@ from eomgen.symbolic.expression import (
     Scalar,
     ScalarRow,
     depends_on_any,
-    dot,
     gradient,
     inner,
     is_zero,
@@ -29,7 +28,6 @@ from eomgen.symbolic.expression import (
     substituted,
     symbols_of,
     tangent,
-    times,
 )
 
 
@@ -193,9 +191,9 @@ class Contributions:
                 for link in motion.links:
                     mass = motion.scope.mass_properties(link.name)
                     if not is_zero(mass.m):
-                        weight = times(mass.m, load.acceleration)
+                        weight = mass.m * load.acceleration
                         place = (link.name, mass.com)
-                        V = -dot(weight, motion.position(place))
+                        V = -(weight @ motion.position(place))
                         name = f"the weight of {link.name}"
                         acts = PointForce(place, weight)
                         found.append(Contribution(name, link.name, force.name, V=V, kind="weight", load=acts))
@@ -210,7 +208,7 @@ class Contributions:
             name = f"the force {force.name}" + (f" ({number})" if many else "")
             body = _body((load,))
             if isinstance(load, PointForce) and load.axes is None and not depends_on_any(load.force, self._varying):
-                V = -dot(load.force, motion.position(load.place))
+                V = -(load.force @ motion.position(load.place))
                 found.append(Contribution(name, body, force.name, V=V, kind="constant", load=load))
                 continue
             Q = loads.load_row(load)

@@ -12,14 +12,13 @@ from eomgen.mechanics.dynamics.tree import Branch, applied_wrenches, bias_forces
 from eomgen.mechanics.kinematics import Loads, Motion, SystemInertia
 from eomgen.model import Body, Coordinate, Model, NodeBalance, Table
 from eomgen.symbolic.expression import (
-    ZERO,
     Node,
     Scalar,
     ScalarRow,
     SpatialInertia,
     Twist,
+    Vector,
     Wrench,
-    cross,
     depends_on,
     derivative,
     gradient,
@@ -27,12 +26,9 @@ from eomgen.symbolic.expression import (
     is_zero,
     jacobian,
     parse,
-    plus,
     pullback,
     substituted,
     tangent,
-    times,
-    vector_of,
 )
 from eomgen.symbolic.print import text_size, to_text
 
@@ -142,7 +138,7 @@ def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
     rotors = SystemInertia(motion).added_bias
     c = tuple(x + y for x, y in zip(_projected(twists, bias, u), rotors, strict=True))
     applied = applied_to_bodies(system.loads)
-    none = Wrench(ZERO, ZERO)
+    none = Wrench(Vector.ZERO, Vector.ZERO)
     Q = _projected(twists, [applied.get(link.name, none) for link in motion.links], u)
     return tuple(Ma), c, tuple(x + y for x, y in zip(Q, system.loads.placeless_forces, strict=True))
 
@@ -178,12 +174,12 @@ def inertia_by_twists(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]
 def _bias(inertia: SpatialInertia, xi: Twist, alpha: Twist) -> Wrench:
     """I alpha + xi x* (I xi): the wrench that the motion takes at a = 0, body axes, at the origin."""
     momentum = inertia.momentum(xi)
-    turning = Wrench(plus(cross(xi.w, momentum.tau), cross(xi.v, momentum.f)), cross(xi.w, momentum.f))
+    turning = Wrench(xi.w.cross(momentum.tau) + xi.v.cross(momentum.f), xi.w.cross(momentum.f))
     return inertia.momentum(alpha).plus(turning)
 
 
 def _twist(entries: Sequence[Scalar]) -> Twist:
-    return Twist(vector_of(entries[:3]), vector_of(entries[3:]))
+    return Twist(Vector(entries[:3]), Vector(entries[3:]))
 
 
 def _with_armatures(motion: Motion, M: list[list[Scalar]], c: list[Scalar]) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
@@ -238,7 +234,7 @@ def assembled_by_recursion(system: System) -> EquationsOfMotion:
 def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> ScalarRow:
     """c: what inertia takes at a = 0, armatures included."""
     size = len(motion.scope.symbols.u)
-    bias = bias_forces(branches, size, base_acceleration=ZERO, applied={})
+    bias = bias_forces(branches, size, base_acceleration=Vector.ZERO, applied={})
     return tuple(a + b for a, b in zip(bias, SystemInertia(motion).added_bias, strict=True))
 
 
@@ -249,7 +245,7 @@ def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
     bias = bias_forces(
         branches,
         size,
-        base_acceleration=times(-1, loads.fields),
+        base_acceleration=-loads.fields,
         applied=applied_wrenches(loads, branches),
     )
     direct = [a + b for a, b in zip(loads.joint_forces, loads.placeless_forces, strict=True)]
@@ -276,7 +272,7 @@ def inverse_residual(system: System) -> ScalarRow:
     forces = bias_forces(
         branches,
         len(a),
-        base_acceleration=times(-1, loads.fields),
+        base_acceleration=-loads.fields,
         applied=applied_wrenches(loads, branches),
         a=a,
     )

@@ -8,30 +8,7 @@ from collections.abc import Mapping, Sequence
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import GROUND, BodyLink, Loads, Motion, shorter
 from eomgen.model import Couple, PointForce
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    Fraction,
-    Matrix,
-    Node,
-    Scalar,
-    Vector,
-    Wrench,
-    added,
-    apply,
-    cross,
-    dot,
-    in_turned_axes,
-    is_zero,
-    matrix_of,
-    minus,
-    plus,
-    symbols_of,
-    tangent,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Fraction, Matrix, Node, Scalar, Vector, Wrench, is_zero, symbols_of, tangent
 
 # -------- tree ------------------------------------------------------------------------------------------------
 # Motion -> Branches: the tree of bodies as the recursive methods walk it.
@@ -58,15 +35,15 @@ class Moments:
     J: Matrix
 
     def plus(self, other: Moments) -> Moments:
-        return Moments(self.m + other.m, plus(self.h, other.h), added(self.J, other.J))
+        return Moments(self.m + other.m, self.h + other.h, self.J + other.J)
 
     def turned(self, R: Matrix) -> Moments:
         """The same mass in the axes to which R leads: R h, R J R^T."""
-        return self if R is IDENTITY else Moments(self.m, apply(R, self.h), _congruence(R, self.J))
+        return self if R is Matrix.IDENTITY else Moments(self.m, R @ self.h, _congruence(R, self.J))
 
     def moved(self, p: Vector) -> Moments:
         """About the point that sees the present origin at p: h + m p, J + p h^T + h p^T + m p p^T."""
-        g = plus(self.h, times(self.m, p))  # p h^T + h p^T + m p p^T = p h^T + g p^T
+        g = self.h + self.m * p  # p h^T + h p^T + m p p^T = p h^T + g p^T
         J = {(i, j): self.J[i][j] + (p[i] * self.h[j] + g[i] * p[j]) for i in range(3) for j in range(i, 3)}
         return Moments(self.m, g, symmetric(J))
 
@@ -113,43 +90,43 @@ def branches_of(motion: Motion) -> tuple[Branch, ...]:
 
 def origin_of(motion: Motion, link: BodyLink) -> Vector:
     """A branch's origin in body axes: the joint point, or the body's own origin where the joint slides along it."""
-    return ZERO if motion.moves(link.point) else link.point
+    return Vector.ZERO if motion.moves(link.point) else link.point
 
 
 def offset_of(motion: Motion, link: BodyLink) -> Vector:
     """Vector from the parent's origin to this branch's, in the parent's body axes."""
-    place = link.local.point(minus(origin_of(motion, link), link.point))
-    return place if link.parent == GROUND else minus(place, origin_of(motion, motion.links[link.parent]))
+    place = link.local.point(origin_of(motion, link) - link.point)
+    return place if link.parent == GROUND else place - origin_of(motion, motion.links[link.parent])
 
 
 def _branch(motion: Motion, link: BodyLink, offset: Vector, moments: Moments, plane: bool) -> Branch:
     scope = motion.scope
-    parent_axes = IDENTITY if link.parent == GROUND or not plane else motion.links[link.parent].pose.R
-    axes = link.pose.R if plane else IDENTITY
-    E = IDENTITY if plane else transposed(link.local.R)
+    parent_axes = Matrix.IDENTITY if link.parent == GROUND or not plane else motion.links[link.parent].pose.R
+    axes = link.pose.R if plane else Matrix.IDENTITY
+    E = Matrix.IDENTITY if plane else link.local.R.T
     rate = scope.rate_of(offset)
     bias = scope.rate_of(rate)
-    directions = [apply(axes, w) for w, _ in link.S]
-    w = w_bias = ZERO
+    directions = [axes @ w for w, _ in link.S]
+    w = w_bias = Vector.ZERO
     s_bias = scope.time_derivative(link.s_rate)
     for direction, (body_direction, _), s_rate, s_acc in zip(directions, link.S, link.s_rate, s_bias, strict=True):
-        w = plus(w, times(s_rate, direction))
-        turning = apply(axes, scope.rate_of(body_direction))
-        w_bias = plus(w_bias, plus(times(s_acc, direction), times(s_rate, turning)))
-    own_rate = apply(parent_axes, rate)
+        w = w + s_rate * direction
+        turning = axes @ scope.rate_of(body_direction)
+        w_bias = w_bias + (s_acc * direction + s_rate * turning)
+    own_rate = parent_axes @ rate
     if scope.combines:
-        w = vector_of(map(shorter, w))
+        w = Vector(map(shorter, w))
         w_bias = scope.rate_of(w)
     return Branch(
         link,
         link.parent,
         E,
-        apply(parent_axes, offset),
+        parent_axes @ offset,
         own_rate,
-        apply(parent_axes, bias),
+        parent_axes @ bias,
         w,
         w_bias,
-        _columns(motion, w, own_rate if plane else apply(E, rate)),
+        _columns(motion, w, own_rate if plane else E @ rate),
         moments,
         axes,
     )
@@ -162,7 +139,7 @@ def _columns(motion: Motion, w: Vector, v: Vector) -> dict[int, MotionColumn]:
     for symbol in symbols_of((*w, *v)):
         if symbol in speeds:
             rates = tangent((*w, *v), {symbol: 1})
-            columns[speeds[symbol]] = (vector_of(rates[:3]), vector_of(rates[3:]))
+            columns[speeds[symbol]] = (Vector(rates[:3]), Vector(rates[3:]))
     return dict(sorted(columns.items()))
 
 
@@ -181,28 +158,25 @@ def _regrouped(motion: Motion, offsets: list[Vector], plane: bool) -> list[Momen
             continue
         m, h, J = moments[i].m, moments[i].h, moments[i].J
         along = 2 if plane else k
-        kept_h = vector_of(0 if j == along else h[j] for j in range(3))
-        kept_J = matrix_of((0 if i_ == j_ == along else J[i_][j_] for j_ in range(3)) for i_ in range(3))
+        kept_h = Vector(0 if j == along else h[j] for j in range(3))
+        kept_J = Matrix.of((0 if i_ == j_ == along else J[i_][j_] for j_ in range(3)) for i_ in range(3))
         moments[i] = Moments(0, kept_h, kept_J)
         if link.parent == GROUND:
             continue
-        d = vector_of(row[k] for row in link.before.R)
-        line = Moments(m, times(h[k], d), matrix_of(times(J[k][k] * a, d) for a in d))
+        d = Vector(row[k] for row in link.before.R)
+        line = Moments(m, h[k] * d, Matrix.of(J[k][k] * a * d for a in d))
         moments[link.parent] = moments[link.parent].plus(_flat(line.moved(offsets[i]), plane))
-    return [
-        Moments(b.m, apply(link.pose.R, b.h), b.J) if plane else b
-        for b, link in zip(moments, motion.links, strict=True)
-    ]
+    return [Moments(b.m, link.pose.R @ b.h, b.J) if plane else b for b, link in zip(moments, motion.links, strict=True)]
 
 
 def _own_moments(motion: Motion, link: BodyLink, plane: bool) -> Moments:
     body = motion.scope.mass_properties(link.name)
     half_trace = Fraction(1, 2) * (body.I[0][0] + body.I[1][1] + body.I[2][2])
-    J = matrix_of(((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
+    J = Matrix.of(((half_trace if i == j else 0) - body.I[i][j] for j in range(3)) for i in range(3))
     if plane:
-        J = ((body.I[2][2], 0, 0), ZERO, ZERO)
-    com = minus(body.com, origin_of(motion, link))
-    return _flat(Moments(body.m, ZERO, J).moved(com), plane)
+        J = Matrix.of(((body.I[2][2], 0, 0), Vector.ZERO, Vector.ZERO))
+    com = body.com - origin_of(motion, link)
+    return _flat(Moments(body.m, Vector.ZERO, J).moved(com), plane)
 
 
 def _flat(moments: Moments, plane: bool) -> Moments:
@@ -210,7 +184,7 @@ def _flat(moments: Moments, plane: bool) -> Moments:
     if not plane:
         return moments
     polar = moments.J[0][0] + moments.J[1][1]
-    return Moments(moments.m, moments.h, ((polar, 0, 0), ZERO, ZERO))
+    return Moments(moments.m, moments.h, Matrix.of(((polar, 0, 0), Vector.ZERO, Vector.ZERO)))
 
 
 def _hinge_axis(motion: Motion, link: BodyLink, offset: Vector) -> int | None:
@@ -232,21 +206,21 @@ def _congruence(R: Matrix, J: Matrix) -> Matrix:
     """
     (A, times_there), *_ = Counter(J[i][i] for i in range(3)).most_common()
     if times_there > 1 and not is_zero(A):
-        part = matrix_of((J[i][j] - A if i == j else J[i][j] for j in range(3)) for i in range(3))
+        part = Matrix.of((J[i][j] - A if i == j else J[i][j] for j in range(3)) for i in range(3))
         turned = _congruence(R, part)
-        return matrix_of((turned[i][j] + A if i == j else turned[i][j] for j in range(3)) for i in range(3))
+        return Matrix.of((turned[i][j] + A if i == j else turned[i][j] for j in range(3)) for i in range(3))
     last = max(range(3), key=lambda i: (sum(type(x) is Node for x in R[i]), i))
     first, second = (i for i in range(3) if i != last)
-    half = {i: apply(transposed(J), R[i]) for i in (first, second)}
-    entry = {(i, j): dot(half[i], R[j]) for i, j in ((first, first), (second, second), (first, second))}
-    entry |= {(i, last): dot(half[i], R[last]) for i in (first, second)}
+    half = {i: J.T @ R[i] for i in (first, second)}
+    entry = {(i, j): half[i] @ R[j] for i, j in ((first, first), (second, second), (first, second))}
+    entry |= {(i, last): half[i] @ R[last] for i in (first, second)}
     entry[last, last] = _rest_of_trace([J[i][i] for i in range(3)], [entry[first, first], entry[second, second]])
     return symmetric(entry)
 
 
 def symmetric(entry: Mapping[tuple[int, int], Scalar]) -> Matrix:
     """The matrix, 3 x 3, of which one of each two equal entries is given."""
-    return matrix_of((entry[i, j] if (i, j) in entry else entry[j, i] for j in range(3)) for i in range(3))
+    return Matrix.of((entry[i, j] if (i, j) in entry else entry[j, i] for j in range(3)) for i in range(3))
 
 
 def _rest_of_trace(terms: list[Scalar], known: list[Scalar]) -> Scalar:
@@ -278,21 +252,23 @@ def rate_matrix(w: Vector, wd: Vector) -> Matrix:
     """U = wd~ + w~ w~: points at r accelerate by U r against the origin."""
     xx, yy, zz = w[0] * w[0], w[1] * w[1], w[2] * w[2]
     xy, xz, yz = w[0] * w[1], w[0] * w[2], w[1] * w[2]
-    return (
-        (-(yy + zz), xy - wd[2], xz + wd[1]),
-        (xy + wd[2], -(xx + zz), yz - wd[0]),
-        (xz - wd[1], yz + wd[0], -(xx + yy)),
+    return Matrix.of(
+        (
+            (-(yy + zz), xy - wd[2], xz + wd[1]),
+            (xy + wd[2], -(xx + zz), yz - wd[0]),
+            (xz - wd[1], yz + wd[0], -(xx + yy)),
+        )
     )
 
 
 def inertia_wrench(body: Moments, acc: Vector, U: Matrix) -> Wrench:
     """Force m acc + U h and moment h x acc + vee(U J - J U^T) that the motion of a body takes."""
     J = body.J
-    f = plus(times(body.m, acc), apply(U, body.h))
+    f = body.m * acc + U @ body.h
     x = J[1][1] * U[2][1] - J[2][2] * U[1][2] + J[1][2] * (U[2][2] - U[1][1]) + J[0][1] * U[2][0] - J[0][2] * U[1][0]
     y = J[2][2] * U[0][2] - J[0][0] * U[2][0] + J[0][2] * (U[0][0] - U[2][2]) + J[1][2] * U[0][1] - J[0][1] * U[2][1]
     z = J[0][0] * U[1][0] - J[1][1] * U[0][1] + J[0][1] * (U[1][1] - U[0][0]) + J[0][2] * U[1][2] - J[1][2] * U[0][2]
-    return Wrench(plus(cross(body.h, acc), (x, y, z)), f)
+    return Wrench(body.h.cross(acc) + Vector((x, y, z)), f)
 
 
 def bias_forces(
@@ -313,12 +289,12 @@ def bias_forces(
     wrenches = _inertia_wrenches(branches, base_acceleration, a)
     for i, wrench in applied.items():
         own = wrenches[i]
-        wrenches[i] = Wrench(minus(own.tau, wrench.tau), minus(own.f, wrench.f))
+        wrenches[i] = Wrench(own.tau - wrench.tau, own.f - wrench.f)
     forces: list[Scalar] = [0] * size
     for i in reversed(range(len(branches))):
         branch, wrench = branches[i], wrenches[i]
         for k, (w, v) in branch.columns.items():
-            forces[k] = forces[k] + dot(w, wrench.tau) + dot(v, wrench.f)
+            forces[k] = forces[k] + w @ wrench.tau + v @ wrench.f
         if branch.parent != GROUND:
             wrenches[branch.parent] = wrenches[branch.parent].plus(wrench_on_parent(branch, wrench))
     return forces
@@ -326,7 +302,7 @@ def bias_forces(
 
 def wrench_on_parent(branch: Branch, wrench: Wrench) -> Wrench:
     """A wrench on a branch as its parent feels it, about the parent's origin in the parent's axes."""
-    turned = wrench if branch.E is IDENTITY else wrench.turned(transposed(branch.E))
+    turned = wrench if branch.E is Matrix.IDENTITY else wrench.turned(branch.E.T)
     return turned.moved(branch.p)
 
 
@@ -334,21 +310,21 @@ def _inertia_wrenches(branches: tuple[Branch, ...], base_acceleration: Vector, a
     rates: list[InertiaSums] = []
     accelerations: list[Vector] = []
     wrenches = []
-    still: InertiaSums = (ZERO, (ZERO, ZERO, ZERO), ZERO)
+    still: InertiaSums = (Vector.ZERO, Matrix((Vector.ZERO, Vector.ZERO, Vector.ZERO)), Vector.ZERO)
     for branch in branches:
         w_p, U_p, wd_p = still if branch.parent == GROUND else rates[branch.parent]
         acc_p = base_acceleration if branch.parent == GROUND else accelerations[branch.parent]
         E = branch.E
-        carried_w = in_turned_axes(E, w_p)
-        w = plus(carried_w, branch.w)
-        wd = plus(plus(in_turned_axes(E, wd_p), branch.w_bias), cross(carried_w, branch.w))
-        seat = plus(acc_p, plus(apply(U_p, branch.p), branch.p_bias))
+        carried_w = E @ w_p
+        w = carried_w + branch.w
+        wd = E @ wd_p + branch.w_bias + carried_w.cross(branch.w)
+        seat = acc_p + (U_p @ branch.p + branch.p_bias)
         if any(not is_zero(x) for x in branch.p_rate):
-            seat = plus(seat, times(2, cross(w_p, branch.p_rate)))
-        acc = in_turned_axes(E, seat)
+            seat = seat + 2 * w_p.cross(branch.p_rate)
+        acc = E @ seat
         if a:
             for k, (turning, sliding) in branch.columns.items():
-                wd, acc = plus(wd, times(a[k], turning)), plus(acc, times(a[k], sliding))
+                wd, acc = wd + a[k] * turning, acc + a[k] * sliding
         U = rate_matrix(w, wd)
         rates.append((w, U, wd))
         accelerations.append(acc)
@@ -362,9 +338,11 @@ def composite_mass_matrix(branches: tuple[Branch, ...], size: int) -> list[list[
     for i in reversed(range(len(branches))):
         branch = branches[i]
         if branch.parent != GROUND:
-            back = transposed(branch.E) if branch.E is not IDENTITY else IDENTITY
+            back = branch.E.T if branch.E is not Matrix.IDENTITY else Matrix.IDENTITY
             carried_moments = composite[i].turned(back).moved(branch.p)
-            composite[branch.parent] = composite[branch.parent].plus(_polar(carried_moments, branch.E is IDENTITY))
+            composite[branch.parent] = composite[branch.parent].plus(
+                _polar(carried_moments, branch.E is Matrix.IDENTITY)
+            )
     M: list[list[Scalar]] = [[0] * size for _ in range(size)]
     for i, branch in enumerate(branches):
         for k, column in branch.columns.items():
@@ -375,14 +353,16 @@ def composite_mass_matrix(branches: tuple[Branch, ...], size: int) -> list[list[
 def _polar(moments: Moments, plane: bool) -> Moments:
     if not plane:
         return moments
-    return Moments(moments.m, moments.h, ((moments.J[0][0] + moments.J[1][1], 0, 0), ZERO, ZERO))
+    return Moments(
+        moments.m, moments.h, Matrix.of(((moments.J[0][0] + moments.J[1][1], 0, 0), Vector.ZERO, Vector.ZERO))
+    )
 
 
 def _unit_wrench(body: Moments, column: MotionColumn) -> Wrench:
     """I S: the wrench that accelerates a body by the column (w, v): U = w~, acc = v."""
     w, v = column
     U = ((0, -w[2], w[1]), (w[2], 0, -w[0]), (-w[1], w[0], 0))
-    return inertia_wrench(body, v, U)
+    return inertia_wrench(body, v, Matrix.of(U))
 
 
 def _fill(M: list[list[Scalar]], k: int, branches: tuple[Branch, ...], i: int, wrench: Wrench) -> None:
@@ -390,7 +370,7 @@ def _fill(M: list[list[Scalar]], k: int, branches: tuple[Branch, ...], i: int, w
     own = True
     while True:
         for j, (w, v) in branches[i].columns.items():
-            entry = dot(w, wrench.tau) + dot(v, wrench.f)
+            entry = w @ wrench.tau + v @ wrench.f
             if own:
                 M[k][j] = M[k][j] + entry
             elif j == k:
@@ -416,7 +396,7 @@ def applied_wrenches(loads: Loads, branches: tuple[Branch, ...]) -> dict[int, Wr
         body, wrench = found
         i = index[body]
         link = branches[i].link
-        about_joint = wrench.moved(times(-1, apply(branches[i].axes, origin_of(motion, link))))
+        about_joint = wrench.moved(-(branches[i].axes @ origin_of(motion, link)))
         total[i] = total[i].plus(about_joint) if i in total else about_joint
     return total
 
@@ -429,9 +409,9 @@ def _ground_wrench(loads: Loads, load: PointForce | Couple) -> tuple[str, Wrench
     """A load about its body's origin in ground axes."""
     motion = loads.motion
     if not isinstance(load, PointForce):
-        return load.body, Wrench(motion.in_ground_axes(load.couple, load.axes), ZERO)
+        return load.body, Wrench(motion.in_ground_axes(load.couple, load.axes), Vector.ZERO)
     body, r = load.place
     if body is None:
         return None
     f = motion.in_ground_axes(load.force, load.axes)
-    return body, Wrench(cross(apply(motion.link(body).pose.R, r), f), f)
+    return body, Wrench((motion.link(body).pose.R @ r).cross(f), f)

@@ -26,20 +26,13 @@ from eomgen.symbolic.expression import (
     Scalar,
     SparseRow,
     Vector,
-    apply,
-    cross,
     depends_on,
     derivative,
     gradient,
-    in_turned_axes,
     inner,
     is_zero,
-    minus,
     operations,
-    plus,
     substituted,
-    times,
-    vector_of,
 )
 from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, tolerances
 
@@ -282,9 +275,9 @@ def _inertia(axes: Axes) -> list[tuple[Scalar, ...]]:
     spins = scope.with_accelerations(tuple(x for link in axes.motion.links for x in link.twist.w))
     rows: list[tuple[Scalar, ...]] = []
     for i, (link, mass) in enumerate(zip(axes.motion.links, axes.masses, strict=True)):
-        wd, w = vector_of(spins[3 * i : 3 * i + 3]), link.twist.w
-        n = plus(apply(mass.I, wd), cross(w, apply(mass.I, w)))
-        rows.append((*times(mass.m, accelerations[i]), *in_turned_axes(axes.of_body(link), n)))
+        wd, w = Vector(spins[3 * i : 3 * i + 3]), link.twist.w
+        n = mass.I @ wd + w.cross(mass.I @ w)
+        rows.append((*(mass.m * accelerations[i]), *(axes.of_body(link) @ n)))
     return rows
 
 
@@ -294,13 +287,13 @@ def _center_accelerations(axes: Axes) -> list[Vector]:
     if axes.plane:
         places = tuple(x for link, m in zip(links, axes.masses, strict=True) for x in link.pose.point(m.com))
         found = scope.with_accelerations(scope.time_derivative(places))
-        return [vector_of(found[3 * i : 3 * i + 3]) for i in range(len(links))]
-    velocities = [plus(link.twist.v, cross(link.twist.w, m.com)) for link, m in zip(links, axes.masses, strict=True)]
+        return [Vector(found[3 * i : 3 * i + 3]) for i in range(len(links))]
+    velocities = [link.twist.v + link.twist.w.cross(m.com) for link, m in zip(links, axes.masses, strict=True)]
     moved = [scope.time_derivative(m.com) for m in axes.masses]
-    velocities = [plus(v, vector_of(d)) for v, d in zip(velocities, moved, strict=True)]
+    velocities = [v + Vector(d) for v, d in zip(velocities, moved, strict=True)]
     rates = scope.with_accelerations(tuple(x for v in velocities for x in v))
     return [
-        plus(vector_of(rates[3 * i : 3 * i + 3]), cross(link.twist.w, v))
+        Vector(rates[3 * i : 3 * i + 3]) + link.twist.w.cross(v)
         for i, (link, v) in enumerate(zip(links, velocities, strict=True))
     ]
 
@@ -491,16 +484,16 @@ def _by_component(balance: Balance, link: BodyLink, sides: Sequence[SparseRow]) 
 
 def _about_joint(arm: Vector, six: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """Force and moment about the joint's point, of those about the mass centre."""
-    f, n = vector_of(six[:3]), vector_of(six[3:])
-    return (*f, *minus(n, cross(arm, f)))
+    f, n = Vector(six[:3]), Vector(six[3:])
+    return (*f, *(n - arm.cross(f)))
 
 
 def _seen_by_parent(axes: Axes, link: BodyLink, arm: Vector, six: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """The force and moment about a body's joint, in the axes of its parent's equations and about the parent's joint."""
-    f, n = vector_of(six[:3]), vector_of(six[3:])
+    f, n = Vector(six[:3]), Vector(six[3:])
     if not axes.plane:
-        f, n = apply(link.local.R, f), apply(link.local.R, n)
-    return (*f, *plus(n, cross(minus(axes.arm(link.parent, link.local.p), arm), f)))
+        f, n = link.local.R @ f, link.local.R @ n
+    return (*f, *(n + (axes.arm(link.parent, link.local.p) - arm).cross(f)))
 
 
 def _added(a: Sequence[Scalar], b: Sequence[Scalar]) -> tuple[Scalar, ...]:

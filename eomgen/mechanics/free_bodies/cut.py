@@ -27,21 +27,7 @@ from eomgen.mechanics.free_bodies.wrenches import (
 )
 from eomgen.mechanics.kinematics import BodyLink, JointEffort
 from eomgen.model import Couple, Element, PointForce, UniformField
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    is_zero,
-    minus,
-    plus,
-    substituted,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Scalar, Vector, is_zero, substituted
 
 
 class ForceKind:
@@ -113,7 +99,7 @@ def _given(
     axes: Axes, effects: Iterable[Effect], name: str, kind: str, along: Vector | None = None
 ) -> Iterator[CutForce]:
     """A load as it acts on bodies."""
-    about_z = (0, 0, 1) if axes.plane and kind != ForceKind.APPLIED else None
+    about_z = Vector((0, 0, 1)) if axes.plane and kind != ForceKind.APPLIED else None
     for force in _acting(axes, effects, name, kind):
         line = about_z if force.turns else along
         yield replace(force, given=1, along=line, has_sense=kind in (ForceKind.WEIGHT, ForceKind.APPLIED))
@@ -130,12 +116,12 @@ def _acting(axes: Axes, effects: Iterable[Effect], name: str, kind: str) -> Iter
 def _force(axes: Axes, effect: Effect, vector: Vector, name: str, kind: str, turns: bool) -> CutForce:
     link = axes.motion.links[effect.link]
     place = axes.masses[effect.link].com if effect.place is None else effect.place
-    at = link.pose.point(plus(place, effect.beyond or ZERO))
+    at = link.pose.point(place + (effect.beyond or Vector.ZERO))
     return CutForce(link.name, name, kind, at, _in_ground(axes, effect.link, vector), turns)
 
 
 def _in_ground(axes: Axes, link: int, vector: Vector) -> Vector:
-    return vector if axes.plane else apply(axes.motion.links[link].pose.R, vector)
+    return vector if axes.plane else axes.motion.links[link].pose.R @ vector
 
 
 def _parts(
@@ -149,9 +135,9 @@ def _parts(
         yield (ForceKind.SPRING if element.damping is None else ForceKind.DAMPER), loads
         return
     still = dict.fromkeys(system.symbols.u, 0)
-    rest = [vector_of(substituted(tuple(_vector(load)), still)) for load in loads]
+    rest = [Vector(substituted(tuple(_vector(load)), still)) for load in loads]
     yield ForceKind.SPRING, [_with(load, v) for load, v in zip(loads, rest, strict=True)]
-    yield ForceKind.DAMPER, [_with(load, minus(_vector(load), v)) for load, v in zip(loads, rest, strict=True)]
+    yield ForceKind.DAMPER, [_with(load, _vector(load) - v) for load, v in zip(loads, rest, strict=True)]
 
 
 def _vector(load: PointForce | Couple) -> Vector:
@@ -167,7 +153,7 @@ def _line(system: System, element: Element | None, k: int) -> Vector | None:
     if element is None or len(element.points) != 2 or element.along is not None or k > 1:
         return None
     here, there = (system.motion.position(system.motion.place(point)) for point in element.points)
-    return minus(there, here) if k == 0 else minus(here, there)
+    return there - here if k == 0 else here - there
 
 
 # -- in joints -------------------------------------------------------------------------------------
@@ -250,8 +236,8 @@ def _at_rims(axes: Axes, effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
         before = found[-1] if found else None
         turns = all(map(is_zero, effect.force))
         if turns and before is not None and before.link == effect.link and before.place is not None:
-            R_BE = transposed(axes.of_body(axes.motion.links[effect.link]))
-            found[-1] = replace(before, beyond=apply(R_BE, cross(before.force, effect.couple)))
+            R_BE = axes.of_body(axes.motion.links[effect.link]).T
+            found[-1] = replace(before, beyond=R_BE @ before.force.cross(effect.couple))
         else:
             found.append(effect)
     return tuple(found)
@@ -282,8 +268,8 @@ def _of_whole(balance: Balance, owner: str, mine: Mapping[int, Component]) -> It
                 if shares or not is_zero(total):
                     name = f"reaction_{'couple_' if turns else ''}{'xyz'[k]}({owner}{side})"
                     name = f"reaction_couple({owner}{side})" if turns and axes.plane else name
-                    unit = times(sense, IDENTITY[k])
-                    push = _force(axes, places[0], ZERO, name, ForceKind.REACTION, turns)
+                    unit = sense * Matrix.IDENTITY[k]
+                    push = _force(axes, places[0], Vector.ZERO, name, ForceKind.REACTION, turns)
                     yield replace(push, direction=unit, shares=shares, given=total)
 
 
@@ -299,10 +285,10 @@ def _inertia(balance: Balance) -> Iterator[CutForce]:
             if equation.body == link.name:
                 six[equation.direction] = equation.inertia
         for turns in (False, True):
-            vector = times(-1, vector_of(six[3:] if turns else six[:3]))
+            vector = -Vector(six[3:] if turns else six[:3])
             if not all(map(is_zero, vector)):
                 at = link.pose.point(axes.masses[i].com)
-                about_z = (0, 0, 1) if turns and axes.plane else None
+                about_z = Vector((0, 0, 1)) if turns and axes.plane else None
                 direction = _in_ground(axes, i, vector)
                 name = f"inertia_couple({link.name})" if turns else f"inertia({link.name})"
                 yield CutForce(link.name, name, ForceKind.INERTIA, at, direction, turns, {}, 1, about_z, True)

@@ -27,25 +27,7 @@ from eomgen.mechanics.free_bodies.wrenches import PLANE_ROWS, SPACE_ROWS, Axes, 
 from eomgen.mechanics.kinematics import GROUND
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import equal
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    Matrix,
-    Pose,
-    Scalar,
-    State,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    minus,
-    plus,
-    product,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Pose, Scalar, State, Vector, is_zero
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 
@@ -216,17 +198,17 @@ def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:
     if _body(load) is None:
         return []
     if isinstance(load, Couple):
-        return [*ZERO, *system.motion.in_ground_axes(load.couple, load.axes)]
+        return [*Vector.ZERO, *system.motion.in_ground_axes(load.couple, load.axes)]
     force = system.motion.in_ground_axes(load.force, load.axes)
-    return [*force, *cross(system.motion.position(load.place), force)]
+    return [*force, *system.motion.position(load.place).cross(force)]
 
 
 def _momentum_rates(system: System) -> tuple[Scalar, ...]:
     """(dP/dt, dL/dt) of all bodies about the ground's origin, ground axes, from their twists; found once."""
     if _momentum_rates not in system.found:
-        P, L = ZERO, ZERO
+        P, L = Vector.ZERO, Vector.ZERO
         for p, l in _momenta(system):
-            P, L = plus(P, p), plus(L, l)
+            P, L = P + p, L + l
         system.found[_momentum_rates] = system.scope.with_accelerations((*P, *L))
     found: tuple[Scalar, ...] = system.found[_momentum_rates]
     return found
@@ -236,10 +218,10 @@ def _momenta(system: System) -> Iterable[tuple[Vector, Vector]]:
     for link in system.motion.links:
         mass = system.scope.mass_properties(link.name)
         moved = system.scope.time_derivative(mass.com)
-        velocity = plus(plus(link.twist.v, cross(link.twist.w, mass.com)), (moved[0], moved[1], moved[2]))
-        p = times(mass.m, apply(link.pose.R, velocity))
-        spin = apply(link.pose.R, apply(mass.I, link.twist.w))
-        yield p, plus(cross(link.pose.point(mass.com), p), spin)
+        velocity = link.twist.v + link.twist.w.cross(mass.com) + Vector((moved[0], moved[1], moved[2]))
+        p = mass.m * (link.pose.R @ velocity)
+        spin = link.pose.R @ (mass.I @ link.twist.w)
+        yield p, link.pose.point(mass.com).cross(p) + spin
 
 
 # -------- sides -----------------------------------------------------------------------------------------------
@@ -301,7 +283,7 @@ class _Sides:
             if effect is None or effect.place is None or not _is_apart(effect, mine):
                 continue
             force, couple = self._held(body, side, effect)
-            found[j] = dot(effect.force, force) + dot(effect.couple, couple)
+            found[j] = effect.force @ force + effect.couple @ couple
         return found
 
     def _side(self, start: int, cut: set[int]) -> frozenset[int]:
@@ -335,10 +317,10 @@ class _Sides:
         total: list[Scalar] = [0] * 6
         for effect in component.effects:
             pose = self.axes.motion.links[effect.link].pose
-            R = IDENTITY if self.axes.plane else pose.R
-            force, couple = apply(R, effect.force), apply(R, effect.couple)
+            R = Matrix.IDENTITY if self.axes.plane else pose.R
+            force, couple = R @ effect.force, R @ effect.couple
             if effect.place is not None:
-                couple = plus(couple, cross(pose.point(effect.place), force))
+                couple = couple + pose.point(effect.place).cross(force)
             elif any(not is_zero(x) for x in force):
                 return False
             total = [x + y for x, y in zip(total, (*force, *couple), strict=True)]
@@ -346,11 +328,11 @@ class _Sides:
 
     def _held(self, body: int, side: Iterable[int], effect: Effect) -> tuple[Vector, Vector]:
         """Force, and couple about the place of the effect, in the axes of the body's equations."""
-        force, couple = ZERO, ZERO
+        force, couple = Vector.ZERO, Vector.ZERO
         for b in sorted(side):
             R, arm = self._seen(b, body, effect)
-            f, n = (apply(R, vector_of(self._needed.get((b, d), 0) for d in rows)) for rows in (FORCES, MOMENTS))
-            force, couple = plus(force, f), plus(couple, plus(n, cross(arm, f)))
+            f, n = (R @ Vector(self._needed.get((b, d), 0) for d in rows) for rows in (FORCES, MOMENTS))
+            force, couple = force + f, couple + (n + arm.cross(f))
         return force, couple
 
     def _seen(self, b: int, body: int, effect: Effect) -> tuple[Matrix, Vector]:
@@ -358,9 +340,9 @@ class _Sides:
         assert effect.place is not None
         links, com = self.axes.motion.links, self.axes.masses[b].com
         if self.axes.plane:
-            return IDENTITY, minus(links[b].pose.point(com), links[body].pose.point(effect.place))
+            return Matrix.IDENTITY, links[b].pose.point(com) - links[body].pose.point(effect.place)
         pose = self._relative(b, body)
-        return pose.R, minus(pose.point(com), effect.place)
+        return pose.R, pose.point(com) - effect.place
 
     def _relative(self, b: int, body: int) -> Pose:
         """Pose of b in the axes of another body: along the tree where that body carries b."""
@@ -370,13 +352,13 @@ class _Sides:
             path.append(b)
             b = links[b].parent
         if b == GROUND and body != GROUND:
-            R = transposed(links[body].pose.R)
+            R = links[body].pose.R.T
             last = links[path[0]].pose if path else Pose()
-            return Pose(product(R, last.R), apply(R, minus(last.p, links[body].pose.p)))
+            return Pose(R @ last.R, R @ (last.p - links[body].pose.p))
         pose = Pose()
         for k in reversed(path):
             local = links[k].local
-            pose = pose.then(Pose(local.R, minus(local.p, apply(local.R, links[k].point))))
+            pose = pose.then(Pose(local.R, local.p - local.R @ links[k].point))
         return pose
 
 
@@ -389,7 +371,7 @@ def _is_apart(effect: Effect, others: Sequence[Effect | None]) -> bool:
     for other in others:
         if other is None or other.place != effect.place:
             return False
-        along = dot(effect.force, other.force) + dot(effect.couple, other.couple)
+        along = effect.force @ other.force + effect.couple @ other.couple
         if not equal(along, 1 if other is effect else 0):
             return False
     return True

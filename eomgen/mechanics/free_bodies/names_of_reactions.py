@@ -16,20 +16,7 @@ from eomgen.mechanics.free_bodies.balance import Balance
 from eomgen.mechanics.free_bodies.wrenches import COUPLE, FORCE, Axes, Component, Effect, efforts_of
 from eomgen.mechanics.kinematics import BodyLink, Motion
 from eomgen.model import PointForce
-from eomgen.symbolic.expression import (
-    ZERO,
-    Node,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    depends_on,
-    derivative,
-    dot,
-    is_zero,
-    plus,
-    vector_of,
-)
+from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, derivative, is_zero
 
 OWN = frozenset(("n", "t", "s", "tension", ""))  # components that outputs name as they are, in space too
 
@@ -106,17 +93,17 @@ def _vector(
 
 
 def _sum(part: WrenchPart, on: int, effects: Sequence[Effect]) -> Vector:
-    total = ZERO
+    total = Vector.ZERO
     for effect in effects:
         if effect.link == on:
-            total = plus(total, part(effect))
+            total = total + part(effect)
     return total
 
 
 def _turned(balance: Balance, on: int, vector: Vector) -> Vector:
     """Vector in the ground's axes of one in the axes of the body's equations."""
     plane = balance.system.scope.model.space == "plane"
-    return vector if plane else apply(balance.system.motion.links[on].pose.R, vector)
+    return vector if plane else balance.system.motion.links[on].pose.R @ vector
 
 
 def _has_couple(component: Component) -> bool:
@@ -166,8 +153,8 @@ def _less_inside(balance: Balance, component: Component) -> Scalar:
     ):
         body, r = push.place
         if q is not None and body is not None and any(depends_on(x, (q,)) for x in r):
-            slide = apply(motion.link(body).pose.R, vector_of(derivative(x, q) for x in r))
-            total = total - dot(motion.in_ground_axes(push.force, push.axes), slide)
+            slide = motion.link(body).pose.R @ Vector(derivative(x, q) for x in r)
+            total = total - motion.in_ground_axes(push.force, push.axes) @ slide
     return total
 
 
@@ -184,7 +171,8 @@ def _left_out(balance: Balance, rows: Mapping[tuple[str, int], Row], row: Row, q
         for n in range(2 if balance.system.scope.model.space == "plane" else 3)
     )
     parts = ((R[k][n], _left_of_row(balance, each, q)) for n, each in enumerate(beside) if each is not None)
-    return sum((x * left for x, left in parts if not is_zero(left)), start=0)
+    found: Scalar = sum((x * left for x, left in parts if not is_zero(left)), start=0)
+    return found
 
 
 def _left_of_row(balance: Balance, row: Row, q: Node) -> Scalar:
@@ -213,16 +201,16 @@ def _work(motion: Motion, effects: Iterable[Effect], q: Node) -> Scalar:
         link = motion.links[effect.link]
         turn = _turn(link, q)
         if effect.place is not None:  # of the body, wherever q moves what acts there
-            p = plus(vector_of(derivative(x, q) for x in link.pose.p), cross(turn, apply(link.pose.R, effect.place)))
-            total = total + dot(effect.force, axes.of_ground(link, p))
-        total = total + dot(effect.couple, axes.of_ground(link, turn))
+            p = Vector(derivative(x, q) for x in link.pose.p) + turn.cross(link.pose.R @ effect.place)
+            total = total + effect.force @ axes.of_ground(link, p)
+        total = total + effect.couple @ axes.of_ground(link, turn)
     return total
 
 
 def _turn(link: BodyLink, q: Node) -> Vector:
     """dtheta/dq of a body, ground axes: the vector of dR/dq R^T."""
     if link.angle is not None:
-        return (0, 0, derivative(link.angle, q))
+        return Vector((0, 0, derivative(link.angle, q)))
     R = link.pose.R
-    slope = [vector_of(derivative(x, q) for x in row) for row in R]
-    return (dot(slope[2], R[1]), dot(slope[0], R[2]), dot(slope[1], R[0]))
+    slope = [Vector(derivative(x, q) for x in row) for row in R]
+    return Vector((slope[2] @ R[1], slope[0] @ R[2], slope[1] @ R[0]))

@@ -42,24 +42,17 @@ from eomgen.mechanics.state import Numbers
 from eomgen.model import called, declared_at
 from eomgen.symbolic.exact import Solution
 from eomgen.symbolic.expression import (
-    ZERO,
     Matrix,
     Node,
     Scalar,
     Vector,
-    apply,
     depends_on,
     depends_on_any,
     derivative,
     is_zero,
     over,
-    plus,
-    product,
     sqrt,
     substituted,
-    times,
-    transposed,
-    vector_of,
 )
 from eomgen.symbolic.numeric import Work, tolerances
 
@@ -165,23 +158,24 @@ class Reactions:
         Raises:
             DerivationError: there is no such reaction, or it is indeterminate.
         """
-        return vector_of(self.component("force", k, owner, side, frame) for k in range(3))
+        return Vector(self.component("force", k, owner, side, frame) for k in range(3))
 
     def couple(self, owner: str, side: str = "", frame: str = "") -> Vector:
         """Couple, as `force`, about the point of the joint or constraint."""
-        return vector_of(self.component("couple", k, owner, side, frame) for k in range(3))
+        return Vector(self.component("couple", k, owner, side, frame) for k in range(3))
 
     def component(self, what: str, k: int, owner: str, side: str = "", frame: str = "") -> Scalar:
         """Component k of the "force" or "couple"; the others may be indeterminate."""
         if self.is_open(owner):
             return 0
         combinations, given = self._sums(what, owner, side, frame)
-        given = vector_of(substituted(given, self.unknowns)) if self.unknowns else given
+        given = Vector(substituted(given, self.unknowns)) if self.unknowns else given
         place = f"{owner}.{side}" if side else owner
         plane = self.balance.system.scope.model.space == "plane"
         along = "xyz"[k] if what == "force" else "couple" if plane else f"couple_{'xyz'[k]}"
         name = f"reaction_{along}({place})"
-        return given[k] + self.combined(combinations[k], name)
+        found: Scalar = given[k] + self.combined(combinations[k], name)
+        return found
 
     def is_open(self, owner: str) -> bool:
         """True if a contact has ended: its reaction is 0."""
@@ -196,7 +190,8 @@ class Reactions:
         if self.is_open(owner):
             return 0
         if owner in self.balance.sizes:
-            return self._replaced((self.balance.sizes[owner], 0, 0))[0]
+            found: Scalar = self._replaced(Vector((self.balance.sizes[owner], 0, 0)))[0]
+            return found
         several = [j for j, c in enumerate(self.components) if c.owner == owner and c.label.startswith("n ")]
         if several:
             return sqrt(sum((x * x for x in map(self.value, several)), start=0))
@@ -212,7 +207,9 @@ class Reactions:
         name = f"reaction_{along}({owner})"
         for named in named_reactions(self.balance):
             if named.name == name:
-                return self.combined({j: self._replaced((k, 0, 0))[0] for j, k in named.combination.items()}, name)
+                return self.combined(
+                    {j: self._replaced(Vector((k, 0, 0)))[0] for j, k in named.combination.items()}, name
+                )
         return self._labelled(owner, along, "friction")
 
     def member(self, truss: str, first: str, second: str) -> Scalar:
@@ -290,29 +287,29 @@ class Reactions:
             raise DerivationError(f"'{owner}' carries no reaction", fix=fix)
         on = self._side(owner, side, [e for c in mine.values() for e in c.effects] or efforts)
         vectors = {j: self._on(c, on, what) for j, c in mine.items()}
-        given = ZERO
+        given = Vector.ZERO
         for effect in efforts:
-            given = plus(given, getattr(effect, what)) if effect.link == on else given
+            given = given + getattr(effect, what) if effect.link == on else given
         R = self._turning(on, frame, motion)
-        turned = {j: self._replaced(vector if R is None else apply(R, vector)) for j, vector in vectors.items()}
+        turned = {j: self._replaced(vector if R is None else R @ vector) for j, vector in vectors.items()}
         combinations = [{j: v[k] for j, v in turned.items() if not is_zero(v[k])} for k in range(3)]
-        return combinations, self._replaced(given if R is None else apply(R, given))
+        return combinations, self._replaced(given if R is None else R @ given)
 
     def _turning(self, on: int, frame: str, motion: Motion) -> Matrix | None:
         """Rotation from the axes of a body's equations to the ground's, or to those of `frame`; None: no rotation."""
         R = None if motion.scope.model.space == "plane" or on < 0 else motion.links[on].pose.R
         if not frame or frame == "ground":
             return R
-        to_frame = transposed(motion.link(frame).pose.R)
-        return to_frame if R is None else product(to_frame, R)
+        to_frame = motion.link(frame).pose.R.T
+        return to_frame if R is None else to_frame @ R
 
     def _on(self, component: Component, on: int, what: str) -> Vector:
         """Force or couple of a unit of the component on one body; on the ground (-1) the opposite of that on all."""
-        total = ZERO
+        total = Vector.ZERO
         for effect in (*component.effects, *component.friction_effects):
             if effect.link == on or on < 0:
-                total = plus(total, getattr(effect, what))
-        return total if on >= 0 else times(-1, total)
+                total = total + getattr(effect, what)
+        return total if on >= 0 else -total
 
     def _side(self, owner: str, side: str, effects: Sequence[Effect]) -> int:
         """Index of the body on which the reaction is requested, -1 for the ground."""
@@ -327,7 +324,7 @@ class Reactions:
         return index
 
     def _replaced(self, vector: Vector) -> Vector:
-        return vector_of(substituted(tuple(vector), self.at)) if self.at else vector
+        return Vector(substituted(tuple(vector), self.at)) if self.at else vector
 
     def combined(self, combination: Combination, name: str) -> Scalar:
         """sum of k_j x_j.

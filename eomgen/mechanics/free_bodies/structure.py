@@ -30,7 +30,6 @@ from eomgen.symbolic.expression import (
     substituted,
     tangent,
     tangents,
-    vector_of,
 )
 from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, sparse_rank
 
@@ -345,7 +344,7 @@ def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
     force, couple = (tuple(derivative(x, unknown) for x in v) for v in (effect.force, effect.couple))
     if all(map(is_zero, (*force, *couple))):
         return None
-    return Effect(effect.link, vector_of(force), vector_of(couple), effect.arm, effect.place, effect.beyond)
+    return Effect(effect.link, Vector(force), Vector(couple), effect.arm, effect.place, effect.beyond)
 
 
 # -------- loose motion ----------------------------------------------------------------------------------------

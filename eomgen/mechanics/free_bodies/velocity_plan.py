@@ -15,24 +15,7 @@ from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
 from eomgen.mechanics.kinematics import VelocityField
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.symbolic.exact import Legibly, readable_all
-from eomgen.symbolic.expression import (
-    ZERO,
-    Fraction,
-    Node,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    minus,
-    over,
-    plus,
-    sqrt,
-    substituted,
-    times,
-    vector_of,
-)
+from eomgen.symbolic.expression import Fraction, Matrix, Node, Scalar, Vector, is_zero, over, sqrt, substituted
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
 from eomgen.symbolic.print import to_text
 
@@ -115,12 +98,12 @@ class VelocityPlan:
 
     def raw_spin(self, body: str | None) -> Vector:
         """`spin`, not written out."""
-        return ZERO if body is None else self.field(body).w
+        return Vector.ZERO if body is None else self.field(body).w
 
     def raw_velocity(self, place: BodyPoint) -> Vector:
         """`velocity`, not written out."""
         body, _ = place
-        return ZERO if body is None else self.raw_velocity_at(body, self.position(place))
+        return Vector.ZERO if body is None else self.raw_velocity_at(body, self.position(place))
 
     def raw_velocity_at(self, body: str, position: Vector) -> Vector:
         """Velocity of the point of a body that is at a position in space, ground axes, not written out."""
@@ -139,7 +122,7 @@ class VelocityPlan:
     def position(self, place: BodyPoint) -> Vector:
         """Position of a point of a body in this configuration, ground axes."""
         if place not in self.places:
-            self.places[place] = vector_of(substituted(self.system.motion.position(place), self.at))
+            self.places[place] = Vector(substituted(self.system.motion.position(place), self.at))
         return self.places[place]
 
     def mass_center(self, body: str) -> Vector:
@@ -148,7 +131,7 @@ class VelocityPlan:
     def center(self, field: VelocityField) -> PlanCenter:
         """The centre of rotation of a plane motion."""
         if self.vanishes(field.w):
-            return PlanCenter(None, ZERO if self.vanishes(field.v) else self.simple.vector(field.v))
+            return PlanCenter(None, Vector.ZERO if self.vanishes(field.v) else self.simple.vector(field.v))
         return PlanCenter(self.simple.vector(field.rotation_center()))
 
     # -- work ----------------------------------------------------------------------------------------
@@ -156,18 +139,18 @@ class VelocityPlan:
     def work(self, load: PointForce | Couple | SpreadLoad) -> Scalar:
         """Power of a load on the bodies in this motion, its virtual work, not written out."""
         if isinstance(load, Couple):
-            return dot(self.force(load.couple, load.axes), self.raw_spin(load.body))
+            return self.force(load.couple, load.axes) @ self.raw_spin(load.body)
         if isinstance(load, PointForce):
-            return dot(self.force(load.force, load.axes), self.raw_velocity(load.place))
+            return self.force(load.force, load.axes) @ self.raw_velocity(load.place)
         return self._work_along(load)
 
     def _work_along(self, load: SpreadLoad) -> Scalar:
         """L/6 (2 q_A.v_A + q_A.v_B + q_B.v_A + 2 q_B.v_B): the integral of two linear functions of s."""
         a, b = self.raw_velocity(load.start), self.raw_velocity(load.end)
-        along = minus(self.position(load.end), self.position(load.start))
+        along = self.position(load.end) - self.position(load.start)
         q_A, q_B = self.force(load.at_start), self.force(load.at_end)
-        total = 2 * dot(q_A, a) + dot(q_A, b) + dot(q_B, a) + 2 * dot(q_B, b)
-        return SIXTH * self.simple(sqrt(self.simple(dot(along, along)))) * total
+        total = 2 * (q_A @ a) + q_A @ b + q_B @ a + 2 * (q_B @ b)
+        return SIXTH * self.simple(sqrt(self.simple(along @ along))) * total
 
     def work_of_effects(self, effects: Sequence[Effect]) -> Scalar:
         """Power of forces and couples in the form of the bodies' equations, not written out."""
@@ -179,7 +162,7 @@ class VelocityPlan:
 
     def force(self, vector: Vector, axes: str | None = None) -> Vector:
         """A vector of a load in this configuration, ground axes."""
-        return vector_of(substituted(self.system.motion.in_ground_axes(vector, axes), self.at))
+        return Vector(substituted(self.system.motion.in_ground_axes(vector, axes), self.at))
 
     def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
         """True if all scalars are 0, compared with the largest of `beside`."""
@@ -219,12 +202,12 @@ class VelocityPlan:
 
     def _in_ground(self, body: str, components: Sequence[Scalar]) -> Vector:
         """Vector in ground axes of components in the axes of the body's equations."""
-        vector = vector_of(components)
+        vector = Vector(components)
         if self._axes.plane:
             return vector
         R = substituted([x for row in self.system.motion.link(body).pose.R for x in row], self.at)
-        rotation = (vector_of(R[0:3]), vector_of(R[3:6]), vector_of(R[6:9]))
-        return apply(rotation, vector)
+        rotation = (Vector(R[0:3]), Vector(R[3:6]), Vector(R[6:9]))
+        return Matrix.of(rotation) @ vector
 
     @property
     def blocks(self) -> tuple[RigidBlock, ...]:
@@ -339,7 +322,7 @@ class _Part:
 def _bodies(plan: VelocityPlan) -> Iterable[_Part]:
     """The bodies that are no nodes."""
     names = [name for name in plan.moving if not is_node(name)]
-    motions = [(plan.raw_spin(name), plan.raw_velocity_at(name, ZERO)) for name in names]
+    motions = [(plan.raw_spin(name), plan.raw_velocity_at(name, Vector.ZERO)) for name in names]
     flat = iter(plan.numbers([x for motion in motions for three in motion for x in three]))
     for name, motion in zip(names, motions, strict=True):
         yield _Part((name,), (), [next(flat) for _ in range(6)], partial(tuple, motion))
@@ -407,16 +390,16 @@ def _numbers_of(one: NodeNumbers, other: NodeNumbers) -> tuple[Any, ...]:
 
 def _of_node(plan: VelocityPlan, name: str) -> tuple[Scalar, ...]:
     """Velocity and place of a node in the plane."""
-    return (*plan.raw_velocity((name, ZERO))[:2], *plan.position((name, ZERO))[:2])
+    return (*plan.raw_velocity((name, Vector.ZERO))[:2], *plan.position((name, Vector.ZERO))[:2])
 
 
 def _of_ends(plan: VelocityPlan, ends: tuple[str, str]) -> tuple[Vector, Vector]:
     """The motion of a member by its nodes, in closed form."""
-    (v, place), (v_2, place_2) = ((plan.raw_velocity((n, ZERO)), plan.position((n, ZERO))) for n in ends)
-    along, apart = minus(place_2, place), minus(v_2, v)
-    spin: Vector = (0, 0, over(cross(along, apart)[2], dot(along, along)))
-    moved = plus(v, cross(spin, minus(ZERO, place)))
-    return spin, (moved[0], moved[1], 0)
+    (v, place), (v_2, place_2) = ((plan.raw_velocity((n, Vector.ZERO)), plan.position((n, Vector.ZERO))) for n in ends)
+    along, apart = place_2 - place, v_2 - v
+    spin = Vector((0, 0, over(along.cross(apart)[2], along @ along)))
+    moved = v + spin.cross(Vector.ZERO - place)
+    return spin, Vector((moved[0], moved[1], 0))
 
 
 def _agree(one: Sequence[Any], other: Sequence[Any]) -> bool:
@@ -426,7 +409,7 @@ def _agree(one: Sequence[Any], other: Sequence[Any]) -> bool:
 def _joined(plan: VelocityPlan, group: list[_Part]) -> RigidBlock:
     bodies = tuple(name for part in group for name in part.bodies)
     members = tuple(member for part in group for member in part.members)
-    spin, velocity = (vector_of(map(plan.simple, x)) for x in group[0].motion())
+    spin, velocity = (Vector(map(plan.simple, x)) for x in group[0].motion())
     return RigidBlock(bodies, members, (), spin, velocity)
 
 
@@ -435,7 +418,7 @@ def _single_nodes(plan: VelocityPlan, blocks: list[RigidBlock]) -> list[RigidBlo
     ends = {(truss, member): pair for truss, member, pair in plan.system.scope.model.truss_members}
     carried = {node for block in blocks for member in block.members for node in ends[member]}
     alone = [name for name in plan.moving if is_node(name) and name not in carried]
-    return [RigidBlock((), (), (name,), ZERO, plan.raw_velocity((name, ZERO))) for name in alone]
+    return [RigidBlock((), (), (name,), Vector.ZERO, plan.raw_velocity((name, Vector.ZERO))) for name in alone]
 
 
 # -------- motions in words ------------------------------------------------------------------------------------
@@ -466,7 +449,7 @@ def _of_kind(one: str, many: str, names: Sequence[str]) -> str:
 def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
     """(slide, sliding, along x), (turn, turning, about (a, 0))"""
     if plan.vanishes(block.spin):
-        return "slide", "sliding", f"along {_direction(plan, vector_of(map(plan.simple, block.velocity)))}"
+        return "slide", "sliding", f"along {_direction(plan, Vector(map(plan.simple, block.velocity)))}"
     place = block.center(plan).place if plan.system.scope.model.space == "plane" else None
     return "turn", "turning", _screw(plan, block) if place is None else f"about {_tuple(place[:2])}"
 
@@ -474,10 +457,10 @@ def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
 def _screw(plan: VelocityPlan, block: RigidBlock) -> str:
     """Description of a screw motion in space: the axis through w x v_O / w.w along w, and the advance along it."""
     w, v = block.spin, block.velocity
-    square = dot(w, w)
-    place = tuple(plan.simple(over(x, square)) for x in cross(w, v))
+    square = w @ w
+    place = tuple(plan.simple(over(x, square)) for x in w.cross(v))
     turning = f"about the axis through {_tuple(place)} along {_direction(plan, w)}"
-    return turning if plan.vanishes((dot(w, v),)) else f"{turning}, advancing along it"
+    return turning if plan.vanishes((w @ v,)) else f"{turning}, advancing along it"
 
 
 def _direction(plan: VelocityPlan, vector: Vector) -> str:
@@ -485,7 +468,7 @@ def _direction(plan: VelocityPlan, vector: Vector) -> str:
     kept = [k for k in range(3) if not plan.vanishes((vector[k],))]
     if len(kept) == 1:
         return "xyz"[kept[0]]
-    ratio = times(over(1, vector[kept[0]]), vector)
+    ratio = over(1, vector[kept[0]]) * vector
     size = 2 if plan.system.scope.model.space == "plane" else 3
     return _tuple([plan.simple(x) if k in kept else 0 for k, x in enumerate(ratio)][:size])
 

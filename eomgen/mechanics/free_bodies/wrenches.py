@@ -20,27 +20,16 @@ from eomgen.mechanics.kinematics import (
 )
 from eomgen.model import Couple, MassProperties, PointForce
 from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
     Matrix,
     Node,
     Scalar,
     SparseRow,
     State,
     Vector,
-    apply,
-    cross,
     depends_on,
     derivative,
-    dot,
-    in_turned_axes,
     is_zero,
-    minus,
     over,
-    plus,
-    times,
-    transposed,
-    vector_of,
 )
 from eomgen.symbolic.numeric import evaluate, fifty_digits, floats_of, rank, tolerances
 
@@ -75,11 +64,11 @@ class Effect:
     @cached_property
     def six(self) -> tuple[Scalar, ...]:
         """Force, and moment about the mass centre."""
-        return (*self.force, *plus(self.couple, cross(self.arm, self.force)))
+        return (*self.force, *(self.couple + self.arm.cross(self.force)))
 
     def times(self, k: Scalar) -> Effect:
         """k units of it."""
-        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm, self.place, self.beyond)
+        return Effect(self.link, k * self.force, k * self.couple, self.arm, self.place, self.beyond)
 
 
 @dataclass(frozen=True)
@@ -98,11 +87,11 @@ class Axes:
 
     def of_body(self, link: BodyLink) -> Matrix:
         """Rotation matrix from body axes to those of the equations."""
-        return link.pose.R if self.plane else IDENTITY
+        return link.pose.R if self.plane else Matrix.IDENTITY
 
     def of_ground(self, link: BodyLink, vector: Vector) -> Vector:
         """A vector of ground axes."""
-        return vector if self.plane else apply(transposed(link.pose.R), vector)
+        return vector if self.plane else link.pose.R.T @ vector
 
     @cached_property
     def masses(self) -> tuple[MassProperties, ...]:
@@ -111,7 +100,7 @@ class Axes:
     def arm(self, i: int, place: Vector) -> Vector:
         """Vector from the mass centre to a place given in body axes."""
         link = self.motion.links[i]
-        return in_turned_axes(self.of_body(link), minus(place, self.masses[i].com))
+        return self.of_body(link) @ (place - self.masses[i].com)
 
     def effects_of(self, load: PointForce | Couple) -> tuple[Effect, ...]:
         """A load on its body; none on the ground."""
@@ -126,10 +115,10 @@ class Axes:
             if load.axes == body and not self.plane
             else self.of_ground(link, self.motion.in_ground_axes(given, load.axes))
         )
-        beyond = None if load.beyond is None else apply(transposed(link.pose.R), load.beyond)
+        beyond = None if load.beyond is None else link.pose.R.T @ load.beyond
         if isinstance(load, Couple):
-            return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1], beyond),)
-        return (Effect(i, vector, ZERO, self.arm(i, load.place[1]), load.place[1], beyond),)
+            return (Effect(i, Vector.ZERO, vector, Vector.ZERO, None if load.place is None else load.place[1], beyond),)
+        return (Effect(i, vector, Vector.ZERO, self.arm(i, load.place[1]), load.place[1], beyond),)
 
     def components_of(self, system: System) -> tuple[Component, ...]:
         """All components: those of the joints, of the drives of given motions, and of the constraints."""
@@ -140,10 +129,10 @@ def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) 
     """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
     i = axes.motion.index[link.name]
     R = axes.of_body(link)
-    effects = [Effect(i, in_turned_axes(R, force), in_turned_axes(R, couple), axes.arm(i, link.point), link.point)]
+    effects = [Effect(i, R @ force, R @ couple, axes.arm(i, link.point), link.point)]
     if link.parent != GROUND:
         to_parent = R if axes.plane else link.local.R
-        f, n = times(-1, in_turned_axes(to_parent, force)), times(-1, in_turned_axes(to_parent, couple))
+        f, n = -(to_parent @ force), -(to_parent @ couple)
         effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
     return effects
 
@@ -194,19 +183,19 @@ def scaled_axes(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tupl
         if j != variable and turning != all(is_zero(x) for x in column[0])
     ]
     push = _without_work(magnitude, w if turning else v, others)
-    return (ZERO, push) if turning else (push, ZERO)
+    return (Vector.ZERO, push) if turning else (push, Vector.ZERO)
 
 
 def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
     """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
-    if all(is_zero(dot(n, other)) for other in others):
-        return times(_over(magnitude, dot(n, n)), n)
+    if all(is_zero(n @ other) for other in others):
+        return _over(magnitude, n @ n) * n
     if len(others) == 1:
         (other,) = others
-        d = minus(times(dot(other, other), n), times(dot(n, other), other))
+        d = other @ other * n - n @ other * other
     else:
-        d = cross(others[0], others[1])
-    return times(_over(magnitude, dot(n, d)), d)
+        d = others[0].cross(others[1])
+    return _over(magnitude, n @ d) * d
 
 
 def _over(magnitude: Scalar, square: Scalar) -> Scalar:
@@ -359,16 +348,18 @@ def _refuse_spread(joints: Sequence[BodyLink], follow: Sequence[Scalar], free: S
 def _basis(axes: Axes, link: BodyLink, system: System) -> list[tuple[str, Vector, Vector]]:
     """(label, force, couple) of each reaction of a joint, child's axes: the complement of its motion subspace."""
     columns = link.joint.complement(link.s, axes.motion.scope.value)
-    forces = [vector_of(c[3:]) for c in columns if _vanishes(c[:3])]
-    couples = [vector_of(c[:3]) for c in columns if _vanishes(c[3:])]
+    forces = [Vector(c[3:]) for c in columns if _vanishes(c[:3])]
+    couples = [Vector(c[:3]) for c in columns if _vanishes(c[3:])]
     if axes.plane:
         forces = [f for f in forces if not _vanishes(f[:2])]
-        found = [("couple", ZERO, c) for c in couples if not is_zero(c[2])]
+        found = [("couple", Vector.ZERO, c) for c in couples if not is_zero(c[2])]
         return [*_forces(axes, link, forces, 2), *([] if is_idle(axes, link, system) else found)]
     mixed = [c for c in columns if not _vanishes(c[:3]) and not _vanishes(c[3:])]
     names = [f"couple {axis}" for axis in "xyz"] if len(couples) == 3 else _numbered("couple", len(couples))
-    held = [(name, ZERO, c) for name, c in zip(names, IDENTITY if len(couples) == 3 else couples, strict=True)]
-    wrenches = [(f"wrench {k}", vector_of(c[3:]), vector_of(c[:3])) for k, c in enumerate(mixed, start=1)]
+    held = [
+        (name, Vector.ZERO, c) for name, c in zip(names, Matrix.IDENTITY if len(couples) == 3 else couples, strict=True)
+    ]
+    wrenches = [(f"wrench {k}", Vector(c[3:]), Vector(c[:3])) for k, c in enumerate(mixed, start=1)]
     return [*_forces(axes, link, forces, 3), *held, *wrenches]
 
 
@@ -383,9 +374,9 @@ def _numbered(name: str, count: int) -> list[str]:
 def _forces(axes: Axes, link: BodyLink, forces: list[Vector], most: int) -> list[tuple[str, Vector, Vector]]:
     """The forces of a joint: along the equations' axes where it can carry any, else normal to its motion."""
     if len(forces) == most:
-        R_CE = transposed(axes.of_body(link))
-        return [("xyz"[k], in_turned_axes(R_CE, IDENTITY[k]), ZERO) for k in range(most)]
-    return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
+        R_CE = axes.of_body(link).T
+        return [("xyz"[k], R_CE @ Matrix.IDENTITY[k], Vector.ZERO) for k in range(most)]
+    return [(label, f, Vector.ZERO) for label, f in _normals(axes, link, forces)]
 
 
 def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
@@ -393,7 +384,7 @@ def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
     motion = axes.motion
     shape = motion.scope.model.bodies[link.name].shape
     carries = any(other.parent == motion.index[link.name] for other in motion.links)
-    if shape is None or not shape.is_point or carries or link.point != ZERO:
+    if shape is None or not shape.is_point or carries or link.point != Vector.ZERO:
         return False
     loads = (*system.loads.placed, *(push for row in system.constraints.rows for push in (*row.pushes, *row.tangent)))
     mine = [load for load in loads if link.name == (load.body if isinstance(load, Couple) else load.place[0])]
@@ -405,7 +396,7 @@ def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str
     sliding = [v for w, v in link.S if all(is_zero(x) for x in w)]
     if axes.plane and len(forces) == 1 and len(sliding) == 1:
         v = sliding[0]
-        return [("n", (-v[1], v[0], 0))]
+        return [("n", Vector((-v[1], v[0], 0)))]
     return list(zip(_numbered("n", len(forces)), forces, strict=True))
 
 
@@ -614,10 +605,10 @@ def _of_body(
 
 def _along(axes: Axes, link: BodyLink, way: SparseRow) -> list[Effect]:
     """Effects of the wrench sum c_k d_k."""
-    force, couple = ZERO, ZERO
+    force, couple = Vector.ZERO, Vector.ZERO
     for k, c in way.items():
         f, n = scaled_axes(axes, link.name, k, c)
-        force, couple = plus(force, f), plus(couple, n)
+        force, couple = force + f, couple + n
     return effects_at_joint(axes, link, force, couple)
 
 
@@ -628,10 +619,10 @@ def _components(link: BodyLink, labels: Sequence[str], effects: Sequence[Sequenc
 
 def _any_wrench(system: System, axes: Axes, link: BodyLink) -> Iterator[tuple[str, Vector, Vector]]:
     """(label, force, couple) along the axes of the body's equations, child's axes."""
-    R_CE = transposed(axes.of_body(link))
+    R_CE = axes.of_body(link).T
     for k in range(2 if axes.plane else 3):
-        yield "xyz"[k], in_turned_axes(R_CE, IDENTITY[k]), ZERO
+        yield "xyz"[k], R_CE @ Matrix.IDENTITY[k], Vector.ZERO
     if not axes.plane:
-        yield from ((f"couple {axis}", ZERO, e) for axis, e in zip("xyz", IDENTITY, strict=True))
+        yield from ((f"couple {axis}", Vector.ZERO, e) for axis, e in zip("xyz", Matrix.IDENTITY, strict=True))
     elif not is_idle(axes, link, system):
-        yield "couple", ZERO, IDENTITY[2]
+        yield "couple", Vector.ZERO, Matrix.IDENTITY[2]

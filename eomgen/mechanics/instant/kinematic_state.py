@@ -19,24 +19,7 @@ from eomgen.mechanics.kinematics import (
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node
 from eomgen.symbolic.exact import Legibly
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    Matrix,
-    Node,
-    Scalar,
-    State,
-    Vector,
-    apply,
-    cross,
-    dot,
-    minus,
-    plus,
-    sqrt,
-    substituted,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Matrix, Node, Scalar, State, Vector, sqrt, substituted
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
@@ -133,7 +116,7 @@ class KinematicState:
     def _named(self, link: BodyLink) -> Iterable[tuple[str, Vector]]:
         motion = self.system.motion
         if is_node(link.name):
-            return [(link.name, (0, 0, 0))]
+            return [(link.name, Vector((0, 0, 0)))]
         own = motion.points[link.name]
         kept = [name for name in own if name != "origin"] or ["origin"]
         return [(f"{link.name}.{name}", own[name]) for name in kept]
@@ -157,7 +140,7 @@ class KinematicState:
 
     def size(self, v: Vector) -> Scalar:
         """|v|"""
-        return self.simple(sqrt(dot(v, v)))
+        return self.simple(sqrt(v @ v))
 
     @cached_property
     def values(self) -> ScalarValues:
@@ -220,12 +203,12 @@ class Composition:
     @property
     def relative_velocity(self) -> Vector:
         """v_r [m/s]"""
-        return apply(self.R, self.relative[1])
+        return self.R @ self.relative[1]
 
     @property
     def velocity(self) -> Vector:
         """v = v_t + v_r [m/s]"""
-        return plus(self.transport_velocity, self.relative_velocity)
+        return self.transport_velocity + self.relative_velocity
 
     @property
     def transport_acceleration(self) -> Vector:
@@ -245,17 +228,17 @@ class Composition:
     @property
     def relative_acceleration(self) -> Vector:
         """a_r [m/s^2]"""
-        return apply(self.R, self.relative[2])
+        return self.R @ self.relative[2]
 
     @property
     def coriolis(self) -> Vector:
         """a_C = 2 omega x v_r [m/s^2]"""
-        return times(2, cross(self.carrier.w, self.relative_velocity))
+        return 2 * self.carrier.w.cross(self.relative_velocity)
 
     @property
     def acceleration(self) -> Vector:
         """a = a_t + a_r + a_C [m/s^2]"""
-        return plus(self.transport_acceleration, plus(self.relative_acceleration, self.coriolis))
+        return self.transport_acceleration + (self.relative_acceleration + self.coriolis)
 
 
 def composition_of(motion: Motion, point: str, body: str) -> Composition:
@@ -265,16 +248,16 @@ def composition_of(motion: Motion, point: str, body: str) -> Composition:
     place = motion.position((owner, local))
     R = body_axes(motion, body)
     if owner != body and body in motion.index:
-        local = apply(transposed(R), minus(place, motion.link(body).pose.p))
+        local = R.T @ (place - motion.link(body).pose.p)
     elif owner != body:
         local = place
     v = scope.rate_of(local)
-    return Composition(place, motion.field(body), R, (local, v, vector_of(scope.with_accelerations(v))))
+    return Composition(place, motion.field(body), R, (local, v, Vector(scope.with_accelerations(v))))
 
 
 def body_axes(motion: Motion, body: str) -> Matrix:
     """The body's axes in the ground; of the ground its own."""
-    return motion.link(body).pose.R if body in motion.index else IDENTITY
+    return motion.link(body).pose.R if body in motion.index else Matrix.IDENTITY
 
 
 # -------- body motion -----------------------------------------------------------------------------------------
@@ -341,7 +324,7 @@ class BodyMotion:
     def invariants(self) -> tuple[Scalar, Scalar]:
         """omega.omega and omega.v, the same at all points of the body."""
         w, v = self.field.w, self.field.v
-        return self.readable.scalar(dot(w, w)), self.readable.scalar(dot(w, v))
+        return self.readable.scalar(w @ w), self.readable.scalar(w @ v)
 
     @cached_property
     def center(self) -> Vector | None:
@@ -359,8 +342,8 @@ class BodyMotion:
         middle = self._found(VelocityField.inflection_center)
         if middle is None or self.center is None:
             return None
-        arm = self.readable.vector(minus(middle, self.center))
-        return middle, self.readable.scalar(sqrt(dot(arm, arm)))
+        arm = self.readable.vector(middle - self.center)
+        return middle, self.readable.scalar(sqrt(arm @ arm))
 
     @cached_property
     def slowest(self) -> tuple[str, str, Scalar] | None:

@@ -18,19 +18,7 @@ from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
 from eomgen.mechanics.start import ScalarValues
 from eomgen.model import is_node
 from eomgen.symbolic.exact import Legibly
-from eomgen.symbolic.expression import (
-    ZERO,
-    Node,
-    Scalar,
-    Vector,
-    cross,
-    is_zero,
-    minus,
-    over,
-    plus,
-    substituted,
-    vector_of,
-)
+from eomgen.symbolic.expression import Node, Scalar, Vector, is_zero, over, substituted
 from eomgen.symbolic.numeric import Work
 
 FIXED = "0"
@@ -94,7 +82,7 @@ class Mechanism:
         }
 
     def _apart(self, block: str, body: str) -> Homogeneous:
-        return minus(self.fields[body], ZERO if block == FIXED else self.fields[block])
+        return self.fields[body] - (Vector.ZERO if block == FIXED else self.fields[block])
 
     def block_of(self, body: str | None) -> str:
         """The block of a body; of the ground (None), and of a point, its own name or "0"."""
@@ -121,7 +109,7 @@ class Mechanism:
         """A homogeneous point as (x, y, 1), or as (1, dy, 0) or (0, 1, 0) at infinity."""
         k = next(k for k in (2, 0, 1) if not self.is_zero((c[k],)))
         x, y = (self._simple(over(c[i], c[k])) for i in (0, 1))
-        return (x, y, 1) if k == 2 else (1, y, 0) if k == 0 else (0, 1, 0)
+        return Vector((x, y, 1) if k == 2 else (1, y, 0) if k == 0 else (0, 1, 0))
 
     # -- helpers -----------------------------------------------------------------------------------
 
@@ -220,23 +208,23 @@ class _Search:
         """The first two different lines on which the centre of a pair is, or two centres that coincide."""
         field = self.mechanism.centers[pair].point
         for first_pair, second_pair in self._with_a_third(pair, known):
-            if self.mechanism.is_zero(cross(known[first_pair], known[second_pair])):
+            if self.mechanism.is_zero(known[first_pair].cross(known[second_pair])):
                 point = known[first_pair]
                 return FoundPoint(
-                    pair, point, (), self.mechanism.is_zero(cross(point, field)), (first_pair, second_pair)
+                    pair, point, (), self.mechanism.is_zero(point.cross(field)), (first_pair, second_pair)
                 )
         lines = [*self.own_lines.get(pair, ()), *self._in_line(pair, known)]
         for first, second in combinations(lines, 2):
-            point = cross(first.line, second.line)
+            point = first.line.cross(second.line)
             if not self.mechanism.is_zero(point):
                 point = self.mechanism.normal(point)
-                return FoundPoint(pair, point, (first, second), self.mechanism.is_zero(cross(point, field)))
+                return FoundPoint(pair, point, (first, second), self.mechanism.is_zero(point.cross(field)))
         return None
 
     def _in_line(self, pair: PointPair, known: dict[PointPair, Vector]) -> Iterator[LineOf]:
         """The lines through the centres that the two have with a third body."""
         for first, second in self._with_a_third(pair, known):
-            line = cross(known[first], known[second])
+            line = known[first].cross(known[second])
             if not self.mechanism.is_zero(line):
                 yield LineOf(line, through=(first, second))
 
@@ -265,7 +253,7 @@ class _Search:
                 found.setdefault(pair, []).append(LineOf(line, component.owner, component.label))
         for name in self.mechanism.moved:
             if self._is_point(name):
-                found.setdefault(("0", name), []).append(LineOf((0, 0, 1), name, POINT))
+                found.setdefault(("0", name), []).append(LineOf(Vector((0, 0, 1)), name, POINT))
         return found
 
     def _wanders(self, component: Component) -> bool:
@@ -295,16 +283,16 @@ class _Search:
         wrenches: dict[str, Vector] = {}
         for effect in component.effects:
             motion = axes.motion
-            place = plus(motion.position((motion.links[effect.link].name, axes.masses[effect.link].com)), effect.arm)
-            moment = plus(effect.couple, cross(place, effect.force))[2]
+            place = motion.position((motion.links[effect.link].name, axes.masses[effect.link].com)) + effect.arm
+            moment = (effect.couple + place.cross(effect.force))[2]
             block = self.mechanism.block_of(motion.links[effect.link].name)
-            wrench = (-effect.force[1], effect.force[0], moment)
-            wrenches[block] = plus(wrenches[block], wrench) if block in wrenches else wrench
-        here = {block: vector_of(substituted(w, self.mechanism.moving)) for block, w in wrenches.items()}
+            wrench = Vector((-effect.force[1], effect.force[0], moment))
+            wrenches[block] = wrenches[block] + wrench if block in wrenches else wrench
+        here = {block: Vector(substituted(w, self.mechanism.moving)) for block, w in wrenches.items()}
         pushed = [block for block, w in here.items() if not self.mechanism.is_zero(w) and block != "0"]
         if not pushed or any(block not in self.mechanism.blocks for block in pushed):
-            return None, (0, 0, 0)
+            return None, Vector.ZERO
         if len(pushed) == 1:
             return ("0", pushed[0]), here[pushed[0]]
-        opposite = len(pushed) == 2 and self.mechanism.is_zero(plus(here[pushed[0]], here[pushed[1]]))
+        opposite = len(pushed) == 2 and self.mechanism.is_zero(here[pushed[0]] + here[pushed[1]])
         return (self._ordered(pushed[0], pushed[1]) if opposite else None), here[pushed[0]]

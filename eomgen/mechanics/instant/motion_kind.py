@@ -18,26 +18,17 @@ from eomgen.mechanics.kinematics import VelocityField
 from eomgen.mechanics.state import Numbers
 from eomgen.symbolic.exact import simplest, vanishes
 from eomgen.symbolic.expression import (
-    ZERO,
     Fraction,
     Node,
     Scalar,
     State,
     Vector,
-    apply,
-    cross,
     depends_on,
-    dot,
     is_zero,
-    minus,
     over,
-    plus,
     sqrt,
     substituted,
     tangent,
-    times,
-    transposed,
-    vector_of,
 )
 from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, of_50_digits, tolerances
 
@@ -117,7 +108,7 @@ class Kinds:
                 return Kind(REST)
             way = curve_of(field.p, self.possible, self.constants)
             return Kind(WAYS[way.kind], way=way)
-        if vanish(*cross(field.w, field.e)):
+        if vanish(*field.w.cross(field.e)):
             return self._about_one_direction(body, field)
         return self._in_all_directions(body, field)
 
@@ -125,13 +116,13 @@ class Kinds:
         """Kind of a motion in which omega keeps its direction."""
         vanish, possible = self.possible.vanish, self.possible
         axis = self._direction(field.w)
-        planar = vanish(dot(field.w, field.v))
+        planar = vanish(field.w @ field.v)
         center = field.axis_point()
-        if not vanish(*cross(possible.rate_of(center), field.w)):
+        if not vanish(*possible.rate_of(center).cross(field.w)):
             return Kind(PLANE if planar else GENERAL, axis=axis)
         if planar:
             return Kind(ROTATION, self.constants.vector(center), axis, point=self._named(body, field))
-        pitch = over(dot(field.w, field.v), dot(field.w, field.w))
+        pitch = over(field.w @ field.v, field.w @ field.w)
         if not vanish(*possible.rate((pitch,))):
             return Kind(SLIDING, self._on_axis(center, field.w), axis)
         return Kind(HELICAL, self._on_axis(center, field.w), axis, self.constants.of(pitch))
@@ -147,12 +138,12 @@ class Kinds:
         """A constant vector along omega, whose first component that does not vanish is 1."""
         for component in w:
             if not self.possible.vanish(component):
-                return self.constants.vector(times(over(1, component), w))
+                return self.constants.vector(over(1, component) * w)
         return None
 
     def _on_axis(self, center: Vector, w: Vector) -> Vector | None:
         """The point of a fixed axis nearest to the ground's origin."""
-        return self.constants.vector(minus(center, times(over(dot(center, w), dot(w, w)), w)))
+        return self.constants.vector(center - over(center @ w, w @ w) * w)
 
     def _named(self, body: str, field: VelocityField) -> str:
         """The body's first point that stays where it is: `bar.start`; "" where none has a name."""
@@ -179,11 +170,11 @@ def fixed_point(field: VelocityField) -> Vector:
     v + omega x r = 0 gives r but for its part along omega, and a + epsilon x r + omega x (omega x r) = 0 that one.
     """
     w, e = field.w, field.e
-    across = times(over(1, dot(w, w)), cross(w, field.v))
-    turning = cross(e, w)
-    left = plus(field.a, plus(cross(e, across), cross(w, cross(w, across))))
-    along = over(-dot(left, turning), dot(turning, turning))
-    return plus(field.p, plus(across, times(along, w)))
+    across = over(1, w @ w) * w.cross(field.v)
+    turning = e.cross(w)
+    left = field.a + (e.cross(across) + w.cross(w.cross(across)))
+    along = over(-(left @ turning), turning @ turning)
+    return field.p + (across + along * w)
 
 
 # -- at one instant --------------------------------------------------------------------------------
@@ -193,13 +184,13 @@ def instant_kind(field: VelocityField) -> str:
     """The kind of a field at one instant: rest, translation, rotation, helical motion."""
     if all(vanishes(x) for x in field.w):
         return REST if all(vanishes(x) for x in field.v) else TRANSLATION
-    return "rotation" if vanishes(dot(field.w, field.v)) else HELICAL
+    return "rotation" if vanishes(field.w @ field.v) else HELICAL
 
 
 def in_body(system: System, body: str, place: Vector) -> Vector:
     """A place of the ground seen from a body, in its axes [m]."""
     pose = system.motion.link(body).pose
-    return apply(transposed(pose.R), minus(place, pose.p))
+    return pose.R.T @ (place - pose.p)
 
 
 # -------- centers ---------------------------------------------------------------------------------------------
@@ -220,8 +211,8 @@ Homogeneous = Vector
 
 def homogeneous_center(field: VelocityField) -> Homogeneous:
     """c = (-v_0y : v_0x : w) of a field."""
-    v = field.velocity(ZERO)
-    return (-v[1], v[0], field.w[2])
+    v = field.velocity(Vector.ZERO)
+    return Vector((-v[1], v[0], field.w[2]))
 
 
 def finite_center(field: VelocityField, whose: str) -> Vector:
@@ -307,19 +298,19 @@ class Constants:
     def vector(self, x: Vector) -> Vector | None:
         """Constant vector as functions of the parameters, by its components."""
         found = [value for each in x if (value := self.of(each)) is not None]
-        return vector_of(found) if len(found) == 3 else None
+        return Vector(found) if len(found) == 3 else None
 
     def length(self, x: Vector) -> Scalar | None:
         """The same of the length of a vector that may turn: of its components where they are short."""
         moving = self._moving
         for state in self._states(moving):
             try:
-                there = vector_of([simplest(each, Work.VALUE, self.positive) for each in substituted(x, state)])
+                there = Vector([simplest(each, Work.VALUE, self.positive) for each in substituted(x, state)])
             except DerivationError:  # a division by zero there
                 continue
             if not any(depends_on(each, moving) for each in there):
-                return simplest(sqrt(dot(there, there)), Work.VALUE, self.positive)
-        return self.of(sqrt(dot(x, x)))
+                return simplest(sqrt(there @ there), Work.VALUE, self.positive)
+        return self.of(sqrt(x @ x))
 
     def some_place(self, place: Vector) -> Vector | None:
         """A place on the way of one that moves, as functions of the parameters: where it is at the start, if known."""
@@ -328,7 +319,7 @@ class Constants:
         for state in self._states(moving):
             x, y, z = (simplest(x, Work.VALUE, self.positive) for x in substituted(place, state))
             if not any(depends_on(each, moving) for each in (x, y, z)):
-                return (x, y, z)
+                return Vector((x, y, z))
         return None
 
     @property
@@ -356,11 +347,11 @@ def curve_of(place: Vector, possible: Possible, constants: Constants) -> Curve:
     if possible.vanish(*v):
         return Curve("point", constants.vector(place))
     a = possible.rate_of(v)
-    n = cross(v, a)
+    n = v.cross(a)
     if possible.vanish(*n):
         return Curve("line", constants.some_place(place), _direction(v, possible, constants))
     arm = _arm(v, a)
-    center = plus(place, arm)
+    center = place + arm
     if possible.vanish(*possible.rate_of(center), *_turning(n, possible)):
         return Curve("circle", constants.vector(center), _direction(n, possible, constants), constants.length(arm))
     return Curve("curve")
@@ -368,21 +359,21 @@ def curve_of(place: Vector, possible: Possible, constants: Constants) -> Curve:
 
 def _arm(v: Vector, a: Vector) -> Vector:
     """Vector from a point with velocity v and acceleration a to the centre of curvature of its path."""
-    n = cross(v, a)
-    return times(over(dot(v, v), dot(n, n)), cross(n, v))
+    n = v.cross(a)
+    return over(v @ v, n @ n) * n.cross(v)
 
 
 def _direction(v: Vector, possible: Possible, constants: Constants) -> Vector | None:
     """A constant vector along v: over its first component that does not vanish."""
     for component in v:
         if not possible.vanish(component):
-            return constants.vector(times(over(1, component), v))
+            return constants.vector(over(1, component) * v)
     return None
 
 
 def _turning(n: Vector, possible: Possible) -> tuple[Scalar, ...]:
     """Components of n x n', which vanish if the direction of n is constant; () if n is along z."""
-    return cross(n, possible.rate_of(n)) if not possible.vanish(n[0], n[1]) else ()
+    return n.cross(possible.rate_of(n)) if not possible.vanish(n[0], n[1]) else ()
 
 
 # -------- possible --------------------------------------------------------------------------------------------
@@ -424,7 +415,7 @@ class Possible:
 
     def rate_of(self, x: Vector) -> Vector:
         """d/dt of a vector, 3."""
-        return vector_of(self.rate(x))
+        return Vector(self.rate(x))
 
     def vanish(self, *scalars: Scalar) -> bool:
         """True if all scalars are zero along every motion.
@@ -532,10 +523,8 @@ def centrodes_of(kinds: Kinds, body: str) -> Centrodes | None:
         (x, y, z) = substituted(center, unit)
     except DerivationError:
         return None
-    places = (x, y, z), in_body(system, body, (x, y, z))
-    fixed, moving = (
-        vector_of(simplest(each, Work.VALUE, kinds.constants.positive) for each in place) for place in places
-    )
+    places = (x, y, z), in_body(system, body, Vector((x, y, z)))
+    fixed, moving = (Vector(simplest(each, Work.VALUE, kinds.constants.positive) for each in place) for place in places)
     if depends_on(x, system.symbols.u) or len(system.symbols.u) > 1:
         return None
     curves = [curve_of(place, kinds.possible, kinds.constants) for place in (fixed, moving)]

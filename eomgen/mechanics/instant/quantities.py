@@ -36,21 +36,16 @@ from eomgen.model import (
 )
 from eomgen.symbolic.exact import simplest
 from eomgen.symbolic.expression import (
-    ZERO,
     Call,
     Expression,
     Matrix,
     Node,
     Scalar,
     Vector,
-    apply,
     depends_on,
     derivative,
-    dot,
     substituted,
     tangent,
-    times,
-    vector_of,
 )
 from eomgen.symbolic.numeric import Work
 
@@ -143,7 +138,7 @@ class Quantities:
 
     def origin(self, body: str) -> Vector:
         """Position of the origin of the frame of a body, or of the ground [m]."""
-        return self.system.motion.link(body).pose.p if body in self.system.motion.index else ZERO
+        return self.system.motion.link(body).pose.p if body in self.system.motion.index else Vector.ZERO
 
     def axes(self, body: str) -> Matrix:
         """R from the axes of a body to the ground's."""
@@ -158,9 +153,9 @@ class Quantities:
     def spin(self, body: str) -> Vector:
         """Angular velocity in ground axes, from the twist; of the ground 0 [rad/s]."""
         if body not in self.system.motion.index:
-            return ZERO
+            return Vector.ZERO
         link = self.system.motion.link(body)
-        return link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
+        return link.twist.w if link.angle is not None else link.pose.R @ link.twist.w
 
     def rate(self, place: Vector) -> Vector:
         """d/dt of what depends on q and t."""
@@ -168,20 +163,20 @@ class Quantities:
 
     def acceleration(self, velocity: Vector) -> Vector:
         """d/dt of what depends on q, u and t."""
-        return vector_of(self.system.scope.with_accelerations(velocity))
+        return Vector(self.system.scope.with_accelerations(velocity))
 
     def placed(self, *vectors: Vector) -> tuple[Vector, ...]:
         """The vectors at the given state; as they are where none is given."""
         if not self.at:
             return vectors
         flat = iter(substituted([x for vector in vectors for x in vector], self.at))
-        return tuple(vector_of(next(flat) for _ in range(3)) for _ in vectors)
+        return tuple(Vector(next(flat) for _ in range(3)) for _ in vectors)
 
     def here(self, *vectors: Vector) -> tuple[Vector, ...]:
         """Vectors at the given state in readable form."""
         if not self.at:
             return vectors
-        return tuple(vector_of(map(self._short, vector)) for vector in self.placed(*vectors))
+        return tuple(Vector(map(self._short, vector)) for vector in self.placed(*vectors))
 
     def _short(self, x: Scalar) -> Scalar:
         return simplest(x, Work.VALUE, self.system.scope.positive)
@@ -428,7 +423,7 @@ def _share(system: System, force: Applied, body: str) -> Scalar:
         if not _acts_on(load, body):
             continue
         if isinstance(load, PointForce) and _is_constant(system, load):
-            share = share - dot(load.force, system.motion.position(load.place))
+            share = share - load.force @ system.motion.position(load.place)
         elif all(_acts_on(other, body) or _acts_on(other, None) for other in force.loads):
             return force.potential
         else:
@@ -462,7 +457,7 @@ def _point_loads(system: System, force: Applied) -> list[Load]:
 
 def _weights(system: System, field: UniformField) -> list[PointForce]:
     masses = SystemScene(system.motion).masses(None)
-    return [PointForce(place, times(m, field.acceleration)) for place, m in masses]
+    return [PointForce(place, m * field.acceleration) for place, m in masses]
 
 
 def _acts_on(load: Load, body: str | None) -> bool:
@@ -519,6 +514,6 @@ def _load_power(system: System, load: Load) -> Scalar:
         return load.value * system.scope.rates[coordinates.index(load.coordinate)]
     if isinstance(load, Couple):
         couple = motion.in_body_axes(load.body, load.couple, load.axes)
-        return dot(couple, motion.link(load.body).twist.w)
+        return couple @ motion.link(load.body).twist.w
     assert isinstance(load, PointForce), "fields are weights by now"
-    return dot(motion.in_ground_axes(load.force, load.axes), motion.velocity(load.place))
+    return motion.in_ground_axes(load.force, load.axes) @ motion.velocity(load.place)

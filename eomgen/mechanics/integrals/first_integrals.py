@@ -20,26 +20,7 @@ from eomgen.mechanics.dynamics import (
 from eomgen.mechanics.kinematics import GROUND, SystemInertia, integral_from_zero
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce
 from eomgen.symbolic.exact import equal_at_random_states, exact_state, readable, real_values
-from eomgen.symbolic.expression import (
-    ZERO,
-    Node,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    depends_on,
-    dot,
-    gradient,
-    holds_op,
-    inner,
-    is_zero,
-    minus,
-    over,
-    plus,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Node, Scalar, Vector, depends_on, gradient, holds_op, inner, is_zero, over
 from eomgen.symbolic.numeric import (
     PIECEWISE,
     PRIME_FIELD,
@@ -228,7 +209,7 @@ def _work(system: System, load: Load) -> Scalar:
     """The work of one load where it is constant, else 0."""
     motion = system.motion
     if isinstance(load, PointForce) and load.axes is None and _is_constant(system, *load.force):
-        return dot(load.force, motion.position(load.place))
+        return load.force @ motion.position(load.place)
     if isinstance(load, Couple) and _is_constant(system, *load.couple):
         angle = motion.link(load.body).angle
         return 0 if angle is None else load.couple[2] * angle
@@ -404,21 +385,21 @@ def _vanishes(x: Scalar) -> bool:
 
 def _momentum(system: System, bodies: Sequence[str]) -> Vector:
     """sum m v_C, ground axes."""
-    total: Vector = ZERO
+    total: Vector = Vector.ZERO
     for body in bodies:
         mass = system.scope.mass_properties(body)
-        total = plus(total, times(mass.m, system.motion.velocity((body, mass.com))))
+        total = total + mass.m * system.motion.velocity((body, mass.com))
     return total
 
 
 def _mass_center(system: System, bodies: Sequence[str]) -> Vector:
     """sum m r_C / sum m"""
     whole: Scalar = 0
-    total: Vector = ZERO
+    total: Vector = Vector.ZERO
     for body in bodies:
         mass = system.scope.mass_properties(body)
-        whole, total = whole + mass.m, plus(total, times(mass.m, system.motion.position((body, mass.com))))
-    return vector_of(over(x, whole) for x in total)
+        whole, total = whole + mass.m, total + mass.m * system.motion.position((body, mass.com))
+    return Vector(over(x, whole) for x in total)
 
 
 def _seats(system: System) -> dict[str, Vector]:
@@ -430,13 +411,13 @@ def _seats(system: System) -> dict[str, Vector]:
         if on_ground and not any(depends_on(x, (symbols.t, *symbols.q)) for x in link.before.p):
             zero = all(is_zero(x) for x in link.before.p)
             found.setdefault("the origin" if zero else f"the joint of {link.name}", link.before.p)
-    return found or {"the origin": ORIGIN}
+    return found or {"the origin": Vector.ZERO}
 
 
 def _square(system: System, point: Vector, body: str) -> Scalar:
     """L.L of one body, in its own axes."""
     link, mass = system.motion.link(body), system.scope.mass_properties(body)
-    arm = minus(mass.com, apply(transposed(link.pose.R), minus(point, link.pose.p)))
-    v = plus(link.twist.v, cross(link.twist.w, mass.com))
-    own = plus(apply(mass.I, link.twist.w), times(mass.m, cross(arm, v)))
-    return dot(own, own)
+    arm = mass.com - link.pose.R.T @ (point - link.pose.p)
+    v = link.twist.v + link.twist.w.cross(mass.com)
+    own: Vector = mass.I @ link.twist.w + mass.m * arm.cross(v)
+    return own @ own

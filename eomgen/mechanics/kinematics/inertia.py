@@ -9,27 +9,17 @@ from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.symbols import Scope
 from eomgen.model import MassProperties
 from eomgen.symbolic.expression import (
-    ZERO,
     Fraction,
     Matrix,
     Scalar,
     ScalarRow,
     Vector,
-    added,
-    apply,
-    cross,
-    dot,
     gradient,
     inner,
     is_zero,
     jacobian,
-    minus,
-    plus,
-    product,
     substituted,
     tangent,
-    times,
-    transposed,
 )
 
 # -------- inertia ---------------------------------------------------------------------------------------------
@@ -90,10 +80,10 @@ class SystemInertia:
         rates = iter(scope.time_derivative(places))
         energies = []
         for link, mass, orientation in zip(links, masses, turning, strict=True):
-            velocity = (next(rates), next(rates), next(rates))
+            velocity = Vector((next(rates), next(rates), next(rates)))
             spin = link.spin([next(rates) for _ in orientation])
-            translation = HALF * mass.m * dot(velocity, velocity)
-            rotation = HALF * dot(spin, apply(mass.I, spin))
+            translation = HALF * mass.m * (velocity @ velocity)
+            rotation = HALF * (spin @ (mass.I @ spin))
             energies.append(BodyEnergy(link.name, velocity, spin, translation, rotation))
         return tuple(energies)
 
@@ -180,23 +170,23 @@ class SystemInertia:
     def in_ground(self, body: str) -> MassProperties:
         """The mass properties of a body where it is: mass centre from the ground's origin, inertia in ground axes."""
         own, pose = self.motion.scope.mass_properties(body), self.motion.link(body).pose
-        return MassProperties(own.m, pose.point(own.com), product(product(pose.R, own.I), transposed(pose.R)))
+        return MassProperties(own.m, pose.point(own.com), pose.R @ own.I @ pose.R.T)
 
     def about(self, point: Vector, bodies: Sequence[str]) -> Matrix:
         """I_P of the bodies together, ground axes."""
-        total: Matrix = (ZERO, ZERO, ZERO)
+        total: Matrix = Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO))
         for body in bodies:
-            total = added(total, self.in_ground(body).about(point))
+            total = total + self.in_ground(body).about(point)
         return total
 
     def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector:
         """L_P of the bodies together, of the velocities against the ground, ground axes [kg m^2/s]."""
-        total: Vector = ZERO
+        total: Vector = Vector.ZERO
         for body in bodies:
             link, mass = self.motion.link(body), self.in_ground(body)
             velocity = self.motion.velocity((body, self.motion.scope.mass_properties(body).com))
-            spin = apply(mass.I, apply(link.pose.R, link.twist.w))
-            total = plus(total, plus(spin, times(mass.m, cross(minus(mass.com, point), velocity))))
+            spin = mass.I @ (link.pose.R @ link.twist.w)
+            total = total + (spin + mass.m * (mass.com - point).cross(velocity))
         return total
 
     def flat(self, bodies: Sequence[str]) -> tuple[str, ...]:
@@ -218,8 +208,8 @@ def _by_twist(link: BodyLink, mass: MassProperties) -> BodyEnergy:
     """The same from the twist: v_C = v + w x c in body axes."""
     w = link.twist.w
     v = link.twist.at(mass.com).v
-    translation = HALF * mass.m * dot(v, v)
-    return BodyEnergy(link.name, apply(link.pose.R, v), w, translation, HALF * dot(w, apply(mass.I, w)))
+    translation = HALF * mass.m * (v @ v)
+    return BodyEnergy(link.name, link.pose.R @ v, w, translation, HALF * (w @ (mass.I @ w)))
 
 
 def _given_mass(scope: Scope) -> list[tuple[int, int, Scalar]]:

@@ -16,7 +16,6 @@ from eomgen.mechanics.kinematics.motion import BodyLink, Motion
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model import Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
 from eomgen.symbolic.expression import (
-    ZERO,
     Fraction,
     Node,
     Scalar,
@@ -25,14 +24,10 @@ from eomgen.symbolic.expression import (
     Vector,
     Wrench,
     depends_on,
-    dot,
     gradient,
     is_zero,
     jacobian,
     over,
-    plus,
-    times,
-    vector_of,
 )
 
 
@@ -80,15 +75,15 @@ class JointEffort:
         """
         link = motion.link(self.body)
         w, v = link.S[self.variable]
-        square = dot(w, w) if not all(is_zero(x) for x in w) else dot(v, v)
+        square = w @ w if not all(is_zero(x) for x in w) else v @ v
         rotary = not all(is_zero(x) for x in w)
         direction = w if rotary else v
         magnitude = self.effort if type(square) is int and square == 1 else over(self.effort, square)
-        at_joint = Wrench(times(magnitude, direction), ZERO) if rotary else Wrench(ZERO, times(magnitude, direction))
+        at_joint = Wrench(magnitude * direction, Vector.ZERO) if rotary else Wrench(Vector.ZERO, magnitude * direction)
         rows = [(link.name, at_joint.moved(link.point))]
         if link.parent >= 0:
             local = link.before.then(link.relative)
-            on_parent = Wrench(times(-1, at_joint.tau), times(-1, at_joint.f)).turned(local.R)
+            on_parent = Wrench(-at_joint.tau, -at_joint.f).turned(local.R)
             rows.append((motion.links[link.parent].name, on_parent.moved(local.p)))
         return rows
 
@@ -117,10 +112,10 @@ class Loads:
     @property
     def fields(self) -> Vector:
         """The sum of the uniform acceleration fields on every mass [m/s^2]."""
-        total = ZERO
+        total = Vector.ZERO
         for load in self._all:
             if isinstance(load, UniformField):
-                total = plus(total, load.acceleration)
+                total = total + load.acceleration
         return total
 
     @property
@@ -142,7 +137,7 @@ class Loads:
         g = self.fields
         if all(is_zero(x) for x in g):
             return ()
-        return tuple(PointForce(place, times(m, g)) for place, m in SystemScene(self.motion).masses(None))
+        return tuple(PointForce(place, m * g) for place, m in SystemScene(self.motion).masses(None))
 
     # -- generalized forces, by virtual work on positions and by derivatives of the potential energy -------
 
@@ -214,7 +209,7 @@ class Loads:
         """Q of a force whose point moves in its body: F . d(R r')/du."""
         u = self.motion.scope.symbols.u
         slide = self.motion.slide(force.place)
-        if slide == ZERO:
+        if slide == Vector.ZERO:
             return (0,) * len(u)
         return _weighted(self.motion.in_ground_axes(force.force, force.axes), jacobian(slide, u), len(u))
 
@@ -311,4 +306,4 @@ def _summed(rows: list[ScalarRow], size: int) -> ScalarRow:
 
 def _weighted(force: Vector, rows: ScalarRows, size: int) -> ScalarRow:
     """force . d(position)/dq_k for each k."""
-    return tuple(dot(force, vector_of(row[k] for row in rows)) for k in range(size))
+    return tuple(force @ Vector(row[k] for row in rows) for k in range(size))

@@ -13,7 +13,6 @@ from eomgen.mechanics.kinematics.symbols import Scope, shorter
 from eomgen.model import Couple, PointForce, Z, oriented
 from eomgen.symbolic.exact import vanishes
 from eomgen.symbolic.expression import (
-    ZERO,
     Fraction,
     Matrix,
     Node,
@@ -22,29 +21,18 @@ from eomgen.symbolic.expression import (
     Twist,
     Vector,
     Wrench,
-    apply,
     collected,
     cos,
-    cross,
     depends_on,
     derivative,
-    dot,
     function,
     is_zero,
     jacobian,
-    matrix_of,
-    minus,
     over,
-    plus,
-    product,
-    rotation,
     sin,
     sqrt,
     substituted,
     symbols_of,
-    times,
-    transposed,
-    vector_of,
 )
 
 # -------- kinematics ------------------------------------------------------------------------------------------
@@ -106,8 +94,8 @@ class BodyLink:
     def spin(self, rates: list[Scalar]) -> Vector:
         """Angular velocity in body axes from the rates of the orientation [rad/s]."""
         if self.angle is not None:
-            return (0, 0, rates[0])
-        return spin_between(self.pose.R, matrix_of((rates[0:3], rates[3:6], rates[6:9])))
+            return Vector((0, 0, rates[0]))
+        return spin_between(self.pose.R, Matrix.of((rates[0:3], rates[3:6], rates[6:9])))
 
     @property
     def is_placed(self) -> bool:
@@ -201,25 +189,25 @@ class Motion:
             return VelocityField()
         link, scope = self.link(body), self.scope
         v = scope.rate_of(link.pose.p)
-        w = link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
+        w = link.twist.w if link.angle is not None else link.pose.R @ link.twist.w
         rates = scope.with_accelerations((*v, *w))
-        return VelocityField(link.pose.p, v, vector_of(rates[:3]), w, vector_of(rates[3:]))
+        return VelocityField(link.pose.p, v, Vector(rates[:3]), w, Vector(rates[3:]))
 
     def velocity(self, place: tuple[str | None, Vector]) -> Vector:
         """Velocity of a place of a body in ground axes, from the twist: R (v + w x r + r') [m/s]."""
         body, r = place
         if body is None:
-            return ZERO
+            return Vector.ZERO
         link = self.link(body)
-        carried = apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
-        return plus(carried, self.slide(place)) if self.moves(r) else carried
+        carried = link.pose.R @ (link.twist.v + link.twist.w.cross(r))
+        return carried + self.slide(place) if self.moves(r) else carried
 
     def slide(self, place: tuple[str | None, Vector]) -> Vector:
         """Velocity of a place against its own body, ground axes: R r', 0 where it is fixed in the body [m/s]."""
         body, r = place
         if body is None or not self.moves(r):
-            return ZERO
-        return apply(self.link(body).pose.R, self.scope.rate_of(r))
+            return Vector.ZERO
+        return self.link(body).pose.R @ self.scope.rate_of(r)
 
     @property
     def locks(self) -> tuple[Lock, ...]:
@@ -238,23 +226,23 @@ class Motion:
 
     def in_ground_axes(self, vector: Vector, axes: str | None) -> Vector:
         """A vector given in the axes of a body, in the ground's."""
-        return vector if axes is None else apply(self.link(axes).pose.R, vector)
+        return vector if axes is None else self.link(axes).pose.R @ vector
 
     def in_body_axes(self, body: str, vector: Vector, axes: str | None) -> Vector:
         """A vector given in the axes of the ground (None) or of a body, in the axes of `body`."""
         if axes == body:
             return vector
-        return apply(transposed(self.link(body).pose.R), self.in_ground_axes(vector, axes))
+        return self.link(body).pose.R.T @ self.in_ground_axes(vector, axes)
 
     def body_wrench(self, load: PointForce | Couple) -> tuple[str, Wrench] | None:
         """A load as a wrench at its body's origin in body axes (None: it acts on the ground)."""
         if isinstance(load, Couple):
-            return load.body, Wrench(self.in_body_axes(load.body, load.couple, load.axes), ZERO)
+            return load.body, Wrench(self.in_body_axes(load.body, load.couple, load.axes), Vector.ZERO)
         body, r = load.place
         if body is None:
             return None
         f = self.in_body_axes(body, load.force, load.axes)
-        return body, Wrench(cross(r, f), f)
+        return body, Wrench(r.cross(f), f)
 
     def spin(self, link: BodyLink) -> Vector:
         """Angular velocity of one body in body axes, from the derivative of its pose [rad/s]."""
@@ -268,7 +256,7 @@ class Motion:
 
     def slide_power(self, push: PointForce) -> Scalar:
         """Power of a push on a point that moves in its body: F . R r'."""
-        return dot(self.in_ground_axes(push.force, push.axes), self.slide(push.place))
+        return self.in_ground_axes(push.force, push.axes) @ self.slide(push.place)
 
     def is_particle(self, link: BodyLink) -> bool:
         """A point mass that its joint does not turn."""
@@ -325,7 +313,7 @@ def parent_of(model: Any, body: str) -> str | None:
 def body_points(scope: Scope, body: str) -> dict[str, Vector]:
     """Points of one body: its own, its shape's, `origin`, and `center` where it has mass; body axes [m]."""
     part = scope.model.bodies[body]
-    points: dict[str, Vector] = {"origin": ZERO}
+    points: dict[str, Vector] = {"origin": Vector.ZERO}
     if part.parts is not None:
         points["center"] = scope.made_of(body).whole.com
     elif part.center is not None or part.mass is not None:
@@ -346,16 +334,18 @@ def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int])
         )
     plane = scope.model.space == "plane"
     if joint is None:
-        return BodyLink(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())
+        return BodyLink(
+            name, GROUND, None, Pose(), Vector.ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist()
+        )
     parent_name = parent_of(scope.model, name)
     parent = GROUND if parent_name is None else index[parent_name]
     above = None if parent == GROUND else links[parent]
     before = Pose(oriented(joint.turned, scope.value), _seat(scope, joint))
-    point = ZERO if joint.point is None else body_points(scope, name)[joint.point]
+    point = Vector.ZERO if joint.point is None else body_points(scope, name)[joint.point]
     s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
     s_rate = (*scope.time_derivative(s[: -4 if joint.spins else None]), *(scope.names[w] for w in joint.spins))
     relative = joint.pose(s, scope.value)
-    S = tuple((tuple(column[:3]), tuple(column[3:])) for column in joint.subspace(s, scope.value))
+    S = tuple((Vector(column[:3]), Vector(column[3:])) for column in joint.subspace(s, scope.value))
     local = before.then(relative)
     angle = None
     if plane:
@@ -386,8 +376,8 @@ def _seen_from(motion: Motion, carrier: int) -> Motion:
 def _pose(above: BodyLink | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
     """The child's frame in the ground; in the plane its rotation is that by its whole angle."""
     joint = (above.pose if above else Pose()).then(local)
-    R = joint.R if angle is None else rotation(Z, cos(angle), sin(angle))
-    return Pose(R, minus(joint.p, apply(R, point)))
+    R = joint.R if angle is None else Matrix.rotation(Z, cos(angle), sin(angle))
+    return Pose(R, joint.p - R @ point)
 
 
 def _twist(
@@ -400,21 +390,21 @@ def _twist(
     point: Vector,
 ) -> Twist:
     """Twist of the child at its origin, child's axes; a seat that moves by itself adds its rate."""
-    R_CP = transposed(local.R)
+    R_CP = local.R.T
     carried = (above.twist if above else Twist()).at(local.p)
     seat_rate = scope.rate_of(before.p)
-    at_joint = Twist(apply(R_CP, carried.w), apply(R_CP, plus(carried.v, seat_rate)))
+    at_joint = Twist(R_CP @ carried.w, R_CP @ (carried.v + seat_rate))
     for rate, (w, v) in zip(s_rate, S, strict=True):
-        at_joint = at_joint.plus(Twist(times(rate, w), times(rate, v)))
-    moved = at_joint.at(times(-1, point))
+        at_joint = at_joint.plus(Twist(rate * w, rate * v))
+    moved = at_joint.at(-point)
     drift = scope.rate_of(point)  # a joint that slides along its own body
-    twist = Twist(moved.w, minus(moved.v, drift))
+    twist = Twist(moved.w, moved.v - drift)
     return shortened_twist(twist) if scope.combines else twist
 
 
 def shortened_twist(twist: Twist) -> Twist:
     """A twist in its shorter form: declared speeds often are its components, once the rates are put in."""
-    return Twist(vector_of(map(shorter, twist.w)), vector_of(map(shorter, twist.v)))
+    return Twist(Vector(map(shorter, twist.w)), Vector(map(shorter, twist.v)))
 
 
 def _turned_angle(scope: Scope, joint: Any) -> Scalar:
@@ -428,13 +418,13 @@ def _seat(scope: Scope, joint: Any) -> Vector:
     if on is not None and "." in on:
         body, point = on.split(".", 1)
         return body_points(scope, body)[point]
-    return scope.ground_place(joint.at) if joint.seated else ZERO
+    return scope.ground_place(joint.at) if joint.seated else Vector.ZERO
 
 
 def spin_between(R: Matrix, R_rate: Matrix) -> Vector:
     """Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'."""
-    W = product(transposed(R), R_rate)
-    return (W[2][1], W[0][2], W[1][0])
+    W = R.T @ R_rate
+    return Vector((W[2][1], W[0][2], W[1][0]))
 
 
 # -------- gimbal ----------------------------------------------------------------------------------------------
@@ -463,7 +453,7 @@ class Lock:
 # O is the origin of the body's frame. Accelerations hold the symbols a and are linear in them.
 
 
-UP: Vector = (0, 0, 1)
+UP: Vector = Vector((0, 0, 1))
 
 
 @dataclass(frozen=True)
@@ -475,27 +465,27 @@ class VelocityField:
         w, e: angular velocity and acceleration, 3.
     """
 
-    p: Vector = ZERO
-    v: Vector = ZERO
-    a: Vector = ZERO
-    w: Vector = ZERO
-    e: Vector = ZERO
+    p: Vector = Vector.ZERO
+    v: Vector = Vector.ZERO
+    a: Vector = Vector.ZERO
+    w: Vector = Vector.ZERO
+    e: Vector = Vector.ZERO
 
     def velocity(self, place: Vector) -> Vector:
         """v = v_O + omega x r of the point of the body that is now at the place [m/s]."""
-        return plus(self.v, cross(self.w, minus(place, self.p)))
+        return self.v + self.w.cross(place - self.p)
 
     def acceleration(self, place: Vector) -> Vector:
         """a = a_O + epsilon x r + omega x (omega x r) of the point of the body that is now at the place [m/s^2]."""
-        return plus(self.a, plus(self.angular(place), self.centripetal(place)))
+        return self.a + (self.angular(place) + self.centripetal(place))
 
     def angular(self, place: Vector) -> Vector:
         """epsilon x r [m/s^2]"""
-        return cross(self.e, minus(place, self.p))
+        return self.e.cross(place - self.p)
 
     def centripetal(self, place: Vector) -> Vector:
         """omega x (omega x r) [m/s^2]"""
-        return cross(self.w, cross(self.w, minus(place, self.p)))
+        return self.w.cross(self.w.cross(place - self.p))
 
     def at(self, state: Mapping[Node, Scalar]) -> VelocityField:
         """The field with the state's values put in."""
@@ -503,11 +493,11 @@ class VelocityField:
             return self
         vectors = (self.p, self.v, self.a, self.w, self.e)
         flat = iter(substituted([x for vector in vectors for x in vector], state))
-        return VelocityField(*(vector_of(next(flat) for _ in range(3)) for _ in vectors))
+        return VelocityField(*(Vector(next(flat) for _ in range(3)) for _ in vectors))
 
     def against(self, other: VelocityField) -> VelocityField:
         """The field of velocities that another body sees, in ground axes: v - v_other, omega - omega_other."""
-        return replace(self, v=minus(self.v, other.velocity(self.p)), w=minus(self.w, other.w))
+        return replace(self, v=self.v - other.velocity(self.p), w=self.w - other.w)
 
     # -- points and lines --------------------------------------------------------------------------
 
@@ -523,7 +513,8 @@ class VelocityField:
                 f"the body {state}: it has no centre of rotation at a finite place",
                 fix="choose a state in which the body turns",
             )
-        return plus(self.p, times(over(1, self.w[2]), cross(UP, self.v)))
+        center: Vector = self.p + UP.cross(self.v) * over(1, self.w[2])
+        return center
 
     def acceleration_pole(self) -> Vector:
         """Acceleration pole in the plane, the point without acceleration.
@@ -539,12 +530,13 @@ class VelocityField:
                 "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
                 fix="choose a state in which the body turns",
             )
-        arm = plus(times(w * w, self.a), cross(self.e, self.a))
-        return plus(self.p, times(over(1, w * w * w * w + e * e), arm))
+        arm = w * w * self.a + self.e.cross(self.a)
+        center: Vector = self.p + arm * over(1, w * w * w * w + e * e)
+        return center
 
     def axis_point(self) -> Vector:
         """Point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega, in space."""
-        return plus(self.p, times(over(1, dot(self.w, self.w)), cross(self.w, self.v)))
+        return self.p + over(1, self.w @ self.w) * self.w.cross(self.v)
 
     def least_speed(self, start: Vector, end: Vector, short: Callable[[Scalar], Scalar]) -> Scalar:
         """The least speed of the points between two points of the body.
@@ -560,18 +552,18 @@ class VelocityField:
         Raises:
             DerivationError: they are the same.
         """
-        along = minus(end, start)
+        along = end - start
         if all(vanishes(x) for x in along):
             raise DerivationError(
                 "the two points are the same: they have no segment between them", fix="name two points that are apart"
             )
         v_start, v_end = self.velocity(start), self.velocity(end)
         planar = vanishes(self.w[0]) and vanishes(self.w[1]) and vanishes(along[2]) and vanishes(self.v[2])
-        h = cross(UP, along) if planar else cross(self.w, along)
+        h = UP.cross(along) if planar else self.w.cross(along)
         if all(vanishes(x) for x in h):
-            return sqrt(dot(v_start, v_start))
-        square, a, b = short(dot(h, h)), short(dot(v_start, h)), short(dot(v_end, h))
-        rest = short(dot(v_start, v_start) - over(a * a, square))
+            return sqrt(v_start @ v_start)
+        square, a, b = short(h @ h), short(v_start @ h), short(v_end @ h)
+        rest = short(v_start @ v_start - over(a * a, square))
         if vanishes(a) or vanishes(b):
             return sqrt(rest)
         either = (function("max", 0, function("min", x, y)) for x, y in ((a, b), (-a, -b)))
@@ -584,7 +576,8 @@ class VelocityField:
         In the plane, with r from the centre of rotation, whose acceleration is a_P:  r^2 = r . a_P / omega^2.
         """
         pole = self.rotation_center()
-        return plus(pole, times(over(Fraction(1, 2), self.w[2] * self.w[2]), self.acceleration(pole)))
+        center: Vector = pole + self.acceleration(pole) * over(Fraction(1, 2), self.w[2] * self.w[2])
+        return center
 
 
 # -- points and lines of a field -------------------------------------------------------------------

@@ -8,11 +8,9 @@ from functools import cache, cached_property, cmp_to_key, partial
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.mechanics.kinematics.symbols import Scope
-from eomgen.model import MassProperties, matrix_times
+from eomgen.model import MassProperties
 from eomgen.symbolic.exact import common_factor, roots, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
     Fraction,
     Matrix,
     Node,
@@ -20,23 +18,14 @@ from eomgen.symbolic.expression import (
     Scalar,
     State,
     Vector,
-    added,
     cos,
-    cross,
-    dot,
     function,
     is_zero,
-    matrix_of,
     order,
     over,
-    plus,
-    product,
     sqrt,
     substituted,
     symbols_of,
-    times,
-    transposed,
-    vector_of,
 )
 from eomgen.symbolic.numeric import Work, number_of
 from eomgen.symbolic.print import text_size
@@ -80,9 +69,9 @@ class Principal:
         """The principal moments with their axes."""
         tensor = _Tensor(I, scope)
         ascending = _ascending(tensor)
-        moments = tensor.moments if ascending is None else vector_of(tensor.moments[k] for k in ascending)
+        moments = tensor.moments if ascending is None else Vector(tensor.moments[k] for k in ascending)
         pairs = tuple((k, n) for k, n in ((0, 1), (1, 2), (0, 2)) if vanishes(moments[k] - moments[n]))
-        return Principal(moments, tensor.axes(moments, pairs), ascending is not None, pairs)
+        return Principal(moments, tensor.axes(Vector(moments), pairs), ascending is not None, pairs)
 
     @staticmethod
     def ascending(I: Matrix, scope: Scope) -> PrincipalMoments:
@@ -91,7 +80,7 @@ class Principal:
         found = tensor.moments
         ascending = _ascending(tensor)
         if ascending is not None:
-            return vector_of(found[k] for k in ascending)
+            return Vector(found[k] for k in ascending)
         for k in range(3):
             signs = {tensor.larger(k, n) for n in range(3) if n != k}
             one, other = (found[n] for n in range(3) if n != k)
@@ -119,7 +108,7 @@ class _Tensor:
         """The tensor in short form, what vanishes as 0."""
         I = self.given
         upper = {(i, j): 0 if vanishes(I[i][j]) else self.short(I[i][j]) for i in range(3) for j in range(i, 3)}
-        return matrix_of((upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))
+        return Matrix.of((upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))
 
     @property
     def linked(self) -> list[tuple[int, int]]:
@@ -171,13 +160,13 @@ class _Tensor:
         """
         short = self._short_unless_long
         trace = short(I[0][0] + I[1][1] + I[2][2])
-        if vanishes(dot(I[0], cross(I[1], I[2]))):
+        if vanishes(I[0] @ I[1].cross(I[2])):
             square = trace * trace - 4 * self._minors(I)
             spread = 0 if vanishes(square) else sqrt(square)
             return 0, short(HALF * (trace - spread)), short(HALF * (trace + spread))
         if self._is_long:
             return None
-        minors, determinant = self.short(self._minors(I)), self.short(dot(I[0], cross(I[1], I[2])))
+        minors, determinant = self.short(self._minors(I)), self.short(I[0] @ I[1].cross(I[2]))
         J = self.scope.graph.symbol("J of the characteristic equation")
         found = roots(J * J * J - trace * J * J + minors * J - determinant, J, self.scope.positive)
         if len(found) >= 2:
@@ -191,15 +180,16 @@ class _Tensor:
 
     @staticmethod
     def _minors(I: Matrix) -> Scalar:
-        return sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2)))
+        found: Scalar = sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2)))
+        return found
 
     def _trigonometric(self, I: Matrix) -> PrincipalMoments:
         """q + 2 p cos(turn + 2 pi k/3), 0 <= turn <= pi/3, ascending."""
         short = self._short_unless_long
         q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
-        A = matrix_of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
+        A = Matrix.of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
         p = short(sqrt(short(over(sum(x * x for row in A for x in row), 6))))
-        turn = over(function("acos", over(short(dot(A[0], cross(A[1], A[2]))), 2 * p * p * p)), 3)
+        turn = over(function("acos", over(short(A[0] @ A[1].cross(A[2])), 2 * p * p * p)), 3)
         third = over(2 * self.scope.graph.pi, 3)
         return q + 2 * p * cos(turn + third), q + 2 * p * cos(turn - third), q + 2 * p * cos(turn)
 
@@ -234,7 +224,7 @@ class _Tensor:
     def axes(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
         """The rows of R for the moments in this order; of equal moments one choice of many. None: no closed form."""
         if len(equal) == 3:
-            return IDENTITY
+            return Matrix.IDENTITY
         if len(self.linked) == 3 or len(self.linked) == 2:
             return self._by_rows(moments, equal)
         known = list(zip(self.moments, self._in_plane(), strict=True))
@@ -247,7 +237,7 @@ class _Tensor:
     def _in_plane(self) -> Matrix:
         """An axis for each of the moments where at most one pair of axes is linked."""
         if not self.linked:
-            return IDENTITY
+            return Matrix.IDENTITY
         ((i, j),) = self.linked
         a, b, product, spread = self.tensor[i][i], self.tensor[j][j], self.tensor[i][j], self._spread
         sine, cosine = (self.short(sqrt(over(spread + side, 2 * spread))) for side in (b - a, a - b))
@@ -256,7 +246,7 @@ class _Tensor:
         smaller: list[Scalar] = [0, 0, 0]
         larger[i], larger[j] = cosine, self.short(sign * sine)
         smaller[i], smaller[j] = sine, self.short(-sign * cosine)
-        return IDENTITY[3 - i - j], vector_of(smaller), vector_of(larger)
+        return Matrix.of((Matrix.IDENTITY[3 - i - j], smaller, larger))
 
     def _sign(self, x: Scalar) -> Scalar:
         """The sign of what does not vanish, as a formula where it is not known."""
@@ -276,29 +266,29 @@ class _Tensor:
         n = self._across_rows(moments[single])
         if n is None:
             return None
-        other = self._unit(cross(IDENTITY[2], n))
-        return (n, other, self._third(n, other)) if single == 0 else (other, self._third(n, other), n)
+        other = self._unit(Matrix.IDENTITY[2].cross(n))
+        return Matrix.of((n, other, self._third(n, other)) if single == 0 else (other, self._third(n, other), n))
 
     def _across_rows(self, moment: Scalar) -> Vector | None:
         I = self.tensor
-        rows = [vector_of(I[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3)]
+        rows = [Vector(I[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3)]
         for i, j in ((0, 1), (1, 2), (0, 2)):
-            n = vector_of(map(self.short, cross(rows[i], rows[j])))
+            n = Vector(map(self.short, rows[i].cross(rows[j])))
             if not all(vanishes(x) for x in n):
                 return self._unit(n)
         return None
 
     def _right_handed(self, first: Vector, second: Vector) -> Matrix:
-        return first, second, self._third(first, second)
+        return Matrix.of((first, second, self._third(first, second)))
 
     def _turned_right(self, first: Vector, second: Vector, third: Vector) -> Matrix:
         """The three axes, the last one reversed where they are left-handed."""
-        hand = dot(cross(first, second), third)
+        hand = first.cross(second) @ third
         signs = [sign for sign in (1, -1) if vanishes(hand - sign)]
-        return (first, second, times(signs[0], third)) if signs else self._right_handed(first, second)
+        return Matrix.of((first, second, signs[0] * third) if signs else self._right_handed(first, second))
 
     def _third(self, first: Vector, second: Vector) -> Vector:
-        return vector_of(map(self.short, cross(first, second)))
+        return Vector(map(self.short, first.cross(second)))
 
     def _unit(self, n: Vector) -> Vector:
         """n over its length, its first component that does not vanish positive where its sign is known.
@@ -307,9 +297,9 @@ class _Tensor:
         """
         flat = [0 if vanishes(x) else x for x in n]
         lead = next(x for x in flat if not is_zero(x))
-        ratios = vector_of(self.short(over(x, lead)) for x in flat)
-        length = sqrt(self.short(dot(ratios, ratios)))
-        return vector_of(self.short(over(x, length)) for x in ratios)
+        ratios = Vector(self.short(over(x, lead)) for x in flat)
+        length = sqrt(self.short(ratios @ ratios))
+        return Vector(self.short(over(x, length)) for x in ratios)
 
 
 def _ascending(tensor: _Tensor) -> list[int] | None:
@@ -370,12 +360,12 @@ class InertiaRow:
 
     def own(self) -> Matrix:
         """Its inertia about its own mass centre, as it counts."""
-        return matrix_times(self.sign, self.mass.I)
+        return self.sign * self.mass.I
 
     def shift(self, point: Vector) -> Matrix:
         """m (d.d 1 - d d^T), the parallel-axis term, with the sign of the piece."""
-        without = MassProperties(self.mass.m, self.mass.com, (ZERO, ZERO, ZERO))
-        return matrix_times(self.sign, without.about(point))
+        without = MassProperties(self.mass.m, self.mass.com, Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO)))
+        return self.sign * without.about(point)
 
 
 @dataclass(frozen=True)
@@ -429,18 +419,18 @@ class InertiaSum:
     def com(self) -> Vector:
         """The mass centre (without mass, the origin)."""
         if is_zero(self.m):
-            return ZERO
-        first: Vector = ZERO
+            return Vector.ZERO
+        first: Vector = Vector.ZERO
         for row in self.rows:
-            first = plus(first, times(row.sign * row.mass.m, row.mass.com))
-        return vector_of(self.short(over(x, self.m)) for x in first)
+            first = first + row.sign * row.mass.m * row.mass.com
+        return Vector(self.short(over(x, self.m)) for x in first)
 
     def tensor(self, point: Vector) -> Matrix:
         """The inertia about a point, axes of the rows."""
-        total: Matrix = (ZERO, ZERO, ZERO)
+        total: Matrix = Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO))
         for row in self.rows:
-            total = added(total, added(row.own(), row.shift(point)))
-        return matrix_of((self.short(x) for x in line) for line in total)
+            total = total + (row.own() + row.shift(point))
+        return Matrix.of((self.short(x) for x in line) for line in total)
 
 
 def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaRow, ...]:
@@ -458,4 +448,4 @@ def _rows(motion: Motion, body: str, pose: Pose, of: str = "") -> tuple[InertiaR
 
 
 def _seen(mass: MassProperties, pose: Pose) -> MassProperties:
-    return MassProperties(mass.m, pose.point(mass.com), product(product(pose.R, mass.I), transposed(pose.R)))
+    return MassProperties(mass.m, pose.point(mass.com), pose.R @ mass.I @ pose.R.T)

@@ -24,7 +24,6 @@ from eomgen.model import (
 )
 from eomgen.symbolic.exact import cancelled, readable_all
 from eomgen.symbolic.expression import (
-    ZERO,
     Expression,
     Fraction,
     Graph,
@@ -41,7 +40,6 @@ from eomgen.symbolic.expression import (
     gradient,
     holds_op,
     is_zero,
-    matrix_of,
     operations,
     order,
     over,
@@ -50,7 +48,6 @@ from eomgen.symbolic.expression import (
     symbols_of,
     tangent,
     through_samples,
-    vector_of,
 )
 from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, fifty_digits, numbers_of, of_50_digits
 from eomgen.symbolic.print import length_of, text_size, to_text
@@ -147,7 +144,7 @@ class Scope:
     def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
         """A vector of the model, 3, with z = 0 in the plane (absent: 0)."""
         values = [self.value(e) for e in expressions or ()]
-        return vector_of(values + [0] * (3 - len(values)))
+        return Vector(values + [0] * (3 - len(values)))
 
     def time_derivative(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         """d/dt of functions of q, u and t where a = 0: the part that stays when nothing accelerates."""
@@ -161,7 +158,7 @@ class Scope:
 
     def rate_of(self, vector: Vector) -> Vector:
         """d/dt of a vector, 3, where a = 0."""
-        return vector_of(self.time_derivative(vector))
+        return Vector(self.time_derivative(vector))
 
     def with_accelerations(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
         """d/dt of functions of q, u and t, the accelerations included: linear in a."""
@@ -547,10 +544,10 @@ def _written(scope: Scope, scalar: Scalar) -> Expression:
 
 def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) -> Matrix:
     if inertia is None:
-        return (ZERO, ZERO, ZERO)
+        return Matrix.of((Vector.ZERO, Vector.ZERO, Vector.ZERO))
     values = [scope.value(e) for e in inertia]
     if len(values) == 1:
-        return (ZERO, ZERO, (0, 0, values[0]))
+        return Matrix.of((Vector.ZERO, Vector.ZERO, (0, 0, values[0])))
     if len(values) not in (3, 6):
         raise ModelError(
             f"the inertia of body '{body}' has {len(values)} values",
@@ -558,7 +555,7 @@ def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) ->
             fix="give 1, 3 or 6 of them",
         )
     xx, yy, zz, xy, yz, xz = (*values, 0, 0, 0)[:6] if len(values) == 3 else values
-    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    return Matrix.of(((xx, xy, xz), (xy, yy, yz), (xz, yz, zz)))
 
 
 def _put_together(scope: Scope, body: str) -> Composite:
@@ -577,4 +574,4 @@ def _flat(mass: MassProperties) -> list[Scalar]:
 
 def _unflat(entries: Sequence[Scalar]) -> MassProperties:
     m, *others = entries
-    return MassProperties(m, vector_of(others[:3]), matrix_of((others[3:6], others[6:9], others[9:12])))
+    return MassProperties(m, Vector(others[:3]), Matrix.of((others[3:6], others[6:9], others[9:12])))

@@ -20,7 +20,7 @@ from eomgen.mechanics.linearization.reference import ReferenceMotion
 from eomgen.mechanics.state import At, Entries, NumberField
 from eomgen.model import rotation_of
 from eomgen.symbolic.exact import Polynomial, cramer
-from eomgen.symbolic.expression import Matrix, Node, apply, symbols_of, vector_of
+from eomgen.symbolic.expression import Matrix, Node, Vector, symbols_of
 from eomgen.symbolic.numeric import fifty_digits, tolerances, without_noise
 
 # -------- reduction -------------------------------------------------------------------------------------------
@@ -555,7 +555,7 @@ def _by_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinA
     columns = [scope.symbols.u.index(w) for w in turn.speeds]
     rows = [tuple(scope.N[i][k] for k in columns) for i in places]
     if turn.standing:
-        rows = [apply(turn.R, vector_of(row)) for row in rows]  # N R^T
+        rows = [turn.R @ Vector(row) for row in rows]  # N R^T
     flat = scope.time_derivative(tuple(x for row in rows for x in row))
     size = len(columns)
     block, moved = field.matrix(rows), field.matrix([flat[size * i : size * i + size] for i in range(len(rows))])

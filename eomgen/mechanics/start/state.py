@@ -19,7 +19,7 @@ from eomgen.model import (
     Model,
     PointForce,
 )
-from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, minus, substituted, symbols_of
+from eomgen.symbolic.expression import Node, Scalar, State, depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.numeric import (
     FLOAT,
     NoValue,
@@ -412,7 +412,7 @@ def _in_full(system: System, row: Row, size: float, state: State) -> float:
     if row.gap is None or constraint is None or not constraint.by_squares:
         return size
     first, second = (system.motion.position(push.place) for push in row.pushes if isinstance(push, PointForce))
-    (g, *r), digits = evaluate((row.gap, *minus(second, first)), state, fifty_digits()), fifty_digits()
+    (g, *r), digits = evaluate((row.gap, *(second - first)), state, fifty_digits()), fifty_digits()
     root = digits.functions["sqrt"]
     square = sum(x * x for x in r)
     return float(abs(g + root(g * g + square) - root(square)))

@@ -18,25 +18,7 @@ from eomgen.mechanics.statics.forces_in_sections import KINDS, SectionForces
 from eomgen.mechanics.statics.member_axis import MemberAxis
 from eomgen.model import Couple, PointForce, SpreadLoad, UniformField, is_node
 from eomgen.symbolic.exact import readable
-from eomgen.symbolic.expression import (
-    ZERO,
-    Call,
-    Fraction,
-    Node,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    minus,
-    over,
-    plus,
-    symbols_of,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Fraction, Node, Scalar, Vector, is_zero, over, symbols_of
 from eomgen.symbolic.numeric import Work, tolerances
 
 # -------- acting ----------------------------------------------------------------------------------------------
@@ -68,7 +50,7 @@ class PlacedPush:
     @property
     def moment(self) -> Scalar:
         """About the ground's origin."""
-        return self.couple if self.place is None else self.couple + cross(self.place, self.force)[2]
+        return self.couple if self.place is None else self.couple + self.place.cross(self.force)[2]
 
 
 @dataclass(frozen=True)
@@ -125,7 +107,7 @@ def _loads(system: System) -> Iterator[ActingForce]:
     for force in system.loads.applied:
         for load in (load for load in force.loads if isinstance(load, UniformField)):
             for link, mass in zip(system.motion.links, axes.masses, strict=True):
-                weight = PointForce((link.name, mass.com), times(mass.m, load.acceleration))
+                weight = PointForce((link.name, mass.com), mass.m * load.acceleration)
                 if not is_zero(mass.m):
                     pushes = _pushes(system, axes.effects_of(weight))
                     yield ActingForce(f"the weight of {link.name}", pushes, force.name)
@@ -147,8 +129,8 @@ def _inertia(system: System) -> Iterator[ActingForce]:
         rows.setdefault(equation.body, {})[equation.direction] = -equation.inertia
     for i, (link, mass) in enumerate(zip(system.motion.links, Axes(system.motion).masses, strict=True)):
         own, center = rows.get(link.name, {}), link.pose.point(mass.com)
-        force: Vector = (own.get(0, 0), own.get(1, 0), 0)
-        for what, F, n in (("force", force, 0), ("couple", ZERO, own.get(5, 0))):
+        force: Vector = Vector((own.get(0, 0), own.get(1, 0), 0))
+        for what, F, n in (("force", force, 0), ("couple", Vector.ZERO, own.get(5, 0))):
             push = PlacedPush(i, F, n, center, None, i)
             if not (push.is_couple and is_zero(n)):
                 yield ActingForce(f"the inertia {what} of {link.name}", (push,), kind="inertia")
@@ -158,7 +140,7 @@ def _pushes(system: System, effects: Sequence[Effect], k: Scalar | None = None) 
     """The effects, of a reaction k times."""
     links, found = system.motion.links, []
     for e in effects:
-        F, n = (e.force, e.couple[2]) if k is None else (times(k, e.force), k * e.couple[2])
+        F, n = (e.force, e.couple[2]) if k is None else (k * e.force, k * e.couple[2])
         place = None if e.place is None else links[e.link].pose.point(e.place)
         found.append(PlacedPush(e.link, F, n, place, None if k is None else e.force, e.link))
     return tuple(found)
@@ -166,15 +148,15 @@ def _pushes(system: System, effects: Sequence[Effect], k: Scalar | None = None) 
 
 def resultant(pushes: tuple[PlacedPush, ...]) -> tuple[PlacedPush, ...]:
     """Parallel forces on one body as one, at p = sum p_k (F_k . F)/(F . F); as they are where that is none."""
-    total = vector_of(map(sum, zip(*(push.force for push in pushes), strict=True)))
-    square, places = dot(total, total), [push.place for push in pushes if push.place is not None]
+    total = Vector(map(sum, zip(*(push.force for push in pushes), strict=True)))
+    square, places = total @ total, [push.place for push in pushes if push.place is not None]
     if is_zero(square) or len({push.part for push in pushes}) > 1 or len(places) < len(pushes):
         return pushes
-    shares = [times(over(dot(push.force, total), square), p) for push, p in zip(pushes, places, strict=True)]
-    place = ZERO
+    shares = [over(push.force @ total, square) * p for push, p in zip(pushes, places, strict=True)]
+    place = Vector.ZERO
     for share in shares:
-        place = plus(place, share)
-    total, place = (vector_of(readable(x, Work.FORMULA) for x in v) for v in (total, place))
+        place = place + share
+    total, place = (Vector(readable(x, Work.FORMULA) for x in v) for v in (total, place))
     return (PlacedPush(pushes[0].body, total, 0, place, None, pushes[0].part),)
 
 
@@ -206,8 +188,9 @@ class CutBalance:
     def value(self, push: PlacedPush) -> Scalar:
         """The share of a force or couple in the sum."""
         if self.along is not None:
-            return push.force[0] * self.along[0] + push.force[1] * self.along[1]
-        return push.moment - (0 if self.about is None else cross(self.about, push.force)[2])
+            found: Scalar = push.force[0] * self.along[0] + push.force[1] * self.along[1]
+            return found
+        return push.moment - (0 if self.about is None else self.about.cross(push.force)[2])
 
 
 @dataclass(frozen=True)
@@ -352,11 +335,11 @@ class FreeBodies:
             if push.unit is not None and not push.is_couple
         ]
         links = [self.system.motion.links[i] for i in sorted(bodies)]
-        own += [(f"the axis of {x.name}", vector_of(row[0] for row in x.pose.R)) for x in links if not is_node(x.name)]
-        axes: list[tuple[str, Vector]] = [("along x", (1, 0, 0)), ("along y", (0, 1, 0))]
+        own += [(f"the axis of {x.name}", Vector(row[0] for row in x.pose.R)) for x in links if not is_node(x.name)]
+        axes: list[tuple[str, Vector]] = [("along x", Vector((1, 0, 0))), ("along y", Vector((0, 1, 0)))]
         known = [self._numbers(e) for _, e in axes]
         for reported, along in own:
-            for how, e in (("along", along), ("across", (-along[1], along[0], 0))):
+            for how, e in (("along", along), ("across", Vector((-along[1], along[0], 0)))):
                 numbers = self._numbers(e)
                 numbers = numbers / np.maximum(np.linalg.norm(numbers, axis=0), tolerances.CARRIED)
                 if all(np.abs(np.sum(numbers * x, axis=0)).min() < 1 - tolerances.CARRIED for x in known):
@@ -422,17 +405,14 @@ def cut_beam(system: System, requested: RequestedSection, acting: Sequence[Actin
     axis, motion = section.axis, system.motion
     i, link = motion.index[body], motion.link(body)
     leg = [leg for leg in axis.legs if leg.x == 0 or axis.sizes.sign(x - leg.x) >= 0][-1]
-    place, t, n = link.pose.point(leg.place(x)), apply(link.pose.R, leg.along), apply(link.pose.R, leg.left)
+    place, t, n = link.pose.point(leg.place(x)), link.pose.R @ leg.along, link.pose.R @ leg.left
     found, true = list[ActingForce](), dict[Node, Scalar]()
-    for kind, e in zip(KINDS, (t, times(-1, n), ZERO), strict=True):
+    for kind, e in zip(KINDS, (t, -n, Vector.ZERO), strict=True):
         name = str(replace(call, name=kind))
         symbol = system.scope.graph.symbol(name)
         true[symbol] = section.value(kind, x, side or ("before" if kind != "bending_moment" else ""))
         couple = symbol if kind == "bending_moment" else 0
-        pushes = (
-            PlacedPush(i, times(k, times(symbol, e)), k * couple, place, times(k, e), p)
-            for k, p in ((1, part), (-1, part + 1))
-        )
+        pushes = (PlacedPush(i, k * (symbol * e), k * couple, place, k * e, p) for k, p in ((1, part), (-1, part + 1)))
         found.append(ActingForce(f"the {kind.replace('_', ' ')} {name}", tuple(pushes), body, symbol, kind="reaction"))
     cutting = _Cutting(link, axis, x, side, part)
     for each in acting:
@@ -473,7 +453,7 @@ class _Cutting:
         for push in mine:
             if push.place is None:
                 raise DerivationError("a couple acts at no place", fix="give it a point")
-            where = apply(transposed(self.link.pose.R), minus(push.place, self.link.pose.p))
+            where = self.link.pose.R.T @ (push.place - self.link.pose.p)
             after = self.axis.sizes.sign(self._far(where) - self.x) >= (1 if self.side == "after" else 0)
             yield replace(push, part=self.part + after)
 
@@ -494,9 +474,9 @@ class _Cutting:
         if -wanted in sides:
             (x_1, a, q_1), (x_2, b, q_2) = ends
             f = over(self.x - x_1, x_2 - x_1)
-            between = (plus(times(1 - f, u), times(f, v)) for u, v in ((a, b), (q_1, q_2)))
+            between = ((1 - f) * u + f * v for u, v in ((a, b), (q_1, q_2)))
             ends[sides.index(-wanted)] = (self.x, next(between), next(between))
         length = sizes.simple(ends[1][0] - ends[0][0])
         for (_, r, q), (_, _, other) in (ends, ends[::-1]):
-            force = times(sizes.sign(length) * length * SIXTH, plus(times(2, q), other))
+            force = sizes.sign(length) * length * SIXTH * (2 * q + other)
             yield PlacedPush(body, force, 0, self.link.pose.point(r), None, part)

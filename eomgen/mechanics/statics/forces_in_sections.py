@@ -23,22 +23,7 @@ from eomgen.mechanics.free_bodies import Axes, Component, Effect, Reactions, joi
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.model import Couple, PointForce
 from eomgen.symbolic.exact import vanishes
-from eomgen.symbolic.expression import (
-    ZERO,
-    Fraction,
-    Scalar,
-    Vector,
-    apply,
-    dot,
-    is_zero,
-    minus,
-    over,
-    plus,
-    sqrt,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Fraction, Scalar, Vector, is_zero, over, sqrt
 from eomgen.symbolic.print import to_text
 
 KINDS = ("axial_force", "shear_force", "bending_moment")
@@ -64,7 +49,7 @@ class Spread:
     slope: Vector
 
     def at(self, x: Scalar) -> Vector:
-        return plus(self.at_start, times(x - self.start, self.slope))
+        return self.at_start + (x - self.start) * self.slope
 
 
 @dataclass(frozen=True)
@@ -212,14 +197,14 @@ def _spread(axis: MemberAxis, line: MemberLoad) -> Iterable[Spread]:
     length = axis.sizes.simple(b - a)
     if axis.sizes.sign(length) < 0:
         a, b, length, line = b, a, -length, (line[1], line[0], line[3], line[2])
-    r = minus(line[1], line[0])
-    if not vanishes(axis.sizes.simple(dot(r, r) - length * length)):
+    r = line[1] - line[0]
+    if not vanishes(axis.sizes.simple(r @ r - length * length)):
         raise DerivationError(
             f"a line load on '{axis.body}' cuts a corner of its axis",
             f"bodies.{axis.body}",
             "give a load for each straight part",
         )
-    slope = vector_of(axis.sizes.simple(over(y - x, length)) for x, y in zip(line[2], line[3], strict=True))
+    slope = Vector(axis.sizes.simple(over(y - x, length)) for x, y in zip(line[2], line[3], strict=True))
     yield Spread(a, b, line[2], slope)
 
 
@@ -227,21 +212,21 @@ def _pieces(axis: MemberAxis, actions: Sequence[Action], spreads: Sequence[Sprea
     """Pieces from station to station; all forces before a piece are summed to one force and one moment."""
     sizes = axis.sizes
     stations = _stations(axis, actions, spreads)
-    R: Vector = ZERO
+    R: Vector = Vector.ZERO
     T: Scalar = 0
     for start, end in pairwise(stations):
         leg = _leg(axis, start, end)
         for action in actions:
             if sizes.sign(action.x - start) == 0:
-                R, T = plus(R, action.force), T + action.couple
+                R, T = R + action.force, T + action.couple
         over_it = [s for s in spreads if sizes.sign(start - s.start) >= 0 and sizes.sign(s.end - end) >= 0]
-        q, slope = ZERO, ZERO
+        q, slope = Vector.ZERO, Vector.ZERO
         for s in over_it:
-            q, slope = plus(q, s.at(start)), plus(slope, s.slope)
+            q, slope = q + s.at(start), slope + s.slope
         piece = _piece(sizes, (start, end), leg, (R, T, q, slope))
         yield piece
         length = end - start
-        R = vector_of(
+        R = Vector(
             sizes.simple(r + length * a + HALF * length * length * b) for r, a, b in zip(R, q, slope, strict=True)
         )
         T = sizes.simple(-piece.value("bending_moment", end))
@@ -253,9 +238,9 @@ def _piece(
     """N, V, M from the resultant R and moment T before, and the load q + slope s."""
     R, T, q, slope = acting
     t, n = leg.along, leg.left
-    N = (-dot(R, t), -dot(q, t), -HALF * dot(slope, t))
-    V = (dot(R, n), dot(q, n), HALF * dot(slope, n))
-    M = (-T, dot(R, n), HALF * dot(q, n), SIXTH * dot(slope, n))
+    N = (-(R @ t), -(q @ t), -HALF * (slope @ t))
+    V = (R @ n, q @ n, HALF * (slope @ n))
+    M = (-T, R @ n, HALF * (q @ n), SIXTH * (slope @ n))
     return SectionPiece(*ends, leg, *(tuple(sizes.simple(c) for c in series) for series in (N, V, M)))
 
 
@@ -336,12 +321,12 @@ class MemberLoads:
         """Forces and couples at places; those at one place together."""
         found: list[_At] = []
         for place, force, couple in (self._at(effect) for effect in self._effects()):
-            same = next((k for k, (p, _, _) in enumerate(found) if self._is_zero(minus(p, place))), None)
+            same = next((k for k, (p, _, _) in enumerate(found) if self._is_zero(p - place)), None)
             if same is None:
                 found.append((place, force, couple))
             else:
                 _, f, c = found[same]
-                found[same] = (place, plus(f, force), c + couple)
+                found[same] = (place, f + force, c + couple)
         return [(place, self._simple(f), self.sizes.simple(c)) for place, f, c in found]
 
     @cached_property
@@ -364,7 +349,7 @@ class MemberLoads:
             for effect in (*component.effects, *component.friction_effects):
                 if effect.link == link and not (effect.place is None and effect.beyond is not None):
                     place = self._place_of(effect, component.owner)
-                    place = place if effect.beyond is None else plus(place, effect.beyond)
+                    place = place if effect.beyond is None else place + effect.beyond
                     yield replace(effect, place=place).times(self.reactions.value(j))
         for force in system.loads.applied:
             if not force.spread and not system.scope.model.forces[force.name].by_mass:
@@ -376,7 +361,7 @@ class MemberLoads:
     def _place_of(self, effect: Effect, owner: str) -> Vector:
         """Place of a reaction: of a couple that of the forces of the same constraint."""
         place = place_of(self.reactions.components, effect, owner)
-        return self._placed(replace(effect, place=place), f"the couple of '{owner}'").place or ZERO
+        return self._placed(replace(effect, place=place), f"the couple of '{owner}'").place or Vector.ZERO
 
     def _placed(self, effect: Effect, what: str) -> Effect:
         if effect.place is None:
@@ -403,17 +388,17 @@ class MemberLoads:
         field, motion = system.motion.field(self.body), system.motion
         if ends is None:
             inertia = field.acceleration(motion.position((self.body, mass.com)))
-            if self._is_zero((*minus(self._weight(), inertia), field.e[2])):
+            if self._is_zero((*(self._weight() - inertia), field.e[2])):
                 return []
             what = f"how the mass of '{self.body}' is spread along it is not known"
             raise DerivationError(
                 what, f"bodies.{self.body}", 'give it the shape "rod", or no mass and a distributed load'
             )
         first, last = ends
-        r = minus(last, first)
-        per_length = over(mass.m, sqrt(self.sizes.simple(dot(r, r))))
-        felt = [minus(self._weight(), field.acceleration(motion.position((self.body, p)))) for p in ends]
-        at_first, at_last = (self._turned(times(per_length, g)) for g in felt)
+        r = last - first
+        per_length = over(mass.m, sqrt(self.sizes.simple(r @ r)))
+        felt = [self._weight() - field.acceleration(motion.position((self.body, p))) for p in ends]
+        at_first, at_last = (self._turned(per_length * g) for g in felt)
         return [] if self._is_zero((*at_first, *at_last)) else [(first, last, at_first, at_last)]
 
     def _ends_of_rod(self) -> tuple[Vector, Vector] | None:
@@ -431,7 +416,7 @@ class MemberLoads:
             if system.scope.model.forces[force.name].by_mass:
                 for load in force.loads:
                     if isinstance(load, PointForce) and load.place[0] == self.body:
-                        total = plus(total, vector_of(over(x, m) for x in load.force))
+                        total = total + Vector(over(x, m) for x in load.force)
         return total
 
     # -- axes --------------------------------------------------------------------------------------
@@ -442,10 +427,10 @@ class MemberLoads:
 
     def _turned(self, vector: Vector) -> Vector:
         """Vector in body axes of one in ground axes."""
-        return self._simple(apply(transposed(self._system.motion.link(self.body).pose.R), vector))
+        return self._simple(self._system.motion.link(self.body).pose.R.T @ vector)
 
     def _simple(self, vector: Vector) -> Vector:
-        return vector_of(self.sizes.simple(x) for x in vector)
+        return Vector(self.sizes.simple(x) for x in vector)
 
     def _is_zero(self, scalars: Sequence[Scalar]) -> bool:
         return all(vanishes(self.sizes.simple(x)) for x in scalars)

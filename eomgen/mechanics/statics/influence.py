@@ -22,28 +22,12 @@ from eomgen.mechanics.statics.member_axis import MemberAxis, Sizes, axis_of, siz
 from eomgen.mechanics.statics.virtual_work import argument_name, name_of
 from eomgen.model import is_node, nearest
 from eomgen.symbolic.exact import vanishes
-from eomgen.symbolic.expression import (
-    ZERO,
-    Call,
-    Reference,
-    Scalar,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    minus,
-    parse,
-    plus,
-    substituted,
-    times,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Reference, Scalar, Vector, is_zero, parse, substituted
 from eomgen.symbolic.print import to_text
 
 Thing = TypeVar("Thing")
 LoadPoint = tuple[str, Vector]
-DOWN: Vector = (0, -1, 0)
+DOWN: Vector = Vector((0, -1, 0))
 
 
 @dataclass(frozen=True)
@@ -179,7 +163,7 @@ class _Travelling:
         return list(self._over_nodes(self._lowest(nodes))) if nodes else []
 
     def _lowest(self, nodes: Sequence[str]) -> list[str]:
-        positions = {node: self._position((node, ZERO)) for node in nodes}
+        positions = {node: self._position((node, Vector.ZERO)) for node in nodes}
         floor = positions[nodes[0]][1]
         for x in positions.values():
             floor = x[1] if self.sizes.sign(x[1] - floor) < 0 else floor
@@ -198,7 +182,7 @@ class _Travelling:
     def _over_nodes(self, nodes: Sequence[str]) -> Iterable[InfluenceSpan]:
         for a, b in pairwise(nodes):
             truss, _, node = b.partition(".")
-            yield self._span(f"{a}-{node if a.startswith(f'{truss}.') else b}", (a, ZERO), (b, ZERO))
+            yield self._span(f"{a}-{node if a.startswith(f'{truss}.') else b}", (a, Vector.ZERO), (b, Vector.ZERO))
 
     def _over_bodies(self, bodies: Sequence[str], *, skip: bool = False) -> Iterable[InfluenceSpan]:
         for body in bodies:
@@ -230,12 +214,12 @@ class _Travelling:
         """-e . v(P)"""
         v = self.plan.velocity(place)
         if before and self.cut is not None:
-            v = plus(v, self.cut.velocity(self._position(place)))
-        return self.sizes.shortest(-dot(self.load, v))
+            v = v + self.cut.velocity(self._position(place))
+        return self.sizes.shortest(-(self.load @ v))
 
     def _position(self, place: LoadPoint) -> Vector:
         found = substituted(self.structure.system.motion.position(place), self.structure.at)
-        return vector_of(self.sizes.simple(x) for x in found)
+        return Vector(self.sizes.simple(x) for x in found)
 
     def _is_zero(self, x: Scalar) -> bool:
         return vanishes(self.sizes.simple(x))
@@ -274,7 +258,7 @@ class Cut:
 
     def velocity(self, position: Vector) -> Vector:
         """w of a place of the part before the section."""
-        return plus(self.shift, cross((0, 0, self.spin), minus(position, self.place)))
+        return self.shift + Vector((0, 0, self.spin)).cross(position - self.place)
 
 
 def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
@@ -296,9 +280,9 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
             f"influence line: {call}: the section is beyond the ends of the body", fix="ask at a place of the body"
         )
     R = motion.link(name).pose.R
-    t, n = (vector_of(substituted(apply(R, v), structure.at)) for v in (leg.along, leg.left))
-    place = vector_of(substituted(motion.position((name, leg.place(x))), structure.at))
-    shift = {"axial_force": t, "shear_force": times(-1, n), "bending_moment": ZERO}[call.name]
+    t, n = (Vector(substituted(R @ v, structure.at)) for v in (leg.along, leg.left))
+    place = Vector(substituted(motion.position((name, leg.place(x))), structure.at))
+    shift = {"axial_force": t, "shear_force": -n, "bending_moment": Vector.ZERO}[call.name]
     at_end = sizes.sign(axis.ends[1] - x) == 0
     here = 1 if (argument_name(side[0]) if side else "before" if at_end else "after") == "before" else 0
     inside = not at_end and sizes.sign(x - axis.ends[0]) != 0
@@ -341,7 +325,7 @@ def _power(structure: Structure, cut: Cut, effect: Effect, owner: str) -> Scalar
     if not cut.before(s):
         return 0
     position = structure.system.motion.position((cut.axis.body, place))
-    power = dot(effect.force, cut.velocity(position)) + effect.couple[2] * cut.spin
+    power = effect.force @ cut.velocity(position) + effect.couple[2] * cut.spin
     return cut.axis.sizes.simple(substituted((power,), structure.at)[0])
 
 

@@ -16,24 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import Motion
 from eomgen.symbolic.exact import readable, readable_all, sign_of_terms, simplest, vanishes
-from eomgen.symbolic.expression import (
-    ZERO,
-    Graph,
-    Node,
-    Scalar,
-    Vector,
-    cross,
-    dot,
-    is_zero,
-    minus,
-    over,
-    plus,
-    sqrt,
-    substituted,
-    symbols_of,
-    times,
-    vector_of,
-)
+from eomgen.symbolic.expression import Graph, Node, Scalar, Vector, is_zero, over, sqrt, substituted, symbols_of
 from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, tolerances
 
 
@@ -108,11 +91,11 @@ class Leg:
     @property
     def left(self) -> Vector:
         """The normal to the left of it."""
-        return (-self.along[1], self.along[0], 0)
+        return Vector((-self.along[1], self.along[0], 0))
 
     def place(self, x: Scalar) -> Vector:
         """Position at the distance x along the axis, body axes."""
-        return plus(self.start, times(x - self.x, self.along))
+        return self.start + (x - self.x) * self.along
 
 
 @dataclass(frozen=True)
@@ -137,10 +120,10 @@ class MemberAxis:
     def distance(self, place: Vector) -> Scalar | None:
         """x of a place, None where it is not on the axis."""
         for k, leg in enumerate(self.legs):
-            r = minus(place, leg.start)
-            if not vanishes(self.sizes.simple(cross(leg.along, r)[2])):
+            r = place - leg.start
+            if not vanishes(self.sizes.simple(leg.along.cross(r)[2])):
                 continue
-            s = self.sizes.simple(dot(leg.along, r))
+            s = self.sizes.simple(leg.along @ r)
             before = self.sizes.sign(s) >= 0 or (k == 0 and self.is_straight)
             if before and (self.is_straight or self.sizes.sign(leg.length - s) >= 0):
                 return self.sizes.simple(leg.x + s)
@@ -180,33 +163,33 @@ def _own_points(part: Any) -> list[str]:
 
 def _at_origin(acting: Sequence[Vector]) -> list[Vector]:
     """The origin, where something acts there."""
-    return [ZERO] if any(all(is_zero(x) for x in place) for place in acting) else []
+    return [Vector.ZERO] if any(all(is_zero(x) for x in place) for place in acting) else []
 
 
 def _distinct(places: Sequence[Vector], sizes: Sizes) -> list[Vector]:
     found: list[Vector] = []
     for place in places:
-        if not any(all(vanishes(sizes.simple(x)) for x in minus(place, other)) for other in found):
+        if not any(all(vanishes(sizes.simple(x)) for x in place - other) for other in found):
             found.append(place)
     return found
 
 
 def _on_one_line(places: Sequence[Vector], sizes: Sizes) -> bool:
-    along = minus(places[1], places[0])
-    return all(vanishes(sizes.simple(cross(along, minus(p, places[0]))[2])) for p in places[2:])
+    along = places[1] - places[0]
+    return all(vanishes(sizes.simple(along.cross(p - places[0])[2])) for p in places[2:])
 
 
 def _extremes(places: Sequence[Vector], named: Sequence[Vector], sizes: Sizes) -> list[Vector]:
     """The first and the last place along the line, from left to right in the body's axes, else upwards."""
     first, last = (named[0], named[-1]) if len(named) > 1 else (places[0], places[1])
-    along = minus(last, first)
+    along = last - first
     if (sizes.sign(along[0]) or sizes.sign(along[1])) < 0:
-        along = times(-1, along)
+        along = -along
     lowest = highest = first
     for place in places:
-        if sizes.sign(dot(along, minus(place, lowest))) < 0:
+        if sizes.sign(along @ (place - lowest)) < 0:
             lowest = place
-        if sizes.sign(dot(along, minus(place, highest))) > 0:
+        if sizes.sign(along @ (place - highest)) > 0:
             highest = place
     return [lowest, highest]
 
@@ -225,20 +208,20 @@ def _corners(places: Sequence[Vector], sizes: Sizes) -> list[Vector]:
 
 
 def _lies_between(place: Vector, a: Vector, b: Vector, sizes: Sizes) -> bool:
-    along, r = minus(b, a), minus(place, a)
-    if not vanishes(sizes.simple(cross(along, r)[2])):
+    along, r = b - a, place - a
+    if not vanishes(sizes.simple(along.cross(r)[2])):
         return False
-    s = dot(along, r)
-    return sizes.sign(s) >= 0 and sizes.sign(dot(along, along) - s) >= 0
+    s = along @ r
+    return sizes.sign(s) >= 0 and sizes.sign(along @ along - s) >= 0
 
 
 def _legs(corners: Sequence[Vector], sizes: Sizes) -> tuple[Leg, ...]:
     legs: list[Leg] = []
     x: Scalar = 0
     for a, b in pairwise(corners):
-        r = readable_all(minus(b, a), Work.VALUE, sizes.positive)
-        length = sizes.simple(sqrt(sizes.simple(dot(vector_of(r), vector_of(r)))))
-        along = vector_of(sizes.simple(over(component, length)) for component in r)
+        r = readable_all(b - a, Work.VALUE, sizes.positive)
+        length = sizes.simple(sqrt(sizes.simple(Vector(r) @ Vector(r))))
+        along = Vector(sizes.simple(over(component, length)) for component in r)
         legs.append(Leg(a, along, length, x))
         x = sizes.simple(x + length)
     return tuple(legs)

@@ -41,7 +41,6 @@ from eomgen.symbolic.expression import (
     parse,
     sqrt,
     substituted,
-    times,
 )
 from eomgen.symbolic.numeric import Work
 from eomgen.symbolic.print import text_size
@@ -123,7 +122,7 @@ def loads_at_rest(structure: Structure) -> tuple[Acting, ...]:
         for load in force.loads:
             if isinstance(load, UniformField):
                 masses = SystemScene(system.motion).masses(None)
-                found += [Acting(force.name, PointForce(place, times(m, load.acceleration))) for place, m in masses]
+                found += [Acting(force.name, PointForce(place, m * load.acceleration)) for place, m in masses]
     for link in system.motion.links:
         effects = tuple(efforts_of(system, link.name))
         if effects:

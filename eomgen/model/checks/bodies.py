@@ -14,7 +14,7 @@ from eomgen.model.composite import Composite, sources
 from eomgen.model.diagnostics import Diagnostic, shown, whereabouts
 from eomgen.model.fields import Leaf, VectorRule
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, cross, vector_of
+from eomgen.symbolic.expression import Expression, Vector
 from eomgen.symbolic.numeric import tolerances
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
@@ -343,7 +343,7 @@ def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Diagno
         if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
             continue
         a, b = (list[Any](component.value_at(values) for component in axis) for axis in axes)
-        if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
+        if None not in (*a, *b) and any(a) and any(b) and not any(Vector(a).cross(Vector(b))):
             what = f"the two axes of the universal joint of body '{name}' are parallel"
             yield Diagnostic(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
 

@@ -8,7 +8,7 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import Couple, LoadContext, Push
 from eomgen.model.kinds import CoordinateName, MotionOfCoordinate, Pure, TwoBodies
-from eomgen.symbolic.expression import AnyScalar, as_expression, times
+from eomgen.symbolic.expression import Scalar, as_expression
 
 # -------- gear ------------------------------------------------------------------------------------------------
 # Gear: two bodies turn in a fixed ratio.
@@ -51,11 +51,11 @@ class Gear(Constraint):
         return (ConstraintRow((*on_first, *on_second), turned - scene.start(turned), component="couple"),)
 
 
-def _at_joint(scene: LoadContext, body: str, couple: AnyScalar) -> tuple[AnyScalar, tuple[Push, ...]]:
+def _at_joint(scene: LoadContext, body: str, couple: Scalar) -> tuple[Scalar, tuple[Push, ...]]:
     """The angle of a body's joint, and the couple along its axis on the body, the opposite on its parent."""
     angle, axis, parent = scene.turn_of_joint(body)
-    on_parent = () if parent is None else (Couple(parent, times(-couple, axis), axes=body),)
-    return angle, (Couple(body, times(couple, axis), axes=body), *on_parent)
+    on_parent = () if parent is None else (Couple(parent, -couple * axis, axes=body),)
+    return angle, (Couple(body, couple * axis, axes=body), *on_parent)
 
 
 # -------- motion ----------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from eomgen.model.constraints.plane import Touch, angle_of, opposite
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, Push
 from eomgen.model.kinds import Gap, VelocityLaw
-from eomgen.symbolic.expression import IDENTITY, ZERO, AnyScalar, Call, Reference, Vector, apply, dot, minus, times
+from eomgen.symbolic.expression import Call, Matrix, Reference, Scalar, Vector
 
 # -------- measured --------------------------------------------------------------------------------------------
 # Functions of points and bodies in an equation: the value of each, and the forces along it.
@@ -42,21 +42,21 @@ class Measured:
         return self.call.name.startswith(("v", "omega"))
 
     @property
-    def value(self) -> AnyScalar:
+    def value(self) -> Scalar:
         """Value of a place or an angle."""
         if self.call.name == "angle":
             return angle_of(self.scene, self._body) - angle_of(self.scene, self._frame)
-        return dot(self._axis, self._arm)
+        return self._axis @ self._arm
 
-    def pushed(self, k: AnyScalar) -> tuple[Push, ...]:
+    def pushed(self, k: Scalar) -> tuple[Push, ...]:
         """Forces and couples whose power is k times the rate of a place or angle, or k times the velocity."""
-        push = times(k, self._axis)
+        push = k * self._axis
         if self._turns:
-            pairs = ((self._body, push), (self._frame, times(-1, push)))
+            pairs = ((self._body, push), (self._frame, -push))
             return tuple(Couple(body, couple) for body, couple in pairs if body is not None)
         if self._frame is None:
             return Touch(self._place).pushed(push)
-        return opposite(Touch(self._place), Touch((self._frame, ZERO), self._arm), push)
+        return opposite(Touch(self._place), Touch((self._frame, Vector.ZERO), self._arm), push)
 
     @property
     def _turns(self) -> bool:
@@ -72,14 +72,14 @@ class Measured:
                 self.scene.where,
                 "write omega_x, omega_y or omega_z, or the coordinate of its joint",
             )
-        e = IDENTITY[k]
-        return e if self._frame is None else apply(self.scene.orientation(self._frame), e)
+        e = Matrix.IDENTITY[k]
+        return e if self._frame is None else self.scene.orientation(self._frame) @ e
 
     @property
     def _arm(self) -> Vector:
         """Vector to the point from the origin of the body from which it is seen."""
         position = self.scene.position(self._place)
-        return position if self._frame is None else minus(position, self.scene.position((self._frame, ZERO)))
+        return position if self._frame is None else position - self.scene.position((self._frame, Vector.ZERO))
 
     @property
     def _place(self) -> BodyPoint:
@@ -145,9 +145,9 @@ class NodeBalance(Equation):
     """Equilibrium of a node without mass: nobody declares it, and its multiplier is 0."""
 
 
-def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, AnyScalar]) -> tuple[Push, ...]:
+def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, Scalar]) -> tuple[Push, ...]:
     return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))
 
 
-def _row(gap: AnyScalar | None, rate: AnyScalar | None, pushes: tuple[Push, ...]) -> ConstraintRow:
+def _row(gap: Scalar | None, rate: Scalar | None, pushes: tuple[Push, ...]) -> ConstraintRow:
     return ConstraintRow(pushes, gap, rate, component="wrench" if pushes else "")

@@ -16,7 +16,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import BodyName, Direction, Flag, FrictionLaw, GroundPlace, PointName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import IDENTITY, Scalar, Vector, apply, cross, dot, minus, over, times, vector_of
+from eomgen.symbolic.expression import Matrix, Scalar, Vector, over
 
 # -------- clamp -----------------------------------------------------------------------------------------------
 # Clamp: a point of a body is built in.
@@ -57,7 +57,9 @@ class Clamp(Constraint):
         if scene.plane:
             return ()
         first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
-        return tuple(alike(scene, (first[0], other[0]), e) for other in others_of(scene, named) for e in IDENTITY)
+        return tuple(
+            alike(scene, (first[0], other[0]), e) for other in others_of(scene, named) for e in Matrix.IDENTITY
+        )
 
 
 # -------- guide -----------------------------------------------------------------------------------------------
@@ -91,7 +93,7 @@ class Guide(Constraint):
         place = scene.place(self.point)
         rows = []
         for name, n in normals_of(scene, direction_of(scene, scene.vector(self.along))):
-            height = dot(n, scene.position(place))
+            height = n @ scene.position(place)
             rows.append(ConstraintRow((PointForce(place, n),), height - scene.start(height), component=name))
         turns = [same_turn(scene, place[0], None)] if scene.plane else not_turning(scene, (place[0], None))
         return (*rows, *turns)
@@ -99,7 +101,7 @@ class Guide(Constraint):
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """The products e_i . e_i of the ground's axes and those that the body carries, in space; () in the plane."""
         body = scene.place(self.point)[0]
-        return () if scene.plane else tuple(alike(scene, (body, None), e) for e in IDENTITY)
+        return () if scene.plane else tuple(alike(scene, (body, None), e) for e in Matrix.IDENTITY)
 
 
 # -------- slider ----------------------------------------------------------------------------------------------
@@ -154,17 +156,17 @@ class Slider(Constraint):
         (_, A), (_, B) = line = scene.line(self.on)
         if scene.moves((*A, *B)):
             raise ModelError(f"the line of body '{self.on}' moves in the body", scene.where, "choose points that stay")
-        d, R = direction_of(scene, minus(B, A)), scene.orientation(self.on)
+        d, R = direction_of(scene, B - A), scene.orientation(self.on)
         place = scene.place(self.point)
-        arm = minus(scene.position(place), scene.position(line[0]))
+        arm = scene.position(place) - scene.position(line[0])
         touch, sense = (Touch(place), Touch(line[0], arm)), 1
         if place[0] is None:
             touch, sense = (touch[1], touch[0]), -1
         rows = [
-            ConstraintRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
+            ConstraintRow(opposite(*touch, R @ n), sense * (R @ n @ arm), component=name)
             for name, n in normals_of(scene, d)
         ]
-        rows[-1] = replace(rows[-1], tangent=opposite(*touch, apply(R, d)), round=not scene.plane)
+        rows[-1] = replace(rows[-1], tangent=opposite(*touch, R @ d), round=not scene.plane)
         return tuple(rows)
 
 
@@ -210,10 +212,10 @@ class Support(Constraint):
         n = direction_of(scene, scene.vector(self.normal))
         place = scene.place(self.point)
         position = scene.position(place)
-        origin = vector_of(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
-        along: tuple[Vector, ...] = ((n[1], -n[0], 0),) if scene.plane else laid_in(scene, n)
+        origin = Vector(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
+        along: tuple[Vector, ...] = (Vector((n[1], -n[0], 0)),) if scene.plane else laid_in(scene, n)
         tangents = [(PointForce(place, t),) for t in along]
-        gap = dot(n, minus(position, origin))
+        gap = n @ (position - origin)
         row = ConstraintRow((PointForce(place, n),), gap, component="n", tangent=tangents[0])
         return (row if scene.plane else replace(row, cross_tangent=tangents[1]),)
 
@@ -259,7 +261,7 @@ class Skate(Constraint):
         along = direction_of(scene, scene.vector(self.along))
         if scene.plane:
             return (ConstraintRow((PointForce(place, left(along), axes=place[0]),), None, component="n"),)
-        e = (0, 0, 1) if self.normal is None else direction_of(scene, scene.vector(self.normal))
-        d = along if place[0] is None else apply(scene.orientation(place[0]), along)
-        n = times(over(1, complement(scene, dot(e, d))), cross(e, d))
+        e = Vector((0, 0, 1)) if self.normal is None else direction_of(scene, scene.vector(self.normal))
+        d = along if place[0] is None else scene.orientation(place[0]) @ along
+        n = over(1, complement(scene, e @ d)) * e.cross(d)
         return (ConstraintRow((PointForce(place, n),), None, component="n"),)

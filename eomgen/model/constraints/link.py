@@ -14,21 +14,7 @@ from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Flag, Length, Text, TwoPoints
-from eomgen.symbolic.expression import (
-    AnyScalar,
-    Call,
-    Fraction,
-    Node,
-    Reference,
-    Vector,
-    dot,
-    minus,
-    order,
-    over,
-    sqrt,
-    times,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Fraction, Node, Reference, Scalar, Vector, order, over, sqrt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -66,16 +52,16 @@ class Link(Constraint):
         It is L - |r| to first order, without a root.
         """
         first, second = (scene.place(point) for point in self.points)
-        r = minus(scene.position(second), scene.position(first))
+        r = scene.position(second) - scene.position(first)
         L = self._length(scene, r)
-        d = vector_of(over(x, L) for x in r)
-        pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
-        return (ConstraintRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
+        d = Vector(over(x, L) for x in r)
+        pulls = (PointForce(first, d), PointForce(second, -d))
+        return (ConstraintRow(pulls, Fraction(1, 2) * (L - r @ d), component="tension"),)
 
-    def _length(self, scene: LoadContext, r: Vector) -> AnyScalar:
+    def _length(self, scene: LoadContext, r: Vector) -> Scalar:
         if self.length is not None:
             return scene.value(self.length)
-        square = scene.start(dot(r, r))
+        square = scene.start(r @ r)
         if scene.value_at_start(square) == 0 or scene.vanishes(square):
             ends = " and ".join(f"'{point}'" for point in self.points)
             raise ModelError(
@@ -127,7 +113,7 @@ class Members(Constraint):
     def _row(self, scene: LoadContext, member: str) -> ConstraintRow:
         ends = self.ends(member)
         first, second = (scene.position(scene.place(point)) for point in ends)
-        r = minus(second, first)
+        r = second - first
         if all(scene.vanishes(x) or scene.value_at_start(x) == 0 for x in r):
             raise ModelError(
                 f"member '{member}' of truss '{self.truss}' has no length",
@@ -138,7 +124,10 @@ class Members(Constraint):
         if scene.moves(r):
             return replace(row, part=member)
         x, y, z = _direction(scene, r)
-        pulls = (PointForce(scene.place(ends[0]), (x, y, z)), PointForce(scene.place(ends[1]), times(-1, (x, y, z))))
+        pulls = (
+            PointForce(scene.place(ends[0]), Vector((x, y, z))),
+            PointForce(scene.place(ends[1]), -Vector((x, y, z))),
+        )
         return replace(row, part=member, pushes=pulls)
 
 
@@ -147,14 +136,14 @@ def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
     return {name: constraint for name, constraint in constraints.items() if isinstance(constraint, Members)}
 
 
-def _direction(scene: LoadContext, r: Vector) -> tuple[AnyScalar, ...]:
+def _direction(scene: LoadContext, r: Vector) -> tuple[Scalar, ...]:
     """r over its length: in plain numbers and roots of them where all components are multiples of one parameter."""
-    (square,) = scene.readable((dot(r, r),))
+    (square,) = scene.readable((r @ r,))
     (length,) = scene.readable((sqrt(square),))
     direction = tuple(over(x, length) for x in r)
     return direction if _has_root_of_sum(length) else scene.readable(direction)
 
 
-def _has_root_of_sum(x: AnyScalar) -> bool:
+def _has_root_of_sum(x: Scalar) -> bool:
     """True if a length contains a root of something other than a number."""
     return type(x) is Node and any(y.op == "sqrt" and type(y.args[0]) is Node for y in order((x,)))

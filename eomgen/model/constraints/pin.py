@@ -13,7 +13,7 @@ from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import AxesName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import IDENTITY, Scalar, Vector, apply, cross, dot, matrix_of, minus, times, transposed
+from eomgen.symbolic.expression import Matrix, Scalar, Vector
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,7 +91,7 @@ class Pin(Constraint):
         n = scene.vector(self.axis)
         if self.axes == "ground":
             return n
-        return apply(matrix_of((scene.start(x) for x in row) for row in scene.orientation(self.axes)), n)
+        return Matrix.of((scene.start(x) for x in row) for row in scene.orientation(self.axes)) @ n
 
 
 def others_of(scene: LoadContext, named: list[BodyPoint]) -> list[BodyPoint]:
@@ -100,7 +100,7 @@ def others_of(scene: LoadContext, named: list[BodyPoint]) -> list[BodyPoint]:
     if others:
         return others
     x, y, z = scene.position(first)
-    return [(None, (scene.start(x), scene.start(y), scene.start(z)))]
+    return [(None, Vector((scene.start(x), scene.start(y), scene.start(z))))]
 
 
 def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> list[ConstraintRow]:
@@ -111,11 +111,11 @@ def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> lis
     """
     carrier = scene.carrier_of(first[0], other[0])
     view = scene.seen_from(carrier)
-    gap, found = minus(view.position(first), view.position(other)), []
+    gap, found = view.position(first) - view.position(other), []
     for name, e in zip(AXIS_NAMES, scene_axes(scene), strict=False):
-        pushes = PointForce(first, e), PointForce(other, times(-1, e))
+        pushes = PointForce(first, e), PointForce(other, -e)
         carried = () if carrier is None else pushes
-        found.append(ConstraintRow(pushes, dot(e, gap), component=name, carrier=carrier, carried=carried))
+        found.append(ConstraintRow(pushes, e @ gap, component=name, carrier=carrier, carried=carried))
     return found
 
 
@@ -127,30 +127,30 @@ def across_from(scene: LoadContext, bodies: tuple[str | None, str | None], e: Ve
     carrier = scene.carrier_of(*bodies)
     view = scene.seen_from(carrier)
     n, e = carried_direction(view, bodies[1], n), carried_direction(view, bodies[0], e)
-    couple = cross(e, n)
-    pairs = [(b, tau) for b, tau in ((bodies[0], couple), (bodies[1], times(-1, couple))) if b is not None]
+    couple = e.cross(n)
+    pairs = [(b, tau) for b, tau in ((bodies[0], couple), (bodies[1], -couple)) if b is not None]
     pushes = tuple(Couple(b, tau, axes=carrier) for b, tau in pairs)
     carried = () if carrier is None else tuple(Couple(b, tau) for b, tau in pairs)
-    return ConstraintRow(pushes, dot(n, e), component="couple", carrier=carrier, carried=carried)
+    return ConstraintRow(pushes, n @ e, component="couple", carrier=carrier, carried=carried)
 
 
 def as_carried(scene: LoadContext, carrier: str | None, direction: Vector) -> Vector:
     """A direction given in ground axes, in those that a body has at the start."""
     if carrier is None:
         return direction
-    at_start = matrix_of((scene.start(x) for x in row) for row in scene.orientation(carrier))
-    return apply(transposed(at_start), direction)
+    at_start = Matrix.of((scene.start(x) for x in row) for row in scene.orientation(carrier))
+    return at_start.T @ direction
 
 
 def not_turning(scene: LoadContext, bodies: tuple[str | None, str | None]) -> list[ConstraintRow]:
     """e_i . e_j = 0 in space of axes in either body, that agree at the start: the couples about x, y and z."""
-    x, y, z = IDENTITY  # y x z = x
+    x, y, z = Matrix.IDENTITY  # y x z = x
     return [across_from(scene, bodies, e, n) for e, n in ((y, z), (z, x), (x, y))]
 
 
 def alike(scene: LoadContext, bodies: tuple[str | None, str | None], n: Vector) -> Scalar:
     """n . n of a direction that agreed at the start, carried by either body."""
-    return dot(carried_direction(scene, bodies[0], n), carried_direction(scene, bodies[1], n))
+    return carried_direction(scene, bodies[0], n) @ carried_direction(scene, bodies[1], n)
 
 
 def carried_direction(scene: LoadContext, body: str | None, direction: Vector) -> Vector:
@@ -158,5 +158,5 @@ def carried_direction(scene: LoadContext, body: str | None, direction: Vector) -
     if body is None:
         return direction
     R = scene.orientation(body)
-    at_start = matrix_of((scene.start(x) for x in row) for row in R)
-    return apply(R, apply(transposed(at_start), direction))
+    at_start = Matrix.of((scene.start(x) for x in row) for row in R)
+    return R @ (at_start.T @ direction)

@@ -5,31 +5,31 @@ from __future__ import annotations
 from eomgen.frozen import dataclass
 from eomgen.model.constraints.row import ConstraintRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
-from eomgen.symbolic.expression import ZERO, AnyScalar, Vector, cross, times
+from eomgen.symbolic.expression import Scalar, Vector
 
 
 def left(d: Vector) -> Vector:
     """d turned by a quarter, counter-clockwise."""
-    return (-d[1], d[0], 0)
+    return Vector((-d[1], d[0], 0))
 
 
 def right(d: Vector) -> Vector:
     """d turned by a quarter, clockwise."""
-    return (d[1], -d[0], 0)
+    return Vector((d[1], -d[0], 0))
 
 
-def angle_of(scene: LoadContext, body: str | None) -> AnyScalar:
+def angle_of(scene: LoadContext, body: str | None) -> Scalar:
     """The angle of a body against the ground's axes; the ground's is 0 [rad]."""
     return 0 if body is None else scene.angle(body)
 
 
-def couples(first: str | None, second: str | None, ratio: AnyScalar = 1) -> tuple[Push, ...]:
+def couples(first: str | None, second: str | None, ratio: Scalar = 1) -> tuple[Push, ...]:
     """A unit couple on the first body and - ratio on the second (none on the ground)."""
     pairs = ((first, 1), (second, -ratio))
-    return tuple(Couple(body, (0, 0, tau)) for body, tau in pairs if body is not None)
+    return tuple(Couple(body, Vector((0, 0, tau))) for body, tau in pairs if body is not None)
 
 
-def same_turn(scene: LoadContext, first: str | None, second: str | None, ratio: AnyScalar = 1) -> ConstraintRow:
+def same_turn(scene: LoadContext, first: str | None, second: str | None, ratio: Scalar = 1) -> ConstraintRow:
     """theta_1 - ratio theta_2 stays as at the start: a couple on the first body, - ratio times it on the second."""
     turned = angle_of(scene, first) - ratio * angle_of(scene, second)
     return ConstraintRow(couples(first, second, ratio), turned - scene.start(turned), component="couple")
@@ -43,12 +43,12 @@ class Touch:
     """
 
     place: BodyPoint
-    arm: Vector = ZERO
+    arm: Vector = Vector.ZERO
 
     def pushed(self, force: Vector) -> tuple[Push, ...]:
         """The force, as the same force at the place and its moment."""
         body, _ = self.place
-        moment = cross(self.arm, force)
+        moment = self.arm.cross(force)
         if body is None or all(type(x) is int and x == 0 for x in self.arm):
             return (PointForce(self.place, force),)
         at_place = PointForce(self.place, force, beyond=self.arm)
@@ -59,4 +59,4 @@ class Touch:
 
 def opposite(touch: Touch, other: Touch, force: Vector) -> tuple[Push, ...]:
     """A force on the first, its opposite on the other."""
-    return (*touch.pushed(force), *other.pushed(times(-1, force)))
+    return (*touch.pushed(force), *other.pushed(-force))

@@ -30,26 +30,7 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.exact import readable
-from eomgen.symbolic.expression import (
-    ZERO,
-    AnyScalar,
-    Expression,
-    Fraction,
-    Node,
-    Vector,
-    apply,
-    cos,
-    cross,
-    dot,
-    minus,
-    over,
-    plus,
-    sin,
-    sqrt,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, Vector, cos, over, sin, sqrt
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size
 
@@ -80,18 +61,18 @@ class Nearest:
     """
 
     reach: Vector
-    height: AnyScalar
+    height: Scalar
 
 
 @dataclass(frozen=True)
 class RollingBall:
     """A ball of radius R."""
 
-    R: AnyScalar
+    R: Scalar
 
     def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """R below the centre."""
-        return Nearest(times(-self.R, n), self.R)
+        return Nearest(-self.R * n, self.R)
 
 
 @dataclass(frozen=True)
@@ -100,8 +81,8 @@ class Wheel:
 
     body: str
     axis: Vector
-    R: AnyScalar
-    tube: AnyScalar
+    R: Scalar
+    tube: Scalar
 
     def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """The lowest place of the rim.
@@ -116,8 +97,8 @@ class Wheel:
                 scene.where,
                 "start it upright or leaning; an axis along the normal has no lowest point",
             )
-        down = times(over(-self.R, rho), cross(a, cross(n, a)))
-        return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
+        down = over(-self.R, rho) * a.cross(n.cross(a))
+        return Nearest(down - self.tube * n, self.R * rho + self.tube)
 
     def nearest_to_ball(self, scene: LoadContext, out: Vector, side: int) -> Vector:
         """Vector from the wheel's centre to the point of its centre line nearest to a ball's centre; inside: farthest.
@@ -134,26 +115,26 @@ class Wheel:
                 scene.where,
                 "start it leaning",
             )
-        return times(over(-side * self.R, size), h)
+        return over(-side * self.R, size) * h
 
-    def distance(self, scene: LoadContext, out: Vector) -> AnyScalar:
+    def distance(self, scene: LoadContext, out: Vector) -> Scalar:
         """|h|, of a ball's centre from the wheel's axis [m]; 0 where the whole rim touches."""
         h = self._across(scene, out)
-        return sqrt(_short(dot(h, h)))
+        return sqrt(_short(h @ h))
 
     def _across(self, scene: LoadContext, out: Vector) -> Vector:
         a = self._axle(scene)
-        return minus(out, times(dot(out, a), a))
+        return out - out @ a * a
 
-    def tilt(self, scene: LoadContext, n: Vector) -> AnyScalar:
+    def tilt(self, scene: LoadContext, n: Vector) -> Scalar:
         """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
         a = self._axle(scene)
-        k = cross(n, a)
-        wave = _other_wave(scene, _short(dot(n, a)))
-        return sqrt(dot(k, k)) if wave is None else wave
+        k = n.cross(a)
+        wave = _other_wave(scene, _short(n @ a))
+        return sqrt(k @ k) if wave is None else wave
 
     def _axle(self, scene: LoadContext) -> Vector:
-        return apply(scene.orientation(self.body), unit(self.axis))
+        return scene.orientation(self.body) @ unit(self.axis)
 
 
 @dataclass(frozen=True)
@@ -166,10 +147,10 @@ class Egg:
     def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """The place of the surface at which n is its inner normal."""
         R = scene.orientation(self.body)
-        n_B = apply(transposed(R), n)
+        n_B = R.T @ n
         x, y, z = (s * s * k for s, k in zip(self.semiaxes, n_B, strict=True))
-        h = sqrt(dot(n_B, (x, y, z)))
-        return Nearest(apply(R, times(over(-1, h), (x, y, z))), h)
+        h = sqrt(n_B @ Vector((x, y, z)))
+        return Nearest(R @ (over(-1, h) * Vector((x, y, z))), h)
 
 
 Round = RollingBall | Wheel | Egg
@@ -182,15 +163,15 @@ def laid_in(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
     """
     x, y, z = n
     if _plain(y) and _plain(z):
-        t: Vector = (0, 1, 0)
+        t: Vector = Vector((0, 1, 0))
     elif _plain(y):
-        t = times(_sense(scene, z), (z, 0, -x))
+        t = _sense(scene, z) * Vector((z, 0, -x))
     elif _plain(z):
-        t = times(_sense(scene, y), (y, -x, 0))
+        t = _sense(scene, y) * Vector((y, -x, 0))
     else:
         root = complement(scene, x)
-        t = (root, -over(x * y, root), -over(x * z, root)) if not _plain(x) else (1, 0, 0)
-    return t, cross(n, t)
+        t = Vector((root, -over(x * y, root), -over(x * z, root)) if not _plain(x) else (1, 0, 0))
+    return t, n.cross(t)
 
 
 def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
@@ -200,12 +181,12 @@ def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
     and only there, they are not determined.
     """
     k, sense = _nearest_axis(scene, n)
-    axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
-    e = times(sense, axes[k])
+    axes: tuple[Vector, ...] = (Vector((1, 0, 0)), Vector((0, 1, 0)), Vector((0, 0, 1)))
+    e = sense * axes[k]
     first = axes[(k + 1) % 3]
-    middle = plus(n, e)
-    share = over(1, 1 + dot(n, e))
-    t, s = (minus(d, times(dot(n, d) * share, middle)) for d in (first, cross(e, first)))
+    middle = n + e
+    share = over(1, 1 + n @ e)
+    t, s = (d - n @ d * share * middle for d in (first, e.cross(first)))
     return t, s
 
 
@@ -216,39 +197,39 @@ def _nearest_axis(scene: LoadContext, n: Vector) -> tuple[int, int]:
     return k, -1 if sizes[k] < 0 else 1
 
 
-def complement(scene: LoadContext, x: AnyScalar) -> AnyScalar:
+def complement(scene: LoadContext, x: Scalar) -> Scalar:
     """sqrt(1 - x^2)."""
     x = _short(x)
     wave = _other_wave(scene, x)
     return sqrt(1 - x * x) if wave is None else wave
 
 
-def _short(x: AnyScalar) -> AnyScalar:
+def _short(x: Scalar) -> Scalar:
     """x multiplied out, where it is no long sum: a cosine that is written by those of two angles."""
     return readable(x, Work.PART) if type(x) is Node and text_size(x) <= LONGEST else x
 
 
-def _other_wave(scene: LoadContext, x: AnyScalar) -> AnyScalar | None:
+def _other_wave(scene: LoadContext, x: Scalar) -> Scalar | None:
     """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
     if type(x) is Node and x.op == "neg":
         return _other_wave(scene, x.args[0])
     if type(x) is not Node or x.op not in ("sin", "cos"):
         return None
-    found: AnyScalar = cos(x.args[0]) if x.op == "sin" else sin(x.args[0])
+    found: Scalar = cos(x.args[0]) if x.op == "sin" else sin(x.args[0])
     return -found if _sense(scene, found) < 0 else found
 
 
-def _sense(scene: LoadContext, x: AnyScalar) -> int:
+def _sense(scene: LoadContext, x: Scalar) -> int:
     return -1 if _value(scene, x) < 0 else 1
 
 
-def _value(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
+def _value(scene: LoadContext, x: Scalar, unknown: float = 1.0) -> float:
     """The value of x at the start with the model's values."""
     found = scene.value_at_start(x)
     return unknown if found is None else found
 
 
-def _plain(x: AnyScalar) -> bool:
+def _plain(x: Scalar) -> bool:
     return type(x) is int and x == 0
 
 
@@ -302,7 +283,7 @@ class TrackContact:
     """
 
     n: Vector
-    gap: AnyScalar
+    gap: Scalar
     reach: Vector
     anchor: BodyPoint
     arm: Vector
@@ -319,7 +300,7 @@ class Curved:
     """
 
     anchor: BodyPoint
-    r: AnyScalar
+    r: Scalar
     side: int = 1
     axis: Vector | None = None
 
@@ -330,8 +311,8 @@ def on_level(scene: LoadContext, on: str | None, track: Track, center: Vector, b
     tangents = (right(own),) if scene.plane else laid_in(scene, own)
     n, *along = (_carried(scene, on, e) for e in (own, *tangents))
     anchor = anchor_of(scene, on, track.at)
-    out, near = minus(center, scene.position(anchor)), body.nearest(scene, n)
-    return TrackContact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
+    out, near = center - scene.position(anchor), body.nearest(scene, n)
+    return TrackContact(n, n @ out - near.height, near.reach, anchor, out + near.reach, tuple(along))
 
 
 def normal_of(scene: LoadContext, on: str | None, track: Track) -> Vector:
@@ -341,7 +322,7 @@ def normal_of(scene: LoadContext, on: str | None, track: Track) -> Vector:
 
 def _carried(scene: LoadContext, on: str | None, e: Vector) -> Vector:
     """A direction of the ground, or of the body `on`, in ground axes."""
-    return e if on is None else apply(scene.orientation(on), e)
+    return e if on is None else scene.orientation(on) @ e
 
 
 def on_curved(scene: LoadContext, track: Curved, center: Vector, ball: RollingBall) -> TrackContact:
@@ -351,29 +332,29 @@ def on_curved(scene: LoadContext, track: Curved, center: Vector, ball: RollingBa
     gap is the distance.
     """
     D = _apart(scene, track, ball.R)
-    out = minus(center, scene.position(track.anchor))
-    along = ZERO if track.axis is None else times(dot(track.axis, out), track.axis)
-    d = out if track.axis is None else minus(out, along)
-    n = vector_of(track.side * over(x, D) for x in d)
-    arm = plus(along, times(track.side * track.r, n))
-    return TrackContact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
+    out = center - scene.position(track.anchor)
+    along = Vector.ZERO if track.axis is None else track.axis @ out * track.axis
+    d = out if track.axis is None else out - along
+    n = Vector(track.side * over(x, D) for x in d)
+    arm = along + track.side * track.r * n
+    return TrackContact(n, _gap(track, d, D), -ball.R * n, track.anchor, arm, _around(scene, track, n))
 
 
 def wheel_on_ball(scene: LoadContext, track: Curved, center: Vector, wheel: Wheel) -> TrackContact:
     """A wheel on a ball, or in it: a ball of the tyre's radius at the place of its centre line that comes nearest."""
-    D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
+    D, out = _apart(scene, track, wheel.tube), center - scene.position(track.anchor)
     rim = wheel.nearest_to_ball(scene, out, track.side)
-    d = plus(out, rim)
-    n = vector_of(track.side * over(x, D) for x in d)
-    reach = minus(rim, times(wheel.tube, n))
-    return TrackContact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
+    d = out + rim
+    n = Vector(track.side * over(x, D) for x in d)
+    reach = rim - wheel.tube * n
+    return TrackContact(n, _gap(track, d, D), reach, track.anchor, out + reach, _around(scene, track, n))
 
 
-def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:
-    return Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
+def _gap(track: Curved, d: Vector, D: Scalar) -> Scalar:
+    return Fraction(1, 2) * track.side * (over(d @ d, D) - D)
 
 
-def _apart(scene: LoadContext, track: Curved, R: AnyScalar) -> AnyScalar:
+def _apart(scene: LoadContext, track: Curved, R: Scalar) -> Scalar:
     """Distance of a ball's centre from that of its track where they touch [m]."""
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
@@ -388,7 +369,7 @@ def _around(scene: LoadContext, track: Curved, n: Vector) -> tuple[Vector, ...]:
     """Directions across n: of a pipe its axis k and n x k."""
     if scene.plane:
         return (right(n),)
-    return turned_over(scene, n) if track.axis is None else (track.axis, cross(n, track.axis))
+    return turned_over(scene, n) if track.axis is None else (track.axis, n.cross(track.axis))
 
 
 def curved(scene: LoadContext, on: str | None, circle: Circle) -> Curved:
@@ -530,9 +511,9 @@ class Rolling(Constraint):
         if self.circle is None or self.circle.inside:
             return "", ""
         track = self._curved(scene)
-        out = minus(scene.position(scene.own_place(self.body, self._hub)), scene.position(track.anchor))
-        along = 0 if track.axis is None else dot(track.axis, out)
-        away, r = scene.value_at_start(dot(out, out) - along * along), scene.value_at_start(track.r)
+        out = scene.position(scene.own_place(self.body, self._hub)) - scene.position(track.anchor)
+        along = 0 if track.axis is None else track.axis @ out
+        away, r = scene.value_at_start(out @ out - along * along), scene.value_at_start(track.r)
         if away is None or r is None or away >= r * r:
             return "", ""
         name = scene.where.rpartition(".")[2]
@@ -568,7 +549,7 @@ class Rolling(Constraint):
             n = normal_of(scene, self.on, self.plane)
             return (Edge(f"'{self.body}' lies flat in '{name}'", body.tilt(scene, n)),)
         center = scene.position(scene.own_place(self.body, self._hub))
-        out = minus(center, scene.position(self._curved(scene).anchor))
+        out = center - scene.position(self._curved(scene).anchor)
         return (Edge(f"the whole rim of '{self.body}' touches in '{name}'", body.distance(scene, out)),)
 
     def _contact(self, scene: LoadContext, center: Any) -> TrackContact:
@@ -604,12 +585,14 @@ class Rolling(Constraint):
             return RollingBall(self._radius(scene))
         R = scene.value(shape.major) if torus and self.radius is None else self._radius(scene)
         tube = shape.minor if torus and self.tube is None else self.tube
-        return Wheel(self.body, (0, 0, 1) if self.axis is None else scene.vector(self.axis), R, scene.value(tube))
+        return Wheel(
+            self.body, Vector((0, 0, 1) if self.axis is None else scene.vector(self.axis)), R, scene.value(tube)
+        )
 
     @property
     def _plain(self) -> bool:
         """True if neither radius nor axis is given for the body."""
         return self.radius is None and self.axis is None
 
-    def _radius(self, scene: LoadContext) -> AnyScalar:
+    def _radius(self, scene: LoadContext) -> Scalar:
         return scene.radius(self.body) if self.radius is None else scene.value(self.radius)

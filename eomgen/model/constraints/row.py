@@ -5,7 +5,7 @@ from __future__ import annotations
 from eomgen.frozen import dataclass
 from eomgen.model.forces.load import Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
-from eomgen.symbolic.expression import AnyScalar, Fraction, Vector
+from eomgen.symbolic.expression import Fraction, Scalar, Vector
 from eomgen.symbolic.numeric import tolerances
 
 
@@ -31,8 +31,8 @@ class ConstraintRow:
     """
 
     pushes: tuple[PointForce | Couple, ...]
-    gap: AnyScalar | None
-    rate: AnyScalar | None = None
+    gap: Scalar | None
+    rate: Scalar | None = None
     component: str = ""
     material: bool = False
     tangent: tuple[PointForce | Couple, ...] = ()
@@ -48,10 +48,10 @@ class Edge:
     """A function of the configuration, positive until a motion ends where it vanishes; what is so there, in words."""
 
     words: str
-    vanishes: AnyScalar
+    vanishes: Scalar
 
     @property
-    def left(self) -> AnyScalar:
+    def left(self) -> Scalar:
         """Distance left to the edge, at which a motion ends."""
         return self.vanishes - Fraction(tolerances.AT_AN_EDGE)
 
@@ -63,20 +63,20 @@ def direction_of(scene: LoadContext, v: Vector) -> Vector:
     if not sense:
         return unit(v)
     x, y, z = ((1 if sense > 0 else -1) if k in along else 0 for k in range(3))
-    return (x, y, z)
+    return Vector((x, y, z))
 
 
 def normals_of(scene: LoadContext, d: Vector) -> tuple[tuple[str, Vector], ...]:
     """Unit vectors across the unit vector d, with their names: in the plane its left normal, in space two."""
     if scene.plane:
-        return (("n", (-d[1], d[0], 0)),)
+        return (("n", Vector((-d[1], d[0], 0))),)
     first, second = map(unit, across(d))
     return ("n 1", first), ("n 2", second)
 
 
 def scene_axes(scene: LoadContext) -> tuple[Vector, ...]:
     """The ground's axes in which a point can be held: x, y, and in space z."""
-    axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    axes: tuple[Vector, ...] = (Vector((1, 0, 0)), Vector((0, 1, 0)), Vector((0, 0, 1)))
     return axes[:2] if scene.plane else axes
 
 

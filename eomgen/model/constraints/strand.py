@@ -11,10 +11,10 @@ from eomgen.model.constraints.plane import angle_of, left
 from eomgen.model.constraints.row import ConstraintRow, normals_of
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.model.joints.base import Z
-from eomgen.symbolic.expression import AnyScalar, Vector, cross, dot, minus, over, plus, sqrt, times
+from eomgen.symbolic.expression import Scalar, Vector, over, sqrt
 from eomgen.symbolic.numeric import tolerances
 
-AXES: tuple[Vector, ...] = ((0, 1, 0), (0, -1, 0), (-1, 0, 0), (1, 0, 0))
+AXES: tuple[Vector, ...] = (Vector((0, 1, 0)), Vector((0, -1, 0)), Vector((-1, 0, 0)), Vector((1, 0, 0)))
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,7 @@ class Stop:
 
     scene: LoadContext
     place: BodyPoint
-    offset: AnyScalar = 0
+    offset: Scalar = 0
     axis: Vector = Z
 
     @property
@@ -51,24 +51,24 @@ class Stop:
         return self.round and self.body is not None and not self.scene.plane
 
     @property
-    def wound(self) -> AnyScalar:
+    def wound(self) -> Scalar:
         """a theta: string that rotation of the body pays out at the strand's start [m]."""
         return self.offset * angle_of(self.scene, self.body) if self.round else 0
 
     def left(self, d: Vector) -> Vector:
         """d turned by a quarter, counter-clockwise about the axis."""
-        return left(d) if self.scene.plane else cross(self.axis, d)
+        return left(d) if self.scene.plane else self.axis.cross(d)
 
     def touched(self, d: Vector) -> Vector:
         """Point at which a strand of direction d touches, ground axes."""
-        return plus(self.center, times(self.offset, self.left(d))) if self.round else self.center
+        return self.center + self.offset * self.left(d) if self.round else self.center
 
     def pulled(self, d: Vector, sense: int) -> tuple[Push, ...]:
         """A force sense * d at centre + a left(d): at the centre, with the moment - a * sense."""
-        force = PointForce(self.place, times(sense, d))
+        force = PointForce(self.place, sense * d)
         if self.body is None or not self.round:
             return (force,)
-        return force, Couple(self.body, times(-sense * self.offset, self.axis))
+        return force, Couple(self.body, -sense * self.offset * self.axis)
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Strand:
     first: Stop
     second: Stop
     d: Vector
-    length: AnyScalar | None
+    length: Scalar | None
 
     @property
     def ends(self) -> tuple[Vector, Vector]:
@@ -103,7 +103,7 @@ def strand_along(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> St
         ModelError: at the start it runs against d.
     """
     _refuse_out_of_plane(scene, first, second, d)
-    length = dot(d, minus(second.center, first.center))
+    length = d @ (second.center - first.center)
     run = scene.value_at_start(length)
     if run is not None and run < -tolerances.COMPUTED:
         raise _against(scene, first, second)
@@ -118,14 +118,14 @@ def common_tangent(scene: LoadContext, first: Stop, second: Stop) -> Strand:
     Raises:
         ModelError: at the start there is no such line; in space, it is not across the axis of what it lies on.
     """
-    D = minus(second.center, first.center)
+    D = second.center - first.center
     _refuse_out_of_plane(scene, first, second, D)
     h = first.offset - _same_way_round(first, second) * second.offset
     side = (first if first.round else second).left
     straight = _straight(scene, D, h, side)
     if straight is not None:
         return Strand(first, second, *straight)
-    square = dot(D, D)
+    square = D @ D
     rest = square if _zero(h) else square - h * h
     span = scene.value_at_start(rest)
     if span is not None and span <= 0:
@@ -137,15 +137,15 @@ def common_tangent(scene: LoadContext, first: Stop, second: Stop) -> Strand:
     length = sqrt(rest)
     if _zero(h):
         return Strand(first, second, _over(D, length), length)
-    return Strand(first, second, _over(minus(times(length, D), times(h, side(D))), square), None)
+    return Strand(first, second, _over(length * D - h * side(D), square), None)
 
 
 def _straight(
-    scene: LoadContext, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
-) -> tuple[Vector, AnyScalar] | None:
+    scene: LoadContext, D: Vector, h: Scalar, side: Callable[[Vector], Vector]
+) -> tuple[Vector, Scalar] | None:
     """Direction and length of a strand that stays along an axis: left(d) . D = h for good, d . D > 0 at the start."""
-    for d in AXES if scene.plane else (*AXES, Z, times(-1, Z)):
-        length = dot(d, D)
+    for d in AXES if scene.plane else (*AXES, Z, -Z):
+        length = d @ D
         run = scene.value_at_start(length)
         forwards = run is not None and run > 0 if _zero(h) else run is None or run >= 0
         if forwards and all(map(scene.vanishes, _off(scene, d, D, h, side))):
@@ -153,13 +153,11 @@ def _straight(
     return None
 
 
-def _off(
-    scene: LoadContext, d: Vector, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
-) -> tuple[AnyScalar, ...]:
+def _off(scene: LoadContext, d: Vector, D: Vector, h: Scalar, side: Callable[[Vector], Vector]) -> tuple[Scalar, ...]:
     """Quantities that vanish if D is along d and h to its left."""
     if scene.plane:
-        return (dot(side(d), D) - h,)
-    return cross(d, D) if _zero(h) else (dot(side(d), D) - h,)
+        return (side(d) @ D - h,)
+    return d.cross(D) if _zero(h) else (side(d) @ D - h,)
 
 
 def _same_way_round(first: Stop, second: Stop) -> int:
@@ -174,7 +172,7 @@ def _along(first: Stop, second: Stop) -> int:
         ModelError: the axes are not parallel.
     """
     for sense in (1, -1):
-        if all(map(first.scene.vanishes, minus(first.axis, times(sense, second.axis)))):
+        if all(map(first.scene.vanishes, first.axis - sense * second.axis)):
             return sense
     raise ModelError(
         f"the axes of {_names(first, second)} are not parallel",
@@ -190,7 +188,7 @@ def _refuse_out_of_plane(scene: LoadContext, first: Stop, second: Stop, d: Vecto
         ModelError: it is not.
     """
     for stop in (first, second):
-        if not scene.plane and stop.round and not scene.vanishes(dot(stop.axis, d)):
+        if not scene.plane and stop.round and not scene.vanishes(stop.axis @ d):
             what = f"the strand between {_names(first, second)} is not in the plane of the wrap, across its axis"
             raise ModelError(what, scene.where, "turn the axis, or lead the string over an eyelet, a point, there")
 
@@ -207,8 +205,8 @@ def rope_row(scene: LoadContext, strands: Sequence[Strand]) -> ConstraintRow:
     return ConstraintRow(pushes, _gap(scene, strands), component="tension")
 
 
-def _gap(scene: LoadContext, strands: Sequence[Strand]) -> AnyScalar | None:
-    used: AnyScalar = 0
+def _gap(scene: LoadContext, strands: Sequence[Strand]) -> Scalar | None:
+    used: Scalar = 0
     for strand in strands:
         if strand.length is None or strand.first.winds or strand.second.winds:
             return None
@@ -227,7 +225,7 @@ def side_rows(scene: LoadContext, strand: Strand) -> list[ConstraintRow]:
     first, second = strand.first, strand.second
     rows = []
     for name, n, offset in _sides(scene, strand):
-        gap = dot(n, minus(first.center, second.center)) + offset
+        gap = n @ (first.center - second.center) + offset
         if scene.vanishes(gap):
             continue
         if not scene.moves((gap,)):
@@ -237,13 +235,11 @@ def side_rows(scene: LoadContext, strand: Strand) -> list[ConstraintRow]:
                 scene.where,
                 "move one of them across the strand, or exchange 'cw' and 'ccw'",
             )
-        rows.append(
-            ConstraintRow((PointForce(first.place, n), PointForce(second.place, times(-1, n))), gap, component=name)
-        )
+        rows.append(ConstraintRow((PointForce(first.place, n), PointForce(second.place, -n)), gap, component=name))
     return rows
 
 
-def _sides(scene: LoadContext, strand: Strand) -> list[tuple[str, Vector, AnyScalar]]:
+def _sides(scene: LoadContext, strand: Strand) -> list[tuple[str, Vector, Scalar]]:
     """(name, n, how far apart along n the strand's centres are) for each n across it."""
     first, second = strand.first, strand.second
     if not (first.round or second.round) or scene.plane:
@@ -262,8 +258,8 @@ def _names(first: Stop, second: Stop) -> str:
     return " and ".join("the ground" if stop.body is None else f"'{stop.body}'" for stop in (first, second))
 
 
-def _over(a: Vector, b: AnyScalar) -> Vector:
-    return (over(a[0], b), over(a[1], b), over(a[2], b))
+def _over(a: Vector, b: Scalar) -> Vector:
+    return Vector((over(a[0], b), over(a[1], b), over(a[2], b)))
 
 
 def _zero(x: Any) -> bool:

@@ -16,7 +16,7 @@ from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Vector, apply
+from eomgen.symbolic.expression import Expression, Vector
 from eomgen.symbolic.numeric import tolerances
 
 
@@ -161,9 +161,9 @@ def _stop(scene: LoadContext, item: str | Wrap) -> Stop:
     place = (None, scene.ground_place(item.at)) if item.body is None else scene.own_place(item.body, None)
     radius = scene.radius(str(item.body)) if item.radius is None else scene.value(item.radius)
     axis = Z if item.axis is None else unit(scene.vector(item.axis))
-    n = axis if item.body is None or scene.plane else apply(scene.orientation(item.body), axis)
+    n = axis if item.body is None or scene.plane else scene.orientation(item.body) @ axis
     return Stop(scene, place, radius if item.turn == "cw" else -radius, n)
 
 
 def _direction(scene: LoadContext, way: str | tuple[Expression, ...]) -> Vector:
-    return DIRECTIONS[way] if isinstance(way, str) else direction_of(scene, scene.vector(way))
+    return Vector(DIRECTIONS[way] if isinstance(way, str) else direction_of(scene, scene.vector(way)))

@@ -16,7 +16,7 @@ from eomgen.model.kinds import (
     PointName,
     WorkingForce,
 )
-from eomgen.symbolic.expression import AnyScalar
+from eomgen.symbolic.expression import Scalar, Vector
 
 # -------- force -----------------------------------------------------------------------------------------------
 # Force: at a point.
@@ -67,7 +67,7 @@ class CoupleForce(Force):
     axes: AxesName = "ground"
     point: OwnPointName | None = None
 
-    def effort(self, scene: load.LoadContext) -> AnyScalar | None:
+    def effort(self, scene: load.LoadContext) -> Scalar | None:
         """The couple in the plane [N m]; None in space, where it has three components."""
         return scene.vector(self.couple)[0] if len(self.couple) == 1 else None
 
@@ -79,7 +79,7 @@ class CoupleForce(Force):
         axes = None if self.axes == "ground" else self.axes
         couple = scene.vector(self.couple)
         if len(self.couple) == 1:
-            couple = (0, 0, couple[0])
+            couple = Vector((0, 0, couple[0]))
         place = None if self.point is None else scene.own_place(self.body, self.point)
         return (load.Couple(self.body, couple, axes, place),)
 

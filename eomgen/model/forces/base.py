@@ -12,7 +12,7 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import AnyScalar, Expression
+from eomgen.symbolic.expression import Expression, Scalar
 
 # -------- element ---------------------------------------------------------------------------------------------
 # Actions of forces, as they are declared: fields and names alone, no formulas and no loads.
@@ -138,7 +138,7 @@ class Force(Part):
         """T [J] of what moves and is no body; None of a force that has none."""
         return None
 
-    def effort(self, scene: LoadContext) -> AnyScalar | None:
+    def effort(self, scene: LoadContext) -> Scalar | None:
         """Attraction of its two points [N], or couple on its (second) body [N m]; None of others."""
         return None
 
@@ -150,6 +150,6 @@ class Force(Part):
         """Loads distributed along lines, of which `loads` gives the resultants."""
         return ()
 
-    def potential(self, scene: LoadContext) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> Scalar | None:
         """V [J], or None where the force has none."""
         return None

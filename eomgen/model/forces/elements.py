@@ -7,19 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Element, Force
 from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
 from eomgen.model.kinds import Direction, LinearDamping, LinearStiffness, NaturalLength, Pull, TwoPoints
-from eomgen.symbolic.expression import (
-    AnyScalar,
-    Expression,
-    Fraction,
-    Vector,
-    dot,
-    is_zero,
-    minus,
-    over,
-    sqrt,
-    times,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Fraction, Scalar, Vector, is_zero, over, sqrt
 
 # -------- reach -----------------------------------------------------------------------------------------------
 # From one point to another: distance, direction and rate, for whatever acts along a line.
@@ -39,41 +27,41 @@ class Reach:
 
     ends: tuple[BodyPoint, BodyPoint]
     gap: Vector
-    length: AnyScalar
+    length: Scalar
     direction: Vector
-    rate: AnyScalar
+    rate: Scalar
 
-    def pulled(self, tension: AnyScalar) -> tuple[Load, ...]:
+    def pulled(self, tension: Scalar) -> tuple[Load, ...]:
         """Equal and opposite forces that draw the ends together [N]."""
-        return self._opposite(times(tension, self.direction))
+        return self._opposite(tension * self.direction)
 
-    def pulled_by_length(self, stiffness: AnyScalar) -> tuple[Load, ...]:
+    def pulled_by_length(self, stiffness: Scalar) -> tuple[Load, ...]:
         """The same for a tension k l, which has a value where the ends meet too: k times the gap."""
-        return self._opposite(times(stiffness, self.gap))
+        return self._opposite(stiffness * self.gap)
 
     def _opposite(self, pull: Vector) -> tuple[Load, ...]:
-        return (PointForce(self.ends[0], pull), PointForce(self.ends[1], times(-1, pull)))
+        return (PointForce(self.ends[0], pull), PointForce(self.ends[1], -pull))
 
 
 def reach(scene: LoadContext, points: tuple[str, ...], along: tuple[Expression, ...] | None = None) -> Reach:
     """The line between two points: l = |p2 - p1|, or n . (p2 - p1) along a fixed direction n."""
     ends = (scene.place(points[0]), scene.place(points[1]))
-    gap = minus(scene.position(ends[1]), scene.position(ends[0]))
-    rate = minus(scene.velocity(ends[1]), scene.velocity(ends[0]))
+    gap = scene.position(ends[1]) - scene.position(ends[0])
+    rate = scene.velocity(ends[1]) - scene.velocity(ends[0])
     if along is None:
-        length = sqrt(dot(gap, gap))
+        length = sqrt(gap @ gap)
         if is_zero(length):
             raise DerivationError(
                 f"'{points[0]}' and '{points[1]}' are always at one place: there is no line between them",
                 fix="let the force act between points that part, or give its direction by `along`",
             )
-        direction = vector_of(over(x, length) for x in gap)
+        direction = Vector(over(x, length) for x in gap)
     else:
         n = scene.vector(along)
-        size = sqrt(dot(n, n))
-        direction = vector_of(over(x, size) for x in n)
-        length = dot(gap, direction)
-    return Reach(ends, gap, length, direction, dot(rate, direction))
+        size = sqrt(n @ n)
+        direction = Vector(over(x, size) for x in n)
+        length = gap @ direction
+    return Reach(ends, gap, length, direction, rate @ direction)
 
 
 # -------- straight --------------------------------------------------------------------------------------------
@@ -86,15 +74,15 @@ class Straight(Force):
 
     points: TwoPoints
 
-    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+    def law(self, scene: LoadContext, line: Reach) -> Scalar:
         """The law, attraction positive [N]."""
         raise NotImplementedError
 
-    def by_length(self, scene: LoadContext, line: Reach) -> AnyScalar | None:
+    def by_length(self, scene: LoadContext, line: Reach) -> Scalar | None:
         """k of a law k l along the line between the points, which has no direction where these meet; else None."""
         return None
 
-    def effort(self, scene: LoadContext) -> AnyScalar | None:
+    def effort(self, scene: LoadContext) -> Scalar | None:
         """The pull [N]."""
         return self.law(scene, self.line(scene))
 
@@ -135,24 +123,24 @@ class Spring(Straight):
     def element(self) -> Element:
         return Element(points=self.points, along=self.along, stiffness=self.stiffness, slack=self.length)
 
-    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+    def law(self, scene: LoadContext, line: Reach) -> Scalar:
         """k (l - l0)"""
         return scene.value(self.stiffness) * self._stretch(scene, line.length)
 
-    def by_length(self, scene: LoadContext, line: Reach) -> AnyScalar | None:
+    def by_length(self, scene: LoadContext, line: Reach) -> Scalar | None:
         """k where l0 = 0"""
         free = self.along is None and is_zero(self._natural(scene, line.length))
         return scene.value(self.stiffness) if free else None
 
-    def potential(self, scene: LoadContext) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> Scalar | None:
         """V = k (l - l0)^2 / 2"""
         stretch = self._stretch(scene, self.line(scene).length)
         return Fraction(1, 2) * scene.value(self.stiffness) * stretch * stretch
 
-    def _stretch(self, scene: LoadContext, length: AnyScalar) -> AnyScalar:
+    def _stretch(self, scene: LoadContext, length: Scalar) -> Scalar:
         return length - self._natural(scene, length)
 
-    def _natural(self, scene: LoadContext, length: AnyScalar) -> AnyScalar:
+    def _natural(self, scene: LoadContext, length: Scalar) -> Scalar:
         return scene.start(length) if self.length == "start" else scene.value(self.length)
 
 
@@ -178,7 +166,7 @@ class Damper(Straight):
     def element(self) -> Element:
         return Element(points=self.points, along=self.along, damping=self.damping)
 
-    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+    def law(self, scene: LoadContext, line: Reach) -> Scalar:
         """c l'"""
         return scene.value(self.damping) * line.rate
 
@@ -203,10 +191,10 @@ class Between(Straight):
     def element(self) -> Element:
         return Element(points=self.points, pull=self.pull)
 
-    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+    def law(self, scene: LoadContext, line: Reach) -> Scalar:
         """f(r, r')"""
         return scene.value_at(self.pull, {"r": line.length, "r'": line.rate})
 
-    def potential(self, scene: LoadContext) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> Scalar | None:
         """V = integral of f dr where f holds r and parameters only; None where it has no closed form."""
         return scene.primitive(self.pull, "r", self.line(scene).length)

@@ -6,7 +6,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Act, Force, GivenEnergy
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy, MotionEnergy
-from eomgen.symbolic.expression import AnyScalar, Expression
+from eomgen.symbolic.expression import Expression, Scalar
 
 # -------- potential -------------------------------------------------------------------------------------------
 # Potential: an energy of the coordinates.
@@ -28,7 +28,7 @@ class Potential(Force):
     def acts(self) -> tuple[Act, ...]:
         return (GivenEnergy(potential=self.energy),)
 
-    def potential(self, scene: LoadContext) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> Scalar | None:
         return scene.value(self.energy)
 
 

@@ -7,7 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Element, Force
 from eomgen.model.forces.load import Couple, Load, LoadContext
 from eomgen.model.kinds import AngularDamping, AngularStiffness, BodyName, RestAngle, TwoBodies
-from eomgen.symbolic.expression import AnyScalar, Fraction
+from eomgen.symbolic.expression import Fraction, Scalar, Vector
 
 # -------- turning ---------------------------------------------------------------------------------------------
 # Couples between two bodies, or a body and the ground: torsion springs and dampers.
@@ -21,11 +21,11 @@ class Turning(Force):
     bodies: TwoBodies | None = None
     body: BodyName | None = None
 
-    def couple(self, scene: LoadContext) -> AnyScalar:
+    def couple(self, scene: LoadContext) -> Scalar:
         """The law, on the second body, or on `body` [N m]."""
         raise NotImplementedError
 
-    def effort(self, scene: LoadContext) -> AnyScalar | None:
+    def effort(self, scene: LoadContext) -> Scalar | None:
         """The couple [N m]."""
         return self.couple(scene)
 
@@ -33,10 +33,10 @@ class Turning(Force):
         """The couple on the second body, its opposite on the first."""
         first, second = self._both
         couple = self.couple(scene)
-        on_first = () if first is None else (Couple(first, (0, 0, -couple)),)
-        return (Couple(second, (0, 0, couple)), *on_first)
+        on_first = () if first is None else (Couple(first, Vector((0, 0, -couple))),)
+        return (Couple(second, Vector((0, 0, couple))), *on_first)
 
-    def relative(self, of: Callable[[str], AnyScalar]) -> AnyScalar:
+    def relative(self, of: Callable[[str], Scalar]) -> Scalar:
         """An angle, or its rate, of the second body against the first."""
         first, second = self._both
         return of(second) if first is None else of(second) - of(first)
@@ -74,16 +74,16 @@ class TorsionSpring(Turning):
     def element(self) -> Element:
         return Element(bodies=self.bodies or (None, self.body), stiffness=self.stiffness, slack=self.rest)
 
-    def couple(self, scene: LoadContext) -> AnyScalar:
+    def couple(self, scene: LoadContext) -> Scalar:
         """- k (theta - rest)"""
         return -scene.value(self.stiffness) * self._twist(scene)
 
-    def potential(self, scene: LoadContext) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> Scalar | None:
         """V = k (theta - rest)^2 / 2"""
         twist = self._twist(scene)
         return Fraction(1, 2) * scene.value(self.stiffness) * twist * twist
 
-    def _twist(self, scene: LoadContext) -> AnyScalar:
+    def _twist(self, scene: LoadContext) -> Scalar:
         return self.relative(scene.angle) - scene.value(self.rest)
 
 
@@ -108,6 +108,6 @@ class TorsionDamper(Turning):
     def element(self) -> Element:
         return Element(bodies=self.bodies or (None, self.body), damping=self.damping)
 
-    def couple(self, scene: LoadContext) -> AnyScalar:
+    def couple(self, scene: LoadContext) -> Scalar:
         """- c theta'"""
         return -scene.value(self.damping) * self.relative(scene.angle_rate)

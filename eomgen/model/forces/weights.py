@@ -7,7 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.forces.base import Act, Force, PushAlongLine, PushOfMass
 from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, BodyName, Flag, LineLoad, TwoLineLoads, TwoOwnPoints
-from eomgen.symbolic.expression import AnyScalar, Fraction, Vector, dot, is_zero, minus, plus, sqrt, times
+from eomgen.symbolic.expression import Fraction, Scalar, Vector, is_zero, sqrt
 
 # -------- gravity ---------------------------------------------------------------------------------------------
 # Gravity: a weight on every body, or on some.
@@ -38,14 +38,14 @@ class Gravity(Force):
         g = scene.vector(self.acceleration)
         if self.bodies is None:
             return (UniformField(g),)
-        return tuple(PointForce(place, times(m, g)) for place, m in scene.masses(self.bodies))
+        return tuple(PointForce(place, m * g) for place, m in scene.masses(self.bodies))
 
-    def potential(self, scene: LoadContext) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> Scalar | None:
         """V = - sum m g . r"""
         g = scene.vector(self.acceleration)
-        V: AnyScalar = 0
+        V: Scalar = 0
         for place, m in scene.masses(self.bodies):
-            V = V - m * dot(g, scene.position(place))
+            V = V - m * (g @ scene.position(place))
         return V
 
 
@@ -105,14 +105,14 @@ class Distributed(Force):
         return (line,)
 
 
-def _length(line: SpreadLoad) -> AnyScalar:
-    along = minus(line.end[1], line.start[1])
-    return sqrt(dot(along, along))
+def _length(line: SpreadLoad) -> Scalar:
+    along = line.end[1] - line.start[1]
+    return sqrt(along @ along)
 
 
-def _resultant(length: AnyScalar, near: Vector, far: Vector) -> Vector:
+def _resultant(length: Scalar, near: Vector, far: Vector) -> Vector:
     """L (2 q_near + q_far) / 6"""
-    return times(length * Fraction(1, 6), plus(times(2, near), far))
+    return length * Fraction(1, 6) * (2 * near + far)
 
 
 def _own(body: str, name: str) -> str:

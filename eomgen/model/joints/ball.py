@@ -25,22 +25,7 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    Expression,
-    Fraction,
-    Matrix,
-    Pose,
-    Vector,
-    apply,
-    as_expression,
-    cos,
-    cross,
-    product,
-    rotation,
-    sin,
-    transposed,
-)
+from eomgen.symbolic.expression import Expression, Fraction, Matrix, Pose, Vector, as_expression, cos, sin
 
 # -------- orientation -----------------------------------------------------------------------------------------
 # Orientation in space over any scalar: three angles about the body's own successive axes, or a unit quaternion.
@@ -121,9 +106,9 @@ def turning_moves(joint: Any) -> tuple[Move, ...]:
 
 def rotation_by(sequence: str, angles: tuple[Any, ...]) -> Matrix:
     """R = R1(a1) R2(a2) R3(a3), child to parent."""
-    R = IDENTITY
+    R = Matrix.IDENTITY
     for axis, angle in zip(sequence, angles, strict=True):
-        R = product(R, rotation(AXES[axis], cos(angle), sin(angle)))
+        R = R @ Matrix.rotation(AXES[axis], cos(angle), sin(angle))
     return R
 
 
@@ -132,7 +117,7 @@ def turning_columns(sequence: str, angles: tuple[Any, ...]) -> tuple[Column, ...
     columns = []
     for k, axis in enumerate(sequence):
         after = rotation_by(sequence[k + 1 :], angles[k + 1 :])
-        columns.append(angular(apply(transposed(after), AXES[axis])))
+        columns.append(angular(after.T @ AXES[axis]))
     return tuple(columns)
 
 
@@ -151,27 +136,31 @@ def columns_of(orientation: str, s: tuple[Any, ...]) -> tuple[Column, ...]:
 def _by_quaternion(e: tuple[Any, ...]) -> Matrix:
     """R = (e0^2 - v.v) 1 + 2 v v^T + 2 e0 v~, v = (e1, e2, e3); where e . e = 1 it is a rotation."""
     e0, e1, e2, e3 = e
-    return (
-        (e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)),
-        (2 * (e1 * e2 + e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 - e0 * e1)),
-        (2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3),
+    return Matrix.of(
+        (
+            (e0 * e0 + e1 * e1 - e2 * e2 - e3 * e3, 2 * (e1 * e2 - e0 * e3), 2 * (e1 * e3 + e0 * e2)),
+            (2 * (e1 * e2 + e0 * e3), e0 * e0 - e1 * e1 + e2 * e2 - e3 * e3, 2 * (e2 * e3 - e0 * e1)),
+            (2 * (e1 * e3 - e0 * e2), 2 * (e2 * e3 + e0 * e1), e0 * e0 - e1 * e1 - e2 * e2 + e3 * e3),
+        )
     )
 
 
 def spin_of_quaternion(e: tuple[Any, ...], rate: tuple[Any, ...]) -> Vector:
     """w = 2 Im(e* o e'), child's axes."""
     (e0, e1, e2, e3), (d0, d1, d2, d3) = e, rate
-    return (
-        2 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2),
-        2 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3),
-        2 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1),
+    return Vector(
+        (
+            2 * (e0 * d1 - e1 * d0 - e2 * d3 + e3 * d2),
+            2 * (e0 * d2 - e2 * d0 - e3 * d1 + e1 * d3),
+            2 * (e0 * d3 - e3 * d0 - e1 * d2 + e2 * d1),
+        )
     )
 
 
 def rate_matrix_of(e: tuple[Any, ...]) -> tuple[Vector, Vector, Vector, Vector]:
     """The rows of e' = G w: half the quaternion's products with the units i, j, k."""
     e0, e1, e2, e3 = (HALF * x for x in e)
-    return ((-e1, -e2, -e3), (e0, -e3, e2), (e3, e0, -e1), (-e2, e1, e0))
+    return (Vector((-e1, -e2, -e3)), Vector((e0, -e3, e2)), Vector((e3, e0, -e1)), Vector((-e2, e1, e0)))
 
 
 # -------- spherical -------------------------------------------------------------------------------------------
@@ -264,15 +253,15 @@ class Universal(Joint):
 
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         first, _ = self._normals(value)
-        return Pose(product(rotation(first, cos(s[0]), sin(s[0])), self._second(s, value)))
+        return Pose(Matrix.rotation(first, cos(s[0]), sin(s[0])) @ self._second(s, value))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         first, second = self._normals(value)
-        return (angular(apply(transposed(self._second(s, value)), first)), angular(second))
+        return (angular(self._second(s, value).T @ first), angular(second))
 
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         (*first, _, _, _), (*second, _, _, _) = self.subspace(s, value)
-        return (angular(cross(tuple(first), tuple(second))), *map(linear, (X, Y, Z)))
+        return (angular(Vector(tuple(first)).cross(Vector(tuple(second)))), *map(linear, (X, Y, Z)))
 
     def _normals(self, value: ValueOf) -> tuple[Vector, Vector]:
         first, second = (unit(vector(axis, value)) for axis in self.axes)
@@ -281,4 +270,4 @@ class Universal(Joint):
     def _second(self, s: Scalars, value: ValueOf) -> Matrix:
         """The turn about the axis of the child."""
         _, second = self._normals(value)
-        return rotation(second, cos(s[1]), sin(s[1]))
+        return Matrix.rotation(second, cos(s[1]), sin(s[1]))

@@ -27,22 +27,7 @@ from eomgen.model.kinds import (
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    Expression,
-    Matrix,
-    Pose,
-    Vector,
-    cos,
-    cross,
-    dot,
-    over,
-    product,
-    rotation,
-    sin,
-    sqrt,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, over, sin, sqrt
 
 # -------- moves -----------------------------------------------------------------------------------------------
 # Moves of a joint, as they are declared: one after another, each in the axes that those before left.
@@ -111,9 +96,9 @@ class PushAlong:
 Scalars = tuple[Any, ...]
 Column = tuple[Any, Any, Any, Any, Any, Any]
 
-X: Vector = (1, 0, 0)
-Y: Vector = (0, 1, 0)
-Z: Vector = (0, 0, 1)
+X: Vector = Vector((1, 0, 0))
+Y: Vector = Vector((0, 1, 0))
+Z: Vector = Vector((0, 0, 1))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -234,30 +219,30 @@ class Joint(Part):
         return NotYet(f"the joint '{self.kind}' is not derived yet")
 
 
-def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: Vector = (0, 0, 0)) -> Vector:
+def vector(components: tuple[Expression, ...] | None, value: ValueOf, default: Vector = Vector.ZERO) -> Vector:
     """A vector of the model, 3, with z = 0 in the plane."""
     if components is None:
         return default
     values = [value(c) for c in components]
-    return vector_of(values + [0] * (3 - len(values)))
+    return Vector(values + [0] * (3 - len(values)))
 
 
 def unit(axis: Vector) -> Vector:
     """The axis over its length, exactly."""
-    square = dot(axis, axis)
+    square = axis @ axis
     if square == 1:
         return axis
     length = sqrt(square)
-    return vector_of(over(a, length) for a in axis)
+    return Vector(over(a, length) for a in axis)
 
 
 def oriented(turns: tuple[Turned, ...] | None, value: ValueOf) -> Matrix:
     """The rotation that turns one after the other make, each about the axes that the one before left."""
-    R = IDENTITY
+    R = Matrix.IDENTITY
     for turn in turns or ():
         axis = unit(vector(turn.axis, value, Z))
         angle = value(turn.angle)
-        R = product(R, rotation(axis, cos(angle), sin(angle)))
+        R = R @ Matrix.rotation(axis, cos(angle), sin(angle))
     return R
 
 
@@ -266,9 +251,9 @@ def across(n: Vector) -> tuple[Vector, Vector]:
     for k in (2, 1, 0):
         if n[k] == 0:
             e = (X, Y, Z)[k]
-            return e, cross(n, e)
-    e = cross(n, Z)
-    return e, cross(n, e)
+            return e, n.cross(e)
+    e = n.cross(Z)
+    return e, n.cross(e)
 
 
 def angular(n: Vector) -> Column:

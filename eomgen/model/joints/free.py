@@ -39,19 +39,7 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import Angle, ConstantAngle, Displacement, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    Expression,
-    Matrix,
-    Pose,
-    apply,
-    as_expression,
-    cos,
-    rotation,
-    sin,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, as_expression, cos, sin
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 
@@ -122,12 +110,12 @@ class Free(Joint):
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         if self.position is None:
             return in_plane((*s[:2], self.turn(s, value)))
-        return Pose(self._rotation(s), vector_of(s[:3]))
+        return Pose(self._rotation(s), Vector(s[:3]))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         if self.position is None:
             return plane_subspace((*s[:2], self.turn(s, value)))[: len(s)]
-        along = (linear(apply(transposed(self._rotation(s)), e)) for e in (X, Y, Z))
+        along = (linear(self._rotation(s).T @ e) for e in (X, Y, Z))
         return (*along, *(() if self.orientation is None else columns_of(self.orientation, s[3:])))
 
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
@@ -137,7 +125,7 @@ class Free(Joint):
         return ()
 
     def _rotation(self, s: Scalars) -> Matrix:
-        return IDENTITY if self.orientation is None else rotation_of(self.orientation, s[3:])
+        return Matrix.IDENTITY if self.orientation is None else rotation_of(self.orientation, s[3:])
 
 
 def _is_point(path: DocumentPath, catalog: Catalog) -> bool:
@@ -181,7 +169,7 @@ class Fixed(Joint):
 
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         angle = self.turn(s, value)
-        return Pose(rotation(unit(vector(self.axis, value, Z)), cos(angle), sin(angle)))
+        return Pose(Matrix.rotation(unit(vector(self.axis, value, Z)), cos(angle), sin(angle)))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         return ()
@@ -243,10 +231,10 @@ PLANE_COMPLEMENT = (angular(X), angular(Y), linear(Z))
 def in_plane(s: Scalars) -> Pose:
     """The pose at s = (x, y, angle)."""
     x, y, angle = s
-    return Pose(rotation(Z, cos(angle), sin(angle)), (x, y, 0))
+    return Pose(Matrix.rotation(Z, cos(angle), sin(angle)), Vector((x, y, 0)))
 
 
 def plane_subspace(s: Scalars) -> tuple[Column, ...]:
     """The columns of S of (x, y, angle), in the turned axes."""
-    R_CP = transposed(in_plane(s).R)
-    return (linear(apply(R_CP, X)), linear(apply(R_CP, Y)), angular(Z))
+    R_CP = in_plane(s).R.T
+    return (linear(R_CP @ X), linear(R_CP @ Y), angular(Z))

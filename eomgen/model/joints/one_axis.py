@@ -41,20 +41,7 @@ from eomgen.model.kinds import (
     Torque,
     ValueOf,
 )
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    Expression,
-    Matrix,
-    Pose,
-    Vector,
-    apply,
-    cos,
-    product,
-    rotation,
-    sin,
-    times,
-    transposed,
-)
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, cos, sin
 
 # -------- axis ------------------------------------------------------------------------------------------------
 # Joints of one axis: the child turns about it, slides along it, or both.
@@ -78,7 +65,7 @@ class AxisJoint(Joint):
 
     def mounting(self, value: ValueOf) -> Matrix:
         """R_0, the child's axes at s = 0."""
-        return IDENTITY
+        return Matrix.IDENTITY
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:
         return sum((a * x for (a, _), x in zip(self.steps(value), s, strict=True)), start=0)
@@ -87,11 +74,11 @@ class AxisJoint(Joint):
         n, steps = self.normal(value), self.steps(value)
         R, angle = self.mounting(value), sum((a * x for (a, _), x in zip(steps, s, strict=True)), start=0)
         advance = sum((b * x for (_, b), x in zip(steps, s, strict=True)), start=0)
-        return Pose(product(rotation(n, cos(angle), sin(angle)), R), times(advance, n))
+        return Pose(Matrix.rotation(n, cos(angle), sin(angle)) @ R, advance * n)
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         n = self._seen_from_child(value)
-        return tuple((*times(a, n), *times(b, n)) for a, b in self.steps(value))
+        return tuple((*(a * n), *(b * n)) for a, b in self.steps(value))
 
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         n, steps = self._seen_from_child(value), self.steps(value)
@@ -99,17 +86,17 @@ class AxisJoint(Joint):
         sideways = self._across(value)
         torques = map(angular, sideways if turns else (X, Y, Z))
         forces = map(linear, sideways if slides else (X, Y, Z))
-        thread = [(*times(-b, n), *times(a, n)) for a, b in steps] if len(steps) == 1 and turns and slides else []
+        thread = [(*(-b * n), *(a * n)) for a, b in steps] if len(steps) == 1 and turns and slides else []
         return (*torques, *forces, *thread)
 
     def _across(self, value: ValueOf) -> tuple[Vector, ...]:
         """Two directions across the axis, child's axes."""
-        R_CP = transposed(self.mounting(value))
-        return tuple(apply(R_CP, e) for e in across(self.normal(value)))
+        R_CP = self.mounting(value).T
+        return tuple(R_CP @ e for e in across(self.normal(value)))
 
     def _seen_from_child(self, value: ValueOf) -> Vector:
         """n in the child's axes; turning about it does not change it."""
-        return apply(transposed(self.mounting(value)), self.normal(value))
+        return self.mounting(value).T @ self.normal(value)
 
 
 # -------- revolute --------------------------------------------------------------------------------------------
@@ -215,7 +202,7 @@ class Prismatic(AxisJoint):
 
     def mounting(self, value: ValueOf) -> Matrix:
         angle = self.turn((), value)
-        return rotation(Z if len(self.axis) == 2 else self.normal(value), cos(angle), sin(angle))
+        return Matrix.rotation(Z if len(self.axis) == 2 else self.normal(value), cos(angle), sin(angle))
 
     def turn(self, s: Scalars, value: ValueOf) -> Any:
         return 0 if self.angle is None else value(self.angle)

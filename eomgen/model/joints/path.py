@@ -25,7 +25,7 @@ from eomgen.model.kinds import ConstantAngle, Displacement, FrictionLaw, Length,
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.model.shapes.forms import ArcForm, Form, LineForm
-from eomgen.symbolic.expression import Expression, Pose, Vector, apply, cos, function, over, plus, selected, sin
+from eomgen.symbolic.expression import Expression, Pose, Vector, cos, function, over, selected, sin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,7 +79,7 @@ class Stretch:
     def direction(self, s: Any) -> Vector:
         """The unit direction of travel."""
         angle = self.turned(s)
-        return (cos(angle), sin(angle), 0)
+        return Vector((cos(angle), sin(angle), 0))
 
     def place(self, s: Any) -> Vector:
         """The point at s."""
@@ -92,8 +92,8 @@ class Stretch:
         """
         h_0, bend = self.heading, self.bend
         if bend is None:
-            return plus(self.begin, (way * cos(h), way * sin(h), 0))
-        return plus(self.begin, (bend * (sin(h) - sin(h_0)), bend * (cos(h_0) - cos(h)), 0))
+            return self.begin + Vector((way * cos(h), way * sin(h), 0))
+        return self.begin + Vector((bend * (sin(h) - sin(h_0)), bend * (cos(h_0) - cos(h)), 0))
 
 
 PathPieces = Annotated[tuple[PathPiece, ...], ListRule(PartRule(PathPiece))]
@@ -154,7 +154,7 @@ class Path(Joint):
 
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         x, y, _ = self._along(s[0], value, Stretch.direction)
-        return (linear((-y, x, 0)), angular(Z), angular(X), angular(Y), linear(Z))
+        return (linear(Vector((-y, x, 0))), angular(Z), angular(X), angular(Y), linear(Z))
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (None,)
@@ -195,13 +195,13 @@ class Path(Joint):
         )
 
     def _begin(self, value: ValueOf) -> Vector:
-        return (0, 0, 0)
+        return Vector((0, 0, 0))
 
     def _along(self, s: Any, value: ValueOf, what: Callable[[Stretch, Any], Vector]) -> Vector:
         """Place or direction at s, of the piece on which s is."""
         there = [what(stretch, s) for stretch in self.stretches(value)]
         x, y, z = (self.of_its_piece(s, value, entries) for entries in zip(*there, strict=True))
-        return x, y, z
+        return Vector((x, y, z))
 
     def of_its_piece(self, s: Any, value: ValueOf, values: Sequence[Any]) -> Any:
         """The value, out of one for each piece, of the piece on which s is."""
@@ -225,7 +225,7 @@ class OnePiece(Path):
         return (SlideAlong(X, self.begin[0]), SlideAlong(Y, self.begin[1]), *super().moves())
 
     def _begin(self, value: ValueOf) -> Vector:
-        return (value(self.begin[0]), value(self.begin[1]), 0)
+        return Vector((value(self.begin[0]), value(self.begin[1]), 0))
 
 
 def _bend(piece: PathPiece, value: ValueOf) -> tuple[Any, Any, Any]:
@@ -244,8 +244,8 @@ def _drawn(stretch: Stretch, piece: PathPiece, value: ValueOf, seat: Pose) -> Fo
     if bend is None:
         return LineForm((seat.point(stretch.begin), seat.point(stretch.place(stretch.end))))
     first = h if piece.turn == "ccw" else stretch.turned(stretch.end)
-    x, y, _ = apply(seat.R, (bend * sin(first), -bend * cos(first), 0))
-    center = seat.point(plus(stretch.begin, (-bend * sin(h), bend * cos(h), 0)))
+    x, y, _ = seat.R @ Vector((bend * sin(first), -bend * cos(first), 0))
+    center = seat.point(stretch.begin + Vector((-bend * sin(h), bend * cos(h), 0)))
     r, start = function("abs", bend), function("atan2", y, x)
     return ArcForm(center, r, r, start, start + over(stretch.length, r))
 

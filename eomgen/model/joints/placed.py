@@ -34,7 +34,7 @@ from eomgen.model.joints.base import (
 )
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression import Expression, Matrix, Pose, apply, as_expression, cos, rotation, sin, transposed
+from eomgen.symbolic.expression import Expression, Matrix, Pose, Vector, as_expression, cos, sin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -89,12 +89,12 @@ class Placed(Joint):
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
         places = self._places(s)
         position = (*s[:places], *([0] * (3 - places)))
-        return Pose(self._rotation(s[places:], value), position)
+        return Pose(self._rotation(s[places:], value), Vector(position))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         places = self._places(s)
-        R_CP = transposed(self._rotation(s[places:], value))
-        along = tuple(linear(apply(R_CP, e)) for e in (X, Y, Z)[:places])
+        R_CP = self._rotation(s[places:], value).T
+        along = tuple(linear(R_CP @ e) for e in (X, Y, Z)[:places])
         if self.orientation is not None:
             return (*along, *columns_of(self.orientation, s[places:]))
         return (*along, angular(unit(vector(self.axis, value, Z))))
@@ -111,4 +111,4 @@ class Placed(Joint):
     def _rotation(self, angles: Scalars, value: ValueOf) -> Matrix:
         if self.orientation is not None:
             return rotation_of(self.orientation, angles)
-        return rotation(unit(vector(self.axis, value, Z)), cos(angles[0]), sin(angles[0]))
+        return Matrix.rotation(unit(vector(self.axis, value, Z)), cos(angles[0]), sin(angles[0]))

@@ -11,13 +11,13 @@ from __future__ import annotations
 from typing import Any
 
 from eomgen.model.outputs.base import OutputFunction, Trial
-from eomgen.symbolic.expression import Call, Node, depends_on, dot
+from eomgen.symbolic.expression import Call, Node, depends_on
 from eomgen.symbolic.numeric import NoValue
 
 
 def _of_particles(trial: Trial, call: Call) -> Any:
     requested = call.names
-    of_bodies = sum(m * dot(v, v) / 2 for body in requested or trial.scene.bodies for m, _, v in trial.particles(body))
+    of_bodies = sum(m * (v @ v) / 2 for body in requested or trial.scene.bodies for m, _, v in trial.particles(body))
     return of_bodies if requested else of_bodies + trial.given_energy()
 
 
@@ -76,7 +76,7 @@ SMALL = 2.0**-10  # [m/s, rad/s] of a speed, in the differences of an energy tha
 
 def _slope_of_energy(trial: Trial, name: str) -> Any:
     more, less = (
-        sum(m * dot(v, v) for body in t.scene.bodies for m, _, v in t.particles(body)) for t in _faster(trial, name, 1)
+        sum(m * (v @ v) for body in t.scene.bodies for m, _, v in t.particles(body)) for t in _faster(trial, name, 1)
     )
     slopes = []
     for by in (SMALL, 2 * SMALL):

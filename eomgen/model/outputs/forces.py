@@ -17,7 +17,7 @@ from eomgen.model.outputs.base import (
     along,
     component,
 )
-from eomgen.symbolic.expression import AnyScalar, Call, Expression, Reference, parse
+from eomgen.symbolic.expression import Call, Expression, Reference, Scalar, parse
 
 # -------- reactions -------------------------------------------------------------------------------------------
 # reaction_x, reaction_n, reaction_couple, ...: of a constraint, or of the joint of a body, by the balance of the
@@ -34,15 +34,15 @@ def _placed(call: Call) -> tuple[str, str, str]:
     return name, side, frame
 
 
-def _force(scene: OutputContext, call: Call) -> AnyScalar:
+def _force(scene: OutputContext, call: Call) -> Scalar:
     return scene.reactions.component("force", component(call), *_placed(call))
 
 
-def _couple(scene: OutputContext, call: Call) -> AnyScalar:
+def _couple(scene: OutputContext, call: Call) -> Scalar:
     return scene.reactions.component("couple", component(call), *_placed(call))
 
 
-def _one_couple(scene: OutputContext, call: Call) -> AnyScalar:
+def _one_couple(scene: OutputContext, call: Call) -> Scalar:
     """Couple of a constraint; in space along the axle of the gear's first body, as others have no one direction."""
     if scene.is_plane:
         return scene.reactions.component("couple", AXES["z"], *_placed(call))
@@ -53,7 +53,7 @@ def _one_couple(scene: OutputContext, call: Call) -> AnyScalar:
     return scene.reactions.multiplier(owner)
 
 
-def _contact(scene: OutputContext, call: Call) -> AnyScalar:
+def _contact(scene: OutputContext, call: Call) -> Scalar:
     owner, side, _ = _placed(call)
     if side:
         fix = f"ask {call.name}({owner}), at an instant where it is meant"
@@ -157,7 +157,7 @@ COUPLE = OutputFunction(
 # tension: of a link, of a strand of a string, or of a member of a truss.
 
 
-def _tension(scene: OutputContext, call: Call) -> AnyScalar:
+def _tension(scene: OutputContext, call: Call) -> Scalar:
     """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
     name, strand = call.name_at(0), call.args[1:]
     if scene.is_truss(name):
@@ -217,7 +217,7 @@ def distance_of(call: Call) -> Expression:
     return parse(x.name) if isinstance(x, Reference) else x
 
 
-def _section(scene: OutputContext, call: Call) -> AnyScalar:
+def _section(scene: OutputContext, call: Call) -> Scalar:
     """bending_moment(beam, a), shear_force(beam, a, before)."""
     sides = [call.name_at(k) for k in range(2, len(call.args))]
     if any(name not in SIDES for name in sides):

@@ -18,23 +18,7 @@ from eomgen.model.outputs.base import (
     component,
     number_at,
 )
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    AnyScalar,
-    Call,
-    Fraction,
-    Matrix,
-    Numbers,
-    Vector,
-    apply,
-    cross,
-    dot,
-    is_zero,
-    matrix_of,
-    minus,
-    over,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Fraction, Matrix, Scalar, Vector, is_zero, over
 
 # -------- bodies meant ----------------------------------------------------------------------------------------
 # Bodies to which a function of masses applies, and whether enough is known of them.
@@ -73,12 +57,12 @@ def refuse_unknown(scene: OutputContext, call: Call, bodies: Sequence[str], *, a
 # mass_of: of a body, or of one of its parts (of a hole: what it takes away).
 
 
-def _mass(scene: OutputContext, call: Call) -> AnyScalar:
+def _mass(scene: OutputContext, call: Call) -> Scalar:
     body = call.name_at(0)
     if body == "ground":
         raise DerivationError(f"'{call}': the ground has no mass", fix="name a body")
     if len(call.args) == 1:
-        whole: AnyScalar = scene.mass(body).m
+        whole: Scalar = scene.mass(body).m
         return whole
     parts = scene.parts(body)
     if parts is None:
@@ -111,27 +95,28 @@ MASS_OF = OutputFunction(
 HALF = Fraction(1, 2)
 
 
-def about_axis(I: Matrix, along: Vector) -> AnyScalar:
+def about_axis(I: Matrix, along: Vector) -> Scalar:
     """d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length."""
-    return over(dot(along, apply(I, along)), dot(along, along))
+    return over(along @ (I @ along), along @ along)
 
 
-def polar(I: Matrix) -> AnyScalar:
+def polar(I: Matrix) -> Scalar:
     """Moment about the point itself: the integral of r.r dm = tr(I) / 2."""
-    return HALF * (I[0][0] + I[1][1] + I[2][2])
+    found: Scalar = HALF * (I[0][0] + I[1][1] + I[2][2])
+    return found
 
 
 def second_moments(I: Matrix) -> Matrix:
     """P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus."""
     half = polar(I)
-    return matrix_of(((half if i == j else 0) - I[i][j] for j in range(3)) for i in range(3))
+    return Matrix.of(((half if i == j else 0) - I[i][j] for j in range(3)) for i in range(3))
 
 
 def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> Matrix:
     """I_P of the bodies from the argument `first` on, at the state."""
     bodies = bodies_from(scene, call, first)
     refuse_unknown(scene, call, bodies, about_z=about_z)
-    return matrix_of(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
+    return Matrix.of(scene.placed(*scene.tensor(scene.position(call.name_at(0)), bodies)))
 
 
 def _axis_at(call: Call, k: int) -> int:
@@ -142,57 +127,60 @@ def _direction(scene: OutputContext, call: Call) -> Vector:
     """Direction along x, y or z, or from the point to another one."""
     name = call.name_at(1)
     if name in AXES:
-        return IDENTITY[AXES[name]]
-    ((x, y, z),) = scene.placed(minus(scene.position(name), scene.position(call.name_at(0))))
+        return Matrix.IDENTITY[AXES[name]]
+    ((x, y, z),) = scene.placed(scene.position(name) - scene.position(call.name_at(0)))
     if all(is_zero(c) for c in (x, y, z)):
         raise DerivationError(
             f"'{call}': both points are in one place, so they are on no single axis",
             fix="name two points that are apart",
         )
-    return (x, y, z)
+    return Vector((x, y, z))
 
 
-def _about_axis(scene: OutputContext, call: Call) -> AnyScalar:
+def _about_axis(scene: OutputContext, call: Call) -> Scalar:
     along = _direction(scene, call)
     return about_axis(_tensor(scene, call, 2, about_z=is_zero(along[0]) and is_zero(along[1])), along)
 
 
-def _about_point(scene: OutputContext, call: Call) -> AnyScalar:
+def _about_point(scene: OutputContext, call: Call) -> Scalar:
     """A body of the plane that is given by its moment about z counts as thin: its I_xx + I_yy is I_zz."""
     thin = scene.known_about_z(bodies_from(scene, call, 1))
     missing = HALF * sum(scene.mass(body).I[2][2] for body in thin)
-    return polar(_tensor(scene, call, 1, about_z=True)) + missing
+    found: Scalar = polar(_tensor(scene, call, 1, about_z=True)) + missing
+    return found
 
 
-def _second_moment(scene: OutputContext, call: Call, i: int, j: int, first: int) -> AnyScalar:
-    return second_moments(_tensor(scene, call, first))[i][j]
+def _second_moment(scene: OutputContext, call: Call, i: int, j: int, first: int) -> Scalar:
+    found: Scalar = second_moments(_tensor(scene, call, first))[i][j]
+    return found
 
 
-def _entry(scene: OutputContext, call: Call) -> AnyScalar:
+def _entry(scene: OutputContext, call: Call) -> Scalar:
     i, j = _axis_at(call, 1), _axis_at(call, 2)
-    return _tensor(scene, call, 3, about_z=i == j == 2)[i][j]
+    found: Scalar = _tensor(scene, call, 3, about_z=i == j == 2)[i][j]
+    return found
 
 
-def _principal(scene: OutputContext, call: Call) -> AnyScalar:
+def _principal(scene: OutputContext, call: Call) -> Scalar:
     return scene.principal_moments(_tensor(scene, call, 2))[number_at(call, 1, 3) - 1]
 
 
 # -- by particles -------------------------------------------------------------------------------------
 
 
-def _from_point(trial: Trial, call: Call, first: int) -> Iterator[tuple[Any, Numbers]]:
+def _from_point(trial: Trial, call: Call, first: int) -> Iterator[tuple[Any, Vector]]:
     """(mass, place from the point) of the particles of the bodies that are meant."""
-    point = vector_of(trial.along(trial.scene.position(call.name_at(0)))[0])
+    point = Vector(trial.along(trial.scene.position(call.name_at(0)))[0])
     for body in bodies_from(trial.scene, call, first):
         for m, r, _ in trial.particles(body, still=True):
-            yield m, minus(r, point)
+            yield m, r - point
 
 
 def _sum_of_axis(trial: Trial, call: Call) -> Any:
     """sum m |n x r|^2 / n.n"""
-    n = vector_of(trial.along(_direction(trial.scene, call))[0])
-    squares = ((m, cross(n, r)) for m, r in _from_point(trial, call, 2))
-    return sum(m * dot(d, d) for m, d in squares) / dot(n, n)
+    n = Vector(trial.along(_direction(trial.scene, call))[0])
+    squares = ((m, n.cross(r)) for m, r in _from_point(trial, call, 2))
+    return sum(m * (d @ d) for m, d in squares) / (n @ n)
 
 
 def _sum_of_products(trial: Trial, call: Call, i: int, j: int, first: int) -> Any:
@@ -232,7 +220,7 @@ INERTIA_POINT = _moment(
     ("point",),
     "integral of r^2 dm, of the bodies named or of all, where they are",
     _about_point,
-    lambda trial, call: sum(m * dot(r, r) for m, r in _from_point(trial, call, 1)),
+    lambda trial, call: sum(m * (r @ r) for m, r in _from_point(trial, call, 1)),
 )
 INERTIA_AXIS = _moment(
     "inertia_axis",
@@ -269,17 +257,18 @@ PRINCIPAL_MOMENT = _moment("principal_moment", ("point", "number"), "1, 2, 3, as
 # angular_momentum_x, _y, _z: L_P = sum (R I_C R^T w + m d x v_C). By the second way sum m r x v over particles.
 
 
-def _momentum(scene: OutputContext, call: Call) -> AnyScalar:
+def _momentum(scene: OutputContext, call: Call) -> Scalar:
     bodies, axis = bodies_from(scene, call, 1), component(call)
     turning = [b for b in bodies if any(not is_zero(w) for w in scene.spin(b))]
     refuse_unknown(scene, call, turning, about_z=axis == 2)
-    return scene.angular_momentum(scene.position(call.name_at(0)), bodies)[axis]
+    found: Scalar = scene.angular_momentum(scene.position(call.name_at(0)), bodies)[axis]
+    return found
 
 
 def _sum(trial: Trial, call: Call) -> Any:
-    point = vector_of(trial.along(trial.scene.position(call.name_at(0)))[0])
+    point = Vector(trial.along(trial.scene.position(call.name_at(0)))[0])
     bodies, axis = bodies_from(trial.scene, call, 1), component(call)
-    return sum(m * cross(minus(r, point), v)[axis] for body in bodies for m, r, v in trial.particles(body, still=True))
+    return sum(m * (r - point).cross(v)[axis] for body in bodies for m, r, v in trial.particles(body, still=True))
 
 
 ANGULAR_MOMENTUM = OutputFunction(

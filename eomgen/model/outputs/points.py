@@ -8,25 +8,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import GROUND, OutputContext, OutputFunction, Trial, ValueOf, along, component
 from eomgen.symbolic.exact import vanishes
-from eomgen.symbolic.expression import (
-    AnyScalar,
-    Call,
-    Matrix,
-    Numbers,
-    Vector,
-    apply,
-    cross,
-    dot,
-    function,
-    matrix_of,
-    minus,
-    over,
-    plus,
-    sqrt,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Matrix, Scalar, Vector, function, over, sqrt
 from eomgen.symbolic.numeric import NoValue
 
 # -------- position --------------------------------------------------------------------------------------------
@@ -39,11 +21,11 @@ def _place(scene: OutputContext, point: str, frame: str = GROUND, axes: str = ""
     return turned(scene, seen_from(scene, point, frame), frame, axes)
 
 
-def _place_seen(trial: Trial, point: str, frame: str = GROUND, axes: str = "") -> Numbers:
+def _place_seen(trial: Trial, point: str, frame: str = GROUND, axes: str = "") -> Vector:
     _, place, _ = seen_around(trial, point, frame)
     if axes in ("", frame):
         return place
-    return apply(transposed(axes_at(trial, axes)), apply(axes_at(trial, frame), place))
+    return axes_at(trial, axes).T @ (axes_at(trial, frame) @ place)
 
 
 POSITION = OutputFunction(
@@ -68,59 +50,59 @@ def seen_from(scene: OutputContext, point: str, frame: str = GROUND) -> Vector:
     place = scene.position(point)
     if frame not in scene.bodies:
         return place
-    return apply(transposed(scene.axes(frame)), minus(place, scene.origin(frame)))
+    return scene.axes(frame).T @ (place - scene.origin(frame))
 
 
 def turned(scene: OutputContext, seen: Vector, frame: str, axes: str) -> Vector:
     """The vector turned from the axes of one body into those of another; "": unchanged."""
     if axes in ("", frame):
         return seen
-    return apply(transposed(scene.axes(axes)), apply(scene.axes(frame), seen))
+    return scene.axes(axes).T @ (scene.axes(frame) @ seen)
 
 
-def size(scene: OutputContext, v: Vector) -> AnyScalar:
+def size(scene: OutputContext, v: Vector) -> Scalar:
     """|v| at the state."""
     (v,) = scene.here(v)
-    return sqrt(dot(v, v))
+    return sqrt(v @ v)
 
 
 def axes_at(trial: Trial, body: str, order: int = 0) -> Matrix:
     """R of a body in numbers, or its first or second rate by differences."""
     flat = trial.along([x for row in trial.scene.axes(body) for x in row])[order]
-    return matrix_of((flat[0:3], flat[3:6], flat[6:9]))
+    return Matrix.of((flat[0:3], flat[3:6], flat[6:9]))
 
 
-def seen_around(trial: Trial, point: str, frame: str = GROUND) -> tuple[Numbers, ...]:
+def seen_around(trial: Trial, point: str, frame: str = GROUND) -> tuple[Vector, ...]:
     """The place of a point in a body's frame and axes, a moment before, now, and a moment later."""
     places = trial.around(trial.scene.position(point))
     if frame not in trial.scene.bodies:
         return places
     origins = trial.around(trial.scene.origin(frame))
-    sides = [trial.around(side) for side in transposed(trial.scene.axes(frame))]
-    arms = [minus(place, origin) for place, origin in zip(places, origins, strict=True)]
-    return tuple(vector_of(dot(side[i], arm) for side in sides) for i, arm in enumerate(arms))
+    sides = [trial.around(side) for side in trial.scene.axes(frame).T]
+    arms = [place - origin for place, origin in zip(places, origins, strict=True)]
+    return tuple(Vector(side[i] @ arm for side in sides) for i, arm in enumerate(arms))
 
 
-def differences(trial: Trial, point: str, frame: str = GROUND, axes: str = "", *, order: int) -> Numbers:
+def differences(trial: Trial, point: str, frame: str = GROUND, axes: str = "", *, order: int) -> Vector:
     """Velocity (order 1) or acceleration (2) of a point as differences of its place."""
     if math.isnan(trial.along(trial.scene.position(point))[order][0]):
         raise NoValue("accelerations are not determined there")
     early, now, late = seen_around(trial, point, frame)
     h = trial.step
-    bend: Numbers = plus(minus(late, now), minus(early, now))
-    rates: Numbers = times(1 / (2 * h), minus(late, early)) if order == 1 else times(1 / (h * h), bend)
+    bend: Vector = late - now + (early - now)
+    rates: Vector = 1 / (2 * h) * (late - early) if order == 1 else 1 / (h * h) * bend
     if axes in ("", frame):
         return rates
-    return apply(transposed(axes_at(trial, axes)), apply(axes_at(trial, frame), rates))
+    return axes_at(trial, axes).T @ (axes_at(trial, frame) @ rates)
 
 
-def length(trial: Trial, v: Numbers) -> Any:
+def length(trial: Trial, v: Vector) -> Any:
     """|v| of numbers."""
-    return trial.root(dot(v, v))
+    return trial.root(v @ v)
 
 
 VectorOf = Callable[..., Vector]
-SeenVector = Callable[..., Numbers]
+SeenVector = Callable[..., Vector]
 POINT = ("point", "body", "body")
 
 
@@ -207,27 +189,27 @@ MAGNITUDE_OF_ACCELERATION = magnitude(
 # the radius of the circle through them, and a_n = v^2/rho.
 
 
-def tangential_part(v: Vector, a: Vector) -> AnyScalar:
+def tangential_part(v: Vector, a: Vector) -> Scalar:
     """The rate of the speed, a.v/|v|.
 
     Raises:
         DerivationError: the point is at rest.
     """
-    return over(dot(a, v), _speed(v, "acceleration along its path"))
+    return over(a @ v, _speed(v, "acceleration along its path"))
 
 
-def normal_part(v: Vector, a: Vector) -> AnyScalar:
+def normal_part(v: Vector, a: Vector) -> Scalar:
     """The acceleration across the path, |v x a|/|v|.
 
     Raises:
         DerivationError: the point is at rest.
     """
     _speed(v, "acceleration across its path")
-    n = cross(v, a)
-    return sqrt(over(dot(n, n), dot(v, v)))
+    n = v.cross(a)
+    return sqrt(over(n @ n, v @ v))
 
 
-def curvature_radius(v: Vector, a: Vector) -> AnyScalar:
+def curvature_radius(v: Vector, a: Vector) -> Scalar:
     """rho = |v|^3/|v x a| of the point's path.
 
     Raises:
@@ -238,41 +220,41 @@ def curvature_radius(v: Vector, a: Vector) -> AnyScalar:
         raise DerivationError(
             "the path is straight there: its radius of curvature is infinite", fix="ask where the path bends"
         )
-    return over(dot(v, v) * speed, across)
+    return over(v @ v * speed, across)
 
 
-def _speed(v: Vector, what: str) -> AnyScalar:
+def _speed(v: Vector, what: str) -> Scalar:
     if all(vanishes(x) for x in v):
         raise DerivationError(f"the point is at rest: it has no {what}", fix="ask while it moves")
-    return sqrt(dot(v, v))
+    return sqrt(v @ v)
 
 
-def _across(v: Vector, a: Vector) -> AnyScalar:
+def _across(v: Vector, a: Vector) -> Scalar:
     """|v x a|, in the plane without a root."""
-    n = cross(v, a)
-    return function("abs", n[2]) if vanishes(n[0]) and vanishes(n[1]) else sqrt(dot(n, n))
+    n = v.cross(a)
+    return function("abs", n[2]) if vanishes(n[0]) and vanishes(n[1]) else sqrt(n @ n)
 
 
-def _of_path(law: Callable[[Vector, Vector], AnyScalar]) -> ValueOf:
+def _of_path(law: Callable[[Vector, Vector], Scalar]) -> ValueOf:
     """A law of v and a at the given state."""
     return lambda scene, call: law(*scene.here(velocity(scene, *call.names), acceleration(scene, *call.names)))
 
 
 def _rate_of_speed(trial: Trial, call: Call) -> Any:
     before, now, after = trial.around(seen_from(trial.scene, *call.names))
-    return (length(trial, minus(after, now)) - length(trial, minus(now, before))) / trial.step**2
+    return (length(trial, after - now) - length(trial, now - before)) / trial.step**2
 
 
 def _curvature(trial: Trial, call: Call) -> Any:
     """Curvature of the circle through three places: 2 sin(angle) of their triangle over the side across it."""
     before, now, after = trial.around(seen_from(trial.scene, *call.names))
-    first, last, chord = minus(now, before), minus(after, now), minus(after, before)
-    return 2 * length(trial, cross(first, last)) / (length(trial, first) * length(trial, last) * length(trial, chord))
+    first, last, chord = now - before, after - now, after - before
+    return 2 * length(trial, first.cross(last)) / (length(trial, first) * length(trial, last) * length(trial, chord))
 
 
 def _centripetal(trial: Trial, call: Call) -> Any:
     v = differences(trial, *call.names, order=1)
-    return dot(v, v) * _curvature(trial, call)
+    return v @ v * _curvature(trial, call)
 
 
 TANGENTIAL_ACCELERATION = OutputFunction(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import OutputContext, OutputFunction, OutputSource
-from eomgen.symbolic.expression import AnyScalar, Call
+from eomgen.symbolic.expression import Call, Scalar
 
 # -------- of a run --------------------------------------------------------------------------------------------
 # max, min, mean, rms, last, period, ...: what a formula does along a run, which no single state gives.
@@ -12,7 +12,7 @@ from eomgen.symbolic.expression import AnyScalar, Call
 # They are found by `simulate`; their second way is the run itself, of which no state may be above its maximum.
 
 
-def _of_no_state(context: OutputContext, call: Call) -> AnyScalar:
+def _of_no_state(context: OutputContext, call: Call) -> Scalar:
     raise DerivationError(f"'{call}' is of a run, not of a state", fix="`eomgen simulate` gives it")
 
 
@@ -42,7 +42,7 @@ ALONG_A_RUN = (
 # mass, damping, stiffness, frequency: of the linearized system, which is none of a state; proven as `linearize` is.
 
 
-def _of_linearization(scene: OutputContext, call: Call) -> AnyScalar:
+def _of_linearization(scene: OutputContext, call: Call) -> Scalar:
     raise DerivationError(f"'{call}' is of the linearized system, not of a state", fix="ask it by itself")
 
 

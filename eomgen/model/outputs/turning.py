@@ -25,31 +25,12 @@ from eomgen.model.outputs.points import (
     seen_from,
     turned,
 )
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    ZERO,
-    AnyScalar,
-    Call,
-    Matrix,
-    Numbers,
-    Vector,
-    added,
-    apply,
-    dot,
-    matrix_of,
-    minus,
-    plus,
-    product,
-    sqrt,
-    times,
-    transposed,
-    vector_of,
-)
+from eomgen.symbolic.expression import Call, Matrix, Scalar, Vector, sqrt
 
 BODY = ("body", "body")
 
 
-def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> AnyScalar:
+def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> Scalar:
     """phi_body - phi_frame, in the plane [rad]."""
     for name in (body, frame):
         if not scene.is_plane:
@@ -62,8 +43,8 @@ def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> AnyScalar:
 def _angle_of_axes(trial: Trial, body: str, frame: str = GROUND) -> Any:
     """The angle between the x axes of both, with as many whole turns as coordinates count."""
     scene, x, y = trial.scene, 0, 1
-    own, sides = (transposed(axes_at(trial, name)) if name in scene.bodies else IDENTITY for name in (body, frame))
-    sine, cosine = dot(own[x], sides[y]), dot(own[x], sides[x])
+    own, sides = (axes_at(trial, name).T if name in scene.bodies else Matrix.IDENTITY for name in (body, frame))
+    sine, cosine = own[x] @ sides[y], own[x] @ sides[x]
     (counted,), _, _ = trial.along((scene.angle(body) - scene.angle(frame),))
     angle = counted.context.atan2(sine, cosine)
     turn = 2 * counted.context.pi
@@ -74,22 +55,22 @@ def _spin(scene: OutputContext, body: str, frame: str = GROUND, *, order: int) -
     """omega (order 1) or epsilon (2), ground axes or those of `frame`."""
     w = scene.spin(body)
     if frame in scene.bodies:
-        w = apply(transposed(scene.axes(frame)), minus(w, scene.spin(frame)))
+        w = scene.axes(frame).T @ (w - scene.spin(frame))
     return w if order == 1 else scene.acceleration(w)
 
 
-def _turned(trial: Trial, body: str, frame: str = GROUND, *, order: int) -> Numbers:
+def _turned(trial: Trial, body: str, frame: str = GROUND, *, order: int) -> Vector:
     """The same by differences of the rotation."""
     R, R1, R2 = _rotations(trial, body, frame)
-    W = product(R1, transposed(R)) if order == 1 else added(product(R2, transposed(R)), product(R1, transposed(R1)))
-    return (W[2][1], W[0][2], W[1][0])
+    W = R1 @ R.T if order == 1 else R2 @ R.T + R1 @ R1.T
+    return Vector((W[2][1], W[0][2], W[1][0]))
 
 
 def _rotations(trial: Trial, body: str, frame: str) -> list[Matrix]:
     """R from the axes of the body to those of the frame, and its first and second rate."""
     scene = trial.scene
-    rows = product(transposed(scene.axes(frame)), scene.axes(body))
-    return [matrix_of((x[0:3], x[3:6], x[6:9])) for x in trial.along([x for row in rows for x in row])]
+    rows = scene.axes(frame).T @ scene.axes(body)
+    return [Matrix.of((x[0:3], x[3:6], x[6:9])) for x in trial.along([x for row in rows for x in row])]
 
 
 def _own_axis(call: Call) -> int:
@@ -99,9 +80,9 @@ def _own_axis(call: Call) -> int:
 def _one(name: str, unit: str, gives: str, order: int) -> OutputFunction:
     """The output function of a rate of rotation: in the plane counter-clockwise positive; in space the magnitude."""
 
-    def value(scene: OutputContext, call: Call) -> AnyScalar:
+    def value(scene: OutputContext, call: Call) -> Scalar:
         w = _spin(scene, *call.names, order=order)
-        return w[2] if scene.is_plane else sqrt(dot(w, w))
+        return w[2] if scene.is_plane else sqrt(w @ w)
 
     def second(trial: Trial, call: Call) -> Any:
         w = _turned(trial, *call.names, order=order)
@@ -120,14 +101,15 @@ def _components(names: str, unit: str, order: int) -> OutputFunction:
 def _about_own_axes(name: str, unit: str, order: int) -> OutputFunction:
     """The components of R^T w along the axes of the body itself, 1, 2 and 3, as Euler's equations have them."""
 
-    def value(scene: OutputContext, call: Call) -> AnyScalar:
+    def value(scene: OutputContext, call: Call) -> Scalar:
         (body,) = call.names
-        return apply(transposed(scene.axes(body)), _spin(scene, body, order=order))[_own_axis(call)]
+        found: Scalar = (scene.axes(body).T @ _spin(scene, body, order=order))[_own_axis(call)]
+        return found
 
     def second(trial: Trial, call: Call) -> Any:
         (body,) = call.names
         R, *_ = _rotations(trial, body, GROUND)
-        return apply(transposed(R), _turned(trial, body, order=order))[_own_axis(call)]
+        return (R.T @ _turned(trial, body, order=order))[_own_axis(call)]
 
     return OutputFunction(
         names=tuple(f"{name}_{k}" for k in (1, 2, 3)),
@@ -165,7 +147,7 @@ OWN_ANGULAR_ACCELERATION = _about_own_axes("epsilon", "rad/s^2", 2)
 # linear in the place, and c = A + x (B - A) + y (C - A) is where they vanish.
 
 
-CORNERS: tuple[Vector, ...] = (ZERO, (1, 0, 0), (0, 1, 0))  # of a triangle in the body [m]
+CORNERS: tuple[Vector, ...] = (Vector.ZERO, Vector((1, 0, 0)), Vector((0, 1, 0)))  # of a triangle in the body [m]
 
 
 def _in_plane(scene: OutputContext, what: str, body: str) -> None:
@@ -185,24 +167,25 @@ def _pole(scene: OutputContext, body: str) -> Vector:
     return scene.acceleration_pole(body)
 
 
-def _still_point(trial: Trial, order: int, body: str, other: str = GROUND) -> Numbers:
+def _still_point(trial: Trial, order: int, body: str, other: str = GROUND) -> Vector:
     """Place at which the rate of a place in the other body's frame vanishes, ground axes."""
     scene = trial.scene
     places: list[Any] = []
     rates: list[Any] = []
     for corner in CORNERS:
-        place = plus(scene.origin(body), apply(scene.axes(body), corner))
-        seen = apply(transposed(scene.axes(other)), minus(place, scene.origin(other)))
-        places.append(vector_of(trial.along(place)[0]))
-        rates.append(apply(axes_at(trial, other), vector_of(trial.along(seen)[order])))
+        place = scene.origin(body) + scene.axes(body) @ corner
+        seen = scene.axes(other).T @ (place - scene.origin(other))
+        places.append(Vector(trial.along(place)[0]))
+        rates.append(axes_at(trial, other) @ Vector(trial.along(seen)[order]))
     a: Any
     b: Any
     c: Any
-    a, b, c = rates[0], minus(rates[1], rates[0]), minus(rates[2], rates[0])
+    a, b, c = rates[0], rates[1] - rates[0], rates[2] - rates[0]
     area = b[0] * c[1] - b[1] * c[0]
     x, y = (a[1] * c[0] - a[0] * c[1]) / area, (a[0] * b[1] - a[1] * b[0]) / area
-    first, second = (minus(corner, places[0]) for corner in places[1:])
-    return plus(places[0], plus(times(x, first), times(y, second)))
+    first, second = (there - places[0] for there in places[1:])
+    at: Vector = places[0] + (first * x + second * y)
+    return at
 
 
 def _center_by_poses(order: int) -> SecondOf:
@@ -238,7 +221,7 @@ ACCELERATION_POLE = OutputFunction(
 # is shortest at s = -v_A.(v_B - v_A)/|v_B - v_A|^2, or at an end.
 
 
-def _least_speed(scene: OutputContext, start: str, end: str) -> AnyScalar:
+def _least_speed(scene: OutputContext, start: str, end: str) -> Scalar:
     body, other = scene.body_of(start), scene.body_of(end)
     if body != other:
         what = f"least_speed({start}, {end}): '{start}' and '{end}' are points of two bodies"
@@ -248,10 +231,10 @@ def _least_speed(scene: OutputContext, start: str, end: str) -> AnyScalar:
 
 def _least_by_places(trial: Trial, start: str, end: str) -> Any:
     first = differences(trial, start, order=1)
-    change = minus(differences(trial, end, order=1), first)
-    square: Any = dot(change, change)
-    s: Any = min(1, max(0, -dot(first, change) / square)) if square else 0
-    return length(trial, plus(first, times(s, change)))
+    change = differences(trial, end, order=1) - first
+    square: Any = change @ change
+    s: Any = min(1, max(0, -(first @ change) / square)) if square else 0
+    return length(trial, first + s * change)
 
 
 LEAST_SPEED = OutputFunction(
@@ -276,42 +259,42 @@ LEAST_SPEED = OutputFunction(
 
 
 PartOf = Callable[[PartsOfMotion], Vector]
-SeenPart = Callable[[Trial, str, str], Numbers]
+SeenPart = Callable[[Trial, str, str], Vector]
 
 
 def _carried(order: int) -> SeenPart:
     """Velocity (order 1) or acceleration (2) of the point of the body that the point passes."""
 
-    def found(trial: Trial, point: str, body: str) -> Numbers:
-        held = vector_of(trial.along(seen_from(trial.scene, point, body))[0])
+    def found(trial: Trial, point: str, body: str) -> Vector:
+        held = Vector(trial.along(seen_from(trial.scene, point, body))[0])
         origin = trial.along(trial.scene.origin(body))[order]
-        return plus(vector_of(origin), apply(axes_at(trial, body, order), held))
+        return Vector(origin) + axes_at(trial, body, order) @ held
 
     return found
 
 
-def _turning(trial: Trial, point: str, body: str) -> tuple[Numbers, Matrix]:
+def _turning(trial: Trial, point: str, body: str) -> tuple[Vector, Matrix]:
     """(r from the body's origin, W = R' R^T)."""
     R = axes_at(trial, body)
-    held = vector_of(trial.along(seen_from(trial.scene, point, body))[0])
-    return apply(R, held), product(axes_at(trial, body, 1), transposed(R))
+    held = Vector(trial.along(seen_from(trial.scene, point, body))[0])
+    return R @ held, axes_at(trial, body, 1) @ R.T
 
 
-def _centripetal(trial: Trial, point: str, body: str) -> Numbers:
+def _centripetal(trial: Trial, point: str, body: str) -> Vector:
     r, W = _turning(trial, point, body)
-    return apply(W, apply(W, r))
+    return W @ (W @ r)
 
 
-def _euler(trial: Trial, point: str, body: str) -> Numbers:
+def _euler(trial: Trial, point: str, body: str) -> Vector:
     r, _ = _turning(trial, point, body)
-    whole = product(axes_at(trial, body, 2), transposed(axes_at(trial, body)))
-    return minus(apply(whole, r), _centripetal(trial, point, body))
+    whole = axes_at(trial, body, 2) @ axes_at(trial, body).T
+    return whole @ r - _centripetal(trial, point, body)
 
 
-def _coriolis(trial: Trial, point: str, body: str) -> Numbers:
+def _coriolis(trial: Trial, point: str, body: str) -> Vector:
     """a - a_t - a_r"""
-    relative = apply(axes_at(trial, body), differences(trial, point, body, order=2))
-    return minus(minus(differences(trial, point, order=2), _carried(2)(trial, point, body)), relative)
+    relative = axes_at(trial, body) @ differences(trial, point, body, order=2)
+    return differences(trial, point, order=2) - _carried(2)(trial, point, body) - relative
 
 
 def _of(part: PartOf) -> VectorOf:
@@ -324,9 +307,9 @@ def _of(part: PartOf) -> VectorOf:
 
 
 def _seen(part: SeenPart) -> SeenVector:
-    def second(trial: Trial, point: str, body: str, axes: str = "") -> Numbers:
+    def second(trial: Trial, point: str, body: str, axes: str = "") -> Vector:
         found = part(trial, point, body)
-        return apply(transposed(axes_at(trial, axes)), found) if axes else found
+        return axes_at(trial, axes).T @ found if axes else found
 
     return second
 

@@ -9,7 +9,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
-from eomgen.symbolic.expression import ZERO, Matrix, SpatialInertia, Vector, matrix_of, minus, parse
+from eomgen.symbolic.expression import Matrix, SpatialInertia, Vector, parse
 from eomgen.symbolic.numeric import tolerances
 
 Cell = Callable[[Sequence[Any]], Vector]
@@ -27,7 +27,7 @@ class MassProperties:
 
     def about(self, point: Vector) -> Matrix:
         """Inertia about a point, the axes unchanged: I + m (d.d 1 - d d^T), d from the point to the mass centre."""
-        return SpatialInertia.about_center(self.m, minus(self.com, point), self.I).I
+        return SpatialInertia.about_center(self.m, self.com - point, self.I).I
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,7 +50,7 @@ class Shape(Part, ABC):
 
     def points(self, value: ValueOf) -> dict[str, Vector]:
         """The named points of the shape, body axes [m]: `origin`, `center`, the mass centre, and its own."""
-        return {"origin": ZERO, "center": self.of_mass(1, value).com}
+        return {"origin": Vector.ZERO, "center": self.of_mass(1, value).com}
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         """The point at s, as many parts from 0 to 1 as it has dimensions, which run through all of it once.
@@ -94,13 +94,13 @@ class Shape(Part, ABC):
 
 def diagonal(xx: Any, yy: Any, zz: Any) -> Matrix:
     """The 3 x 3 matrix with this diagonal."""
-    return ((xx, 0, 0), (0, yy, 0), (0, 0, zz))
+    return Matrix.of(((xx, 0, 0), (0, yy, 0), (0, 0, zz)))
 
 
 def tensor(second: Sequence[Sequence[Any]]) -> Matrix:
     """The inertia tensor from the second moments P_ij, the integrals of x_i x_j dm: I = tr(P) 1 - P."""
     trace = second[0][0] + second[1][1] + second[2][2]
-    return matrix_of(((trace if i == j else 0) - second[i][j] for j in range(3)) for i in range(3))
+    return Matrix.of(((trace if i == j else 0) - second[i][j] for j in range(3)) for i in range(3))
 
 
 def around(radius: Any, turn: Any) -> tuple[Any, Any]:
@@ -114,7 +114,7 @@ def around(radius: Any, turn: Any) -> tuple[Any, Any]:
 def on_ball(radius: Any, fall: Any, turn: Any) -> Vector:
     """(x, y, z) at a distance from the origin, a part of half a turn down from +z, a part of a turn about it."""
     z, out = around(radius, HALF * fall)
-    return (*around(out, turn), z)
+    return Vector((*around(out, turn), z))
 
 
 def between(start: Any, end: Any, part: Any) -> Any:

@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import Any, ClassVar
 
 from eomgen.frozen import dataclass
-from eomgen.symbolic.expression import ZERO, Fraction, Vector
+from eomgen.symbolic.expression import Fraction, Vector
 
 HALF_OF = Fraction(1, 2)
 TICK = Fraction(17, 20)  # of a hoop's radius, where the mark that shows its turn begins
@@ -97,7 +97,7 @@ class EllipsoidForm(Form):
 
     def flat(self) -> tuple[Form, ...]:
         x, y, _ = self.size
-        return (ArcForm(self.at, x, y, close="chord"), LineForm((self.at, (self.at[0] + x, *self.at[1:])), fine=True))
+        return (ArcForm(self.at, x, y, close="chord"), LineForm((self.at, self.at + Vector((x, 0, 0))), fine=True))
 
 
 @dataclass(frozen=True)
@@ -128,7 +128,7 @@ class PrismForm(Form):
     high: Any
 
     def flat(self) -> tuple[Form, ...]:
-        return (PolygonForm(tuple((x, y, 0) for x, y in self.points)),)
+        return (PolygonForm(tuple(Vector((x, y, 0)) for x, y in self.points)),)
 
 
 @dataclass(frozen=True)
@@ -141,10 +141,10 @@ class PolyhedronForm(Form):
     faces: tuple[tuple[int, ...], ...]
 
     def flat(self) -> tuple[Form, ...]:
-        return (PolygonForm(tuple((*self.points[k][:2], 0) for k in self.faces[0])),)
+        return (PolygonForm(tuple(Vector((*self.points[k][:2], 0)) for k in self.faces[0])),)
 
 
-def disc_of(radius: Any, at: Vector = ZERO) -> ArcForm:
+def disc_of(radius: Any, at: Vector = Vector.ZERO) -> ArcForm:
     """A filled circle."""
     return ArcForm(at, radius, radius, close="chord")
 
@@ -153,23 +153,26 @@ def round_plate(outer: Any, inner: Any = None) -> tuple[Form, ...]:
     """A disc, or a ring around a hole, and a radius that shows how it has turned."""
     start = 0 if inner is None else inner
     hole = () if inner is None else (replace(disc_of(inner), hole=True),)
-    return (disc_of(outer), *hole, LineForm(((start, 0, 0), (outer, 0, 0)), fine=True))
+    return (disc_of(outer), *hole, LineForm((Vector((start, 0, 0)), Vector((outer, 0, 0))), fine=True))
 
 
 def hoop(radius: Any) -> tuple[Form, ...]:
     """A thin ring, with a mark that shows how it has turned."""
-    return (ArcForm(ZERO, radius, radius), LineForm(((TICK * radius, 0, 0), (radius, 0, 0)), fine=True))
+    return (
+        ArcForm(Vector.ZERO, radius, radius),
+        LineForm((Vector((TICK * radius, 0, 0)), Vector((radius, 0, 0))), fine=True),
+    )
 
 
 def box_around(width: Any, height: Any) -> PolygonForm:
     """A rectangle about the origin."""
     x, y = HALF_OF * width, HALF_OF * height
-    return PolygonForm(((-x, -y, 0), (x, -y, 0), (x, y, 0), (-x, y, 0)))
+    return PolygonForm((Vector((-x, -y, 0)), Vector((x, -y, 0)), Vector((x, y, 0)), Vector((-x, y, 0))))
 
 
 def turned_profile(profile: tuple[tuple[Any, Any], ...], *rims: Any) -> RevolutionForm:
     """A body of revolution about the origin's axis z."""
-    return RevolutionForm(ZERO, profile, rims)
+    return RevolutionForm(Vector.ZERO, profile, rims)
 
 
 def cylinder_form(radius: Any, length: Any, inner: Any = None) -> RevolutionForm:

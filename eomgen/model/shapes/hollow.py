@@ -22,7 +22,7 @@ from eomgen.model.shapes.base import (
     on_ball,
 )
 from eomgen.model.shapes.forms import HALF_OF, EllipsoidForm, Form, circle_points, cylinder_form, turned_profile
-from eomgen.symbolic.expression import ZERO, Fraction, Vector, over, sqrt
+from eomgen.symbolic.expression import Fraction, Vector, over, sqrt
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,7 +56,7 @@ class HollowSphere(Hollow):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         r = value(self.radius)
-        return (EllipsoidForm(ZERO, (r, r, r)),)
+        return (EllipsoidForm(Vector.ZERO, Vector((r, r, r))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(between(value(self.inner), value(self.radius), s[0]), s[1], s[2])
@@ -69,7 +69,7 @@ class HollowSphere(Hollow):
         R, r = value(self.radius), value(self.inner)
         above = R * R * R * R + R * R * R * r + R * R * r * r + R * r * r * r + r * r * r * r  # both over R - r
         square = over(Fraction(2, 5) * m * above, R * R + R * r + r * r)
-        return MassProperties(m, ZERO, diagonal(square, square, square))
+        return MassProperties(m, Vector.ZERO, diagonal(square, square, square))
 
 
 # -------- tube ------------------------------------------------------------------------------------------------
@@ -97,7 +97,7 @@ class Tube(Hollow):
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         radius = between(value(self.inner), value(self.radius), s[0])
-        return (*around(radius, s[1]), value(self.length) * (s[2] - HALF))
+        return Vector((*around(radius, s[1]), value(self.length) * (s[2] - HALF)))
 
     def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.inner)
@@ -107,7 +107,7 @@ class Tube(Hollow):
         R, r, length = value(self.radius), value(self.inner), value(self.length)
         quarter = Fraction(1, 4) * m * (R * R + r * r)
         across = quarter + Fraction(1, 12) * m * length * length
-        return MassProperties(m, ZERO, diagonal(across, across, 2 * quarter))
+        return MassProperties(m, Vector.ZERO, diagonal(across, across, 2 * quarter))
 
 
 # -------- conical shell ---------------------------------------------------------------------------------------
@@ -135,7 +135,7 @@ class ConicalShell(Shape):
         return (turned_profile(((r, -Fraction(1, 3) * h), (0, Fraction(2, 3) * h)), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius) * (1 - s[1]), s[0]), value(self.height) * (s[1] - THIRD))
+        return Vector((*around(value(self.radius) * (1 - s[1]), s[0]), value(self.height) * (s[1] - THIRD)))
 
     def measure(self, value: ValueOf) -> Any:
         r, h = value(self.radius), value(self.height)
@@ -144,7 +144,7 @@ class ConicalShell(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, h = value(self.radius), value(self.height)
         across = Fraction(1, 4) * m * r * r + Fraction(1, 18) * m * h * h
-        return MassProperties(m, ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))
+        return MassProperties(m, Vector.ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))
 
 
 # -------- cylindrical shell -----------------------------------------------------------------------------------
@@ -172,7 +172,7 @@ class CylindricalShell(Shape):
         return (turned_profile(((r, -half), (r, half)), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius), s[0]), value(self.length) * (s[1] - HALF))
+        return Vector((*around(value(self.radius), s[0]), value(self.length) * (s[1] - HALF)))
 
     def measure(self, value: ValueOf) -> Any:
         return 2 * value(PI) * value(self.radius) * value(self.length)
@@ -180,7 +180,7 @@ class CylindricalShell(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, length = value(self.radius), value(self.length)
         across = Fraction(1, 2) * m * r * r + Fraction(1, 12) * m * length * length
-        return MassProperties(m, ZERO, diagonal(across, across, m * r * r))
+        return MassProperties(m, Vector.ZERO, diagonal(across, across, m * r * r))
 
 
 # -------- hemispherical shell ---------------------------------------------------------------------------------
@@ -216,7 +216,7 @@ class HemisphericalShell(Shape):
         r = value(self.radius)
         z, square = Fraction(1, 2) * r, Fraction(2, 3) * m * r * r
         across = square - m * z * z
-        return MassProperties(m, (0, 0, z), diagonal(across, across, square))
+        return MassProperties(m, Vector((0, 0, z)), diagonal(across, across, square))
 
 
 # -------- spherical shell -------------------------------------------------------------------------------------
@@ -237,7 +237,7 @@ class SphericalShell(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         r = value(self.radius)
-        return (EllipsoidForm(ZERO, (r, r, r)),)
+        return (EllipsoidForm(Vector.ZERO, Vector((r, r, r))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(value(self.radius), s[0], s[1])
@@ -248,4 +248,4 @@ class SphericalShell(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         square = Fraction(2, 3) * m * r * r
-        return MassProperties(m, ZERO, diagonal(square, square, square))
+        return MassProperties(m, Vector.ZERO, diagonal(square, square, square))

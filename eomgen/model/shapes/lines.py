@@ -7,7 +7,7 @@ from eomgen.frozen import dataclass
 from eomgen.model.kinds import Length, Opening, ValueOf
 from eomgen.model.shapes.base import HALF, PI, MassProperties, Shape, around, diagonal, more_than_a_turn, part_of_turn
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form, LineForm, hoop
-from eomgen.symbolic.expression import ZERO, Fraction, Vector, over, sin
+from eomgen.symbolic.expression import Fraction, Vector, over, sin
 
 # -------- particle --------------------------------------------------------------------------------------------
 # Particle: a mass without size.
@@ -21,13 +21,13 @@ class Particle(Shape):
     dimension: ClassVar[int] = 0
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return ZERO
+        return Vector.ZERO
 
     def measure(self, value: ValueOf) -> Any:
         return 0
 
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
-        return MassProperties(m, ZERO, diagonal(0, 0, 0))
+        return MassProperties(m, Vector.ZERO, diagonal(0, 0, 0))
 
 
 # -------- rod -------------------------------------------------------------------------------------------------
@@ -47,14 +47,19 @@ class Rod(Shape):
     length: Length
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
-        return (LineForm((ZERO, (value(self.length), 0, 0))),)
+        return (LineForm((Vector.ZERO, Vector((value(self.length), 0, 0)))),)
 
     def points(self, value: ValueOf) -> dict[str, Vector]:
         length = value(self.length)
-        return {"origin": ZERO, "start": ZERO, "end": (length, 0, 0), "center": (Fraction(1, 2) * length, 0, 0)}
+        return {
+            "origin": Vector.ZERO,
+            "start": Vector.ZERO,
+            "end": Vector((length, 0, 0)),
+            "center": Vector((Fraction(1, 2) * length, 0, 0)),
+        }
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (value(self.length) * s[0], 0, 0)
+        return Vector((value(self.length) * s[0], 0, 0))
 
     def measure(self, value: ValueOf) -> Any:
         return value(self.length)
@@ -62,7 +67,7 @@ class Rod(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         length = value(self.length)
         across = Fraction(1, 12) * m * length * length
-        return MassProperties(m, (Fraction(1, 2) * length, 0, 0), diagonal(0, across, across))
+        return MassProperties(m, Vector((Fraction(1, 2) * length, 0, 0)), diagonal(0, across, across))
 
     @property
     def point_names(self) -> tuple[str, ...]:
@@ -92,13 +97,13 @@ class Arc(Shape):
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         half = HALF_OF * value(self.opening)
         r = value(self.radius)
-        return (ArcForm(ZERO, r, r, -half, half),)
+        return (ArcForm(Vector.ZERO, r, r, -half, half),)
 
     def impossible(self, value: ValueOf) -> str:
         return more_than_a_turn(value(self.opening))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius), (s[0] - HALF) * part_of_turn(value(self.opening))), 0)
+        return Vector((*around(value(self.radius), (s[0] - HALF) * part_of_turn(value(self.opening))), 0))
 
     def measure(self, value: ValueOf) -> Any:
         return value(self.radius) * value(self.opening)
@@ -108,7 +113,9 @@ class Arc(Shape):
         x = over(2 * r * sin(Fraction(1, 2) * A), A)
         half, lean = Fraction(1, 2) * m * r * r, over(sin(A), A)
         shift = m * x * x
-        return MassProperties(m, (x, 0, 0), diagonal(half * (1 - lean), half * (1 + lean) - shift, 2 * half - shift))
+        return MassProperties(
+            m, Vector((x, 0, 0)), diagonal(half * (1 - lean), half * (1 + lean) - shift, 2 * half - shift)
+        )
 
 
 # -------- ring ------------------------------------------------------------------------------------------------
@@ -131,7 +138,7 @@ class Ring(Shape):
         return hoop(value(self.radius))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius), s[0]), 0)
+        return Vector((*around(value(self.radius), s[0]), 0))
 
     def measure(self, value: ValueOf) -> Any:
         return 2 * value(PI) * value(self.radius)
@@ -139,4 +146,4 @@ class Ring(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         square = m * r * r
-        return MassProperties(m, ZERO, diagonal(Fraction(1, 2) * square, Fraction(1, 2) * square, square))
+        return MassProperties(m, Vector.ZERO, diagonal(Fraction(1, 2) * square, Fraction(1, 2) * square, square))

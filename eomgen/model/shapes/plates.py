@@ -20,7 +20,7 @@ from eomgen.model.shapes.base import (
 )
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form, LineForm, PolygonForm, box_around, round_plate
 from eomgen.model.shapes.hollow import Hollow
-from eomgen.symbolic.expression import ZERO, Expression, Fraction, Vector, function, over, sin
+from eomgen.symbolic.expression import Expression, Fraction, Matrix, Vector, function, over, sin
 
 # -------- annulus ---------------------------------------------------------------------------------------------
 # Annulus: a thin round plate with a concentric hole.
@@ -44,7 +44,7 @@ class Annulus(Hollow):
         return round_plate(value(self.radius), value(self.inner))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(between(value(self.inner), value(self.radius), s[0]), s[1]), 0)
+        return Vector((*around(between(value(self.inner), value(self.radius), s[0]), s[1]), 0))
 
     def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.inner)
@@ -53,7 +53,7 @@ class Annulus(Hollow):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r = value(self.radius), value(self.inner)
         quarter = Fraction(1, 4) * m * (R * R + r * r)
-        return MassProperties(m, ZERO, diagonal(quarter, quarter, 2 * quarter))
+        return MassProperties(m, Vector.ZERO, diagonal(quarter, quarter, 2 * quarter))
 
 
 # -------- disc ------------------------------------------------------------------------------------------------
@@ -76,7 +76,7 @@ class Disc(Shape):
         return round_plate(value(self.radius))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius) * s[0], s[1]), 0)
+        return Vector((*around(value(self.radius) * s[0], s[1]), 0))
 
     def measure(self, value: ValueOf) -> Any:
         return value(PI) * value(self.radius) * value(self.radius)
@@ -85,7 +85,7 @@ class Disc(Shape):
         r = value(self.radius)
         square = m * r * r
         quarter = Fraction(1, 4) * square
-        return MassProperties(m, ZERO, diagonal(quarter, quarter, Fraction(1, 2) * square))
+        return MassProperties(m, Vector.ZERO, diagonal(quarter, quarter, Fraction(1, 2) * square))
 
 
 # -------- ellipse ---------------------------------------------------------------------------------------------
@@ -106,12 +106,12 @@ class Ellipse(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         a, b = map(value, self.semiaxes)
-        return (ArcForm(ZERO, a, b, close="chord"), LineForm((ZERO, (a, 0, 0)), fine=True))
+        return (ArcForm(Vector.ZERO, a, b, close="chord"), LineForm((Vector.ZERO, Vector((a, 0, 0))), fine=True))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y = around(s[0], s[1])
         a, b = map(value, self.semiaxes)
-        return (a * x, b * y, 0)
+        return Vector((a * x, b * y, 0))
 
     def measure(self, value: ValueOf) -> Any:
         a, b = map(value, self.semiaxes)
@@ -120,7 +120,7 @@ class Ellipse(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         a, b = map(value, self.semiaxes)
         xx, yy = Fraction(1, 4) * m * b * b, Fraction(1, 4) * m * a * a
-        return MassProperties(m, ZERO, diagonal(xx, yy, xx + yy))
+        return MassProperties(m, Vector.ZERO, diagonal(xx, yy, xx + yy))
 
 
 # -------- polygon ---------------------------------------------------------------------------------------------
@@ -146,7 +146,7 @@ class Polygon(Shape):
     vertices: Vertices
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
-        return (PolygonForm(tuple((value(x), value(y), 0) for x, y in self.vertices)),)
+        return (PolygonForm(tuple(Vector((value(x), value(y), 0)) for x, y in self.vertices)),)
 
     def impossible(self, value: ValueOf) -> str:
         corners = [(value(x), value(y)) for x, y in self.vertices]
@@ -171,7 +171,7 @@ class Polygon(Shape):
         I_xx = Fraction(1, 6) * density * xx - m * y * y
         I_yy = Fraction(1, 6) * density * yy - m * x * x
         I_xy = m * x * y - Fraction(1, 12) * density * xy
-        return MassProperties(m, (x, y, 0), ((I_xx, I_xy, 0), (I_xy, I_yy, 0), (0, 0, I_xx + I_yy)))
+        return MassProperties(m, Vector((x, y, 0)), Matrix.of(((I_xx, I_xy, 0), (I_xy, I_yy, 0), (0, 0, I_xx + I_yy))))
 
 
 def _fan(a: tuple[Any, Any], b: tuple[Any, Any]) -> Cell:
@@ -179,7 +179,7 @@ def _fan(a: tuple[Any, Any], b: tuple[Any, Any]) -> Cell:
 
     def at(s: Sequence[Any]) -> Vector:
         x, y = (between(a[k], b[k], s[1]) * s[0] for k in (0, 1))
-        return (x, y, 0)
+        return Vector((x, y, 0))
 
     return at
 
@@ -239,7 +239,7 @@ class Rectangle(Shape):
         return (box_around(value(self.width), value(self.height)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (value(self.width) * (s[0] - HALF), value(self.height) * (s[1] - HALF), 0)
+        return Vector((value(self.width) * (s[0] - HALF), value(self.height) * (s[1] - HALF), 0))
 
     def measure(self, value: ValueOf) -> Any:
         return value(self.width) * value(self.height)
@@ -247,7 +247,7 @@ class Rectangle(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         w, h = value(self.width), value(self.height)
         xx, yy = Fraction(1, 12) * m * h * h, Fraction(1, 12) * m * w * w
-        return MassProperties(m, ZERO, diagonal(xx, yy, xx + yy))
+        return MassProperties(m, Vector.ZERO, diagonal(xx, yy, xx + yy))
 
 
 # -------- sector ----------------------------------------------------------------------------------------------
@@ -273,13 +273,13 @@ class Sector(Shape):
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         half = HALF_OF * value(self.opening)
         r = value(self.radius)
-        return (ArcForm(ZERO, r, r, -half, half, close="center"),)
+        return (ArcForm(Vector.ZERO, r, r, -half, half, close="center"),)
 
     def impossible(self, value: ValueOf) -> str:
         return more_than_a_turn(value(self.opening))
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius) * s[0], (s[1] - HALF) * part_of_turn(value(self.opening))), 0)
+        return Vector((*around(value(self.radius) * s[0], (s[1] - HALF) * part_of_turn(value(self.opening))), 0))
 
     def measure(self, value: ValueOf) -> Any:
         r = value(self.radius)
@@ -291,7 +291,7 @@ class Sector(Shape):
         quarter, lean = Fraction(1, 4) * m * r * r, over(sin(A), A)
         shift = m * x * x
         return MassProperties(
-            m, (x, 0, 0), diagonal(quarter * (1 - lean), quarter * (1 + lean) - shift, 2 * quarter - shift)
+            m, Vector((x, 0, 0)), diagonal(quarter * (1 - lean), quarter * (1 + lean) - shift, 2 * quarter - shift)
         )
 
 
@@ -317,10 +317,10 @@ class Triangle(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         w, h = value(self.width), value(self.height)
-        return (PolygonForm((ZERO, (w, 0, 0), (0, h, 0))),)
+        return (PolygonForm((Vector.ZERO, Vector((w, 0, 0)), Vector((0, h, 0)))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (value(self.width) * s[0], value(self.height) * s[1] * (1 - s[0]), 0)
+        return Vector((value(self.width) * s[0], value(self.height) * s[1] * (1 - s[0]), 0))
 
     def measure(self, value: ValueOf) -> Any:
         return Fraction(1, 2) * value(self.width) * value(self.height)
@@ -329,4 +329,4 @@ class Triangle(Shape):
         w, h = value(self.width), value(self.height)
         xx, yy, xy = Fraction(1, 18) * m * h * h, Fraction(1, 18) * m * w * w, Fraction(1, 36) * m * w * h
         center = (Fraction(1, 3) * w, Fraction(1, 3) * h, 0)
-        return MassProperties(m, center, ((xx, xy, 0), (xy, yy, 0), (0, 0, xx + yy)))
+        return MassProperties(m, Vector(center), Matrix.of(((xx, xy, 0), (xy, yy, 0), (0, 0, xx + yy))))

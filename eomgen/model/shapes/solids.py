@@ -19,19 +19,7 @@ from eomgen.model.shapes.forms import (
     turned_profile,
 )
 from eomgen.model.shapes.plates import Polygon, Vertices
-from eomgen.symbolic.expression import (
-    ZERO,
-    Expression,
-    Fraction,
-    Vector,
-    added,
-    cross,
-    dot,
-    function,
-    minus,
-    over,
-    vector_of,
-)
+from eomgen.symbolic.expression import Expression, Fraction, Vector, function, over
 
 # -------- box -------------------------------------------------------------------------------------------------
 # Box: a solid block.
@@ -51,11 +39,11 @@ class Box(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         width, height, depth = map(value, self.size)
-        return (BoxForm(ZERO, (width, height, depth)),)
+        return (BoxForm(Vector.ZERO, Vector((width, height, depth))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y, z = map(value, self.size)
-        return (x * (s[0] - HALF), y * (s[1] - HALF), z * (s[2] - HALF))
+        return Vector((x * (s[0] - HALF), y * (s[1] - HALF), z * (s[2] - HALF)))
 
     def measure(self, value: ValueOf) -> Any:
         x, y, z = map(value, self.size)
@@ -63,7 +51,7 @@ class Box(Shape):
 
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         x, y, z = (Fraction(1, 12) * m * value(edge) * value(edge) for edge in self.size)
-        return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))
+        return MassProperties(m, Vector.ZERO, diagonal(y + z, z + x, x + y))
 
 
 # -------- cone ------------------------------------------------------------------------------------------------
@@ -92,7 +80,9 @@ class Cone(Shape):
         return (turned_profile(((0, base), (r, base), (0, apex)), r),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius) * (1 - s[2]) * s[0], s[1]), value(self.height) * (s[2] - HALF * HALF))
+        return Vector(
+            (*around(value(self.radius) * (1 - s[2]) * s[0], s[1]), value(self.height) * (s[2] - HALF * HALF))
+        )
 
     def measure(self, value: ValueOf) -> Any:
         return Fraction(1, 3) * value(PI) * value(self.radius) * value(self.radius) * value(self.height)
@@ -100,7 +90,7 @@ class Cone(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, h = value(self.radius), value(self.height)
         across = Fraction(3, 20) * m * r * r + Fraction(3, 80) * m * h * h
-        return MassProperties(m, ZERO, diagonal(across, across, Fraction(3, 10) * m * r * r))
+        return MassProperties(m, Vector.ZERO, diagonal(across, across, Fraction(3, 10) * m * r * r))
 
 
 # -------- cylinder --------------------------------------------------------------------------------------------
@@ -127,7 +117,7 @@ class Cylinder(Shape):
         return (cylinder_form(value(self.radius), value(self.length)),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return (*around(value(self.radius) * s[0], s[1]), value(self.length) * (s[2] - HALF))
+        return Vector((*around(value(self.radius) * s[0], s[1]), value(self.length) * (s[2] - HALF)))
 
     def measure(self, value: ValueOf) -> Any:
         return value(PI) * value(self.radius) * value(self.radius) * value(self.length)
@@ -135,7 +125,7 @@ class Cylinder(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r, length = value(self.radius), value(self.length)
         across = Fraction(1, 4) * m * r * r + Fraction(1, 12) * m * length * length
-        return MassProperties(m, ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))
+        return MassProperties(m, Vector.ZERO, diagonal(across, across, Fraction(1, 2) * m * r * r))
 
 
 # -------- ellipsoid -------------------------------------------------------------------------------------------
@@ -156,10 +146,10 @@ class Ellipsoid(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         a, b, c = map(value, self.semiaxes)
-        return (EllipsoidForm(ZERO, (a, b, c)),)
+        return (EllipsoidForm(Vector.ZERO, Vector((a, b, c))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
-        return vector_of(value(a) * x for a, x in zip(self.semiaxes, on_ball(s[0], s[1], s[2]), strict=True))
+        return Vector(value(a) * x for a, x in zip(self.semiaxes, on_ball(s[0], s[1], s[2]), strict=True))
 
     def measure(self, value: ValueOf) -> Any:
         a, b, c = map(value, self.semiaxes)
@@ -167,7 +157,7 @@ class Ellipsoid(Shape):
 
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         x, y, z = (Fraction(1, 5) * m * value(axis) * value(axis) for axis in self.semiaxes)
-        return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))
+        return MassProperties(m, Vector.ZERO, diagonal(y + z, z + x, x + y))
 
 
 # -------- frustum ---------------------------------------------------------------------------------------------
@@ -199,7 +189,7 @@ class Frustum(Shape):
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         radius = between(value(self.radius), value(self.top), s[2])
-        return (*around(radius * s[0], s[1]), value(self.height) * s[2])
+        return Vector((*around(radius * s[0], s[1]), value(self.height) * s[2]))
 
     def measure(self, value: ValueOf) -> Any:
         R, r = value(self.radius), value(self.top)
@@ -213,7 +203,7 @@ class Frustum(Shape):
         I_zz = over(Fraction(3, 10) * m * fifth, s)
         along = over(Fraction(1, 10) * m * h * h * (R * R + 3 * R * r + 6 * r * r), s)
         across = Fraction(1, 2) * I_zz + along - m * z * z
-        return MassProperties(m, (0, 0, z), diagonal(across, across, I_zz))
+        return MassProperties(m, Vector((0, 0, z)), diagonal(across, across, I_zz))
 
 
 # -------- hemisphere ------------------------------------------------------------------------------------------
@@ -249,7 +239,7 @@ class Hemisphere(Shape):
         r = value(self.radius)
         z, square = Fraction(3, 8) * r, Fraction(2, 5) * m * r * r
         across = square - m * z * z
-        return MassProperties(m, (0, 0, z), diagonal(across, across, square))
+        return MassProperties(m, Vector((0, 0, z)), diagonal(across, across, square))
 
 
 # -------- prism -----------------------------------------------------------------------------------------------
@@ -292,12 +282,12 @@ class Prism(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         plate = self.section.of_mass(m, value)
         across = Fraction(1, 12) * m * value(self.length) * value(self.length)
-        return MassProperties(m, plate.com, added(plate.I, diagonal(across, across, 0)))
+        return MassProperties(m, plate.com, plate.I + diagonal(across, across, 0))
 
 
 def _raised(cell: Cell, length: Any) -> Cell:
     """Prism on a cell of the section, from -l/2 to l/2."""
-    return lambda s: (*cell(s)[:2], length * (s[2] - HALF))
+    return lambda s: Vector((*cell(s)[:2], length * (s[2] - HALF)))
 
 
 # -------- pyramid ---------------------------------------------------------------------------------------------
@@ -324,15 +314,15 @@ class Pyramid(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         x, y, h = HALF_OF * value(self.width), HALF_OF * value(self.depth), value(self.height)
-        low, apex = -Fraction(1, 4) * h, (0, 0, Fraction(3, 4) * h)
-        points = ((-x, -y, low), (x, -y, low), (x, y, low), (-x, y, low), apex)
+        low, apex = -Fraction(1, 4) * h, Vector((0, 0, Fraction(3, 4) * h))
+        points = (*(Vector(p) for p in ((-x, -y, low), (x, -y, low), (x, y, low), (-x, y, low))), apex)
         return (PolyhedronForm(points, ((3, 2, 1, 0), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         x, y = (
             value(edge) * (part - HALF) * (1 - s[2]) for edge, part in zip((self.width, self.depth), s, strict=False)
         )
-        return (x, y, value(self.height) * (s[2] - HALF * HALF))
+        return Vector((x, y, value(self.height) * (s[2] - HALF * HALF)))
 
     def measure(self, value: ValueOf) -> Any:
         return Fraction(1, 3) * value(self.width) * value(self.depth) * value(self.height)
@@ -340,7 +330,7 @@ class Pyramid(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         x, y = (Fraction(1, 20) * m * value(edge) * value(edge) for edge in (self.width, self.depth))
         z = Fraction(3, 80) * m * value(self.height) * value(self.height)
-        return MassProperties(m, ZERO, diagonal(y + z, z + x, x + y))
+        return MassProperties(m, Vector.ZERO, diagonal(y + z, z + x, x + y))
 
 
 # -------- sphere ----------------------------------------------------------------------------------------------
@@ -361,7 +351,7 @@ class Sphere(Shape):
 
     def forms(self, value: ValueOf) -> tuple[Form, ...]:
         r = value(self.radius)
-        return (EllipsoidForm(ZERO, (r, r, r)),)
+        return (EllipsoidForm(Vector.ZERO, Vector((r, r, r))),)
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         return on_ball(value(self.radius) * s[0], s[1], s[2])
@@ -372,7 +362,7 @@ class Sphere(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         r = value(self.radius)
         square = Fraction(2, 5) * m * r * r
-        return MassProperties(m, ZERO, diagonal(square, square, square))
+        return MassProperties(m, Vector.ZERO, diagonal(square, square, square))
 
 
 # -------- tetrahedron -----------------------------------------------------------------------------------------
@@ -408,23 +398,23 @@ class Tetrahedron(Shape):
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         """a + s_1 (b - a) + s_1 s_2 (c - b) + s_1 s_2 s_3 (d - c)"""
         a, b, c, d = self._corners(value)
-        steps = ((s[0], minus(b, a)), (s[0] * s[1], minus(c, b)), (s[0] * s[1] * s[2], minus(d, c)))
-        return vector_of(a[i] + sum(part * step[i] for part, step in steps) for i in range(3))
+        steps = ((s[0], b - a), (s[0] * s[1], c - b), (s[0] * s[1] * s[2], d - c))
+        return Vector(a[i] + sum(part * step[i] for part, step in steps) for i in range(3))
 
     def measure(self, value: ValueOf) -> Any:
         first, *others = self._corners(value)
-        a, b, c = (minus(p, first) for p in others)
-        return Fraction(1, 6) * function("abs", dot(a, cross(b, c)))
+        a, b, c = (p - first for p in others)
+        return Fraction(1, 6) * function("abs", a @ b.cross(c))
 
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         corners = self._corners(value)
-        com = vector_of(Fraction(1, 4) * sum(p[i] for p in corners) for i in range(3))
-        arms = [minus(p, com) for p in corners]
+        com = Vector(Fraction(1, 4) * sum(p[i] for p in corners) for i in range(3))
+        arms = [p - com for p in corners]
         second = [[Fraction(1, 20) * m * sum(r[i] * r[j] for r in arms) for j in range(3)] for i in range(3)]
         return MassProperties(m, com, tensor(second))
 
     def _corners(self, value: ValueOf) -> list[Vector]:
-        return [vector_of(map(value, vertex)) for vertex in self.vertices]
+        return [Vector(map(value, vertex)) for vertex in self.vertices]
 
 
 # -------- torus -----------------------------------------------------------------------------------------------
@@ -458,7 +448,7 @@ class Torus(Shape):
 
     def filled(self, value: ValueOf, s: Sequence[Any]) -> Vector:
         out, z = around(value(self.minor) * s[0], s[1])
-        return (*around(value(self.major) + out, s[2]), z)
+        return Vector((*around(value(self.major) + out, s[2]), z))
 
     def measure(self, value: ValueOf) -> Any:
         return 2 * value(PI) * value(PI) * value(self.major) * value(self.minor) * value(self.minor)
@@ -466,4 +456,4 @@ class Torus(Shape):
     def of_mass(self, m: Any, value: ValueOf) -> MassProperties:
         R, r = value(self.major), value(self.minor)
         across = Fraction(1, 2) * m * R * R + Fraction(5, 8) * m * r * r
-        return MassProperties(m, ZERO, diagonal(across, across, m * R * R + Fraction(3, 4) * m * r * r))
+        return MassProperties(m, Vector.ZERO, diagonal(across, across, m * R * R + Fraction(3, 4) * m * r * r))

@@ -42,21 +42,7 @@ from eomgen.mechanics.instant import (
     composition_of,
 )
 from eomgen.symbolic.exact import book_form, vanishes
-from eomgen.symbolic.expression import (
-    ZERO,
-    Fraction,
-    Node,
-    Scalar,
-    Vector,
-    apply,
-    dot,
-    is_zero,
-    over,
-    plus,
-    sqrt,
-    times,
-    transposed,
-)
+from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, over, sqrt
 from eomgen.symbolic.numeric import Work, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
@@ -362,7 +348,7 @@ def velocity_parts(system: System, point: str, body: str, readable: Readable) ->
     parts = composition_of(system.motion, point, body)
     own = {"relative_velocity": parts.relative[1], "relative_acceleration": parts.relative[2]}
     ground = {name: getattr(parts, name) for name in NAMES if name != "origin"} | {"origin": parts.carrier.a}
-    seen = {name: apply(transposed(parts.R), x) for name, x in ground.items()} | own
+    seen = {name: parts.R.T @ x for name, x in ground.items()} | own
     return {name: readable.vector(seen[name]) for name in NAMES}
 
 
@@ -370,7 +356,7 @@ def _table(
     parts: Mapping[str, Vector], names: tuple[str, ...], letters: str, readable: Readable
 ) -> tuple[Statement, ...]:
     """The components and the magnitude of each part; side by side where there is room."""
-    sizes = {name: readable.scalar(sqrt(dot(parts[name], parts[name]))) for name in names}
+    sizes = {name: readable.scalar(sqrt(parts[name] @ parts[name])) for name in names}
     together = tabled(("", *letters, "magnitude"), [(NAMES[n], *parts[n][: len(letters)], sizes[n]) for n in names])
     if isinstance(together[0], Grid):
         return together
@@ -395,13 +381,13 @@ def _in_frame(system: System, particle: str, body: str, readable: Readable) -> t
     m, letters = system.scope.mass_properties(particle).m, axes(system)
     ground = {
         "applied": applied_force(system, particle),
-        "-m*a_O": times(-m, parts.carrier.a),
-        "Euler": times(-m, parts.euler),
-        "centrifugal": times(-m, parts.centripetal),
-        "Coriolis": times(-m, parts.coriolis),
+        "-m*a_O": -m * parts.carrier.a,
+        "Euler": -m * parts.euler,
+        "centrifugal": -m * parts.centripetal,
+        "Coriolis": -m * parts.coriolis,
     }
-    forces = {"m*a_r": times(m, parts.relative[2])}
-    forces |= {name: apply(transposed(parts.R), x) for name, x in ground.items()}
+    forces = {"m*a_r": m * parts.relative[2]}
+    forces |= {name: parts.R.T @ x for name, x in ground.items()}
     rows = [(FORCES.get(name, name), *readable.vector(x)[: len(letters)]) for name, x in forces.items()]
     words = (
         f"In the axes of {body}, ",
@@ -418,11 +404,11 @@ def applied_force(system: System, body: str) -> Vector:
     motion, loads = system.motion, system.loads
     found = [motion.body_wrench(load) for load in (*loads.placed, *loads.weights)]
     found += [pair for effort in loads.efforts for pair in effort.wrenches(motion)]
-    total: Vector = ZERO
+    total: Vector = Vector.ZERO
     for each in found:
         if each is not None and each[0] == body:
-            total = plus(total, each[1].f)
-    return apply(motion.link(body).pose.R, total)
+            total = total + each[1].f
+    return motion.link(body).pose.R @ total
 
 
 # -------- mechanism steps -------------------------------------------------------------------------------------

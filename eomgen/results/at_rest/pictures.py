@@ -41,7 +41,7 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.model import Couple, Model, PointForce, SpreadLoad
 from eomgen.results.at_rest.section_steps import Sections
-from eomgen.symbolic.expression import ZERO, Node, Scalar
+from eomgen.symbolic.expression import Node, Scalar, Vector
 from eomgen.symbolic.numeric import FLOAT, evaluate, tolerances
 from eomgen.symbolic.print import to_text
 
@@ -100,7 +100,7 @@ class StaticScene:
         system = self.statics.system
         bodies = [line for link in system.motion.links for line in self.sketch.lines(link)]
         ends = [pair for _, _, pair in system.scope.model.truss_members]
-        return [*bodies, *(np.array([self.sketch.position((node, ZERO)) for node in pair]) for pair in ends)]
+        return [*bodies, *(np.array([self.sketch.position((node, Vector.ZERO)) for node in pair]) for pair in ends)]
 
     def length(self, force: PagePoint) -> PagePoint:
         """An arrow for a force: longer for a larger one, never very short."""
@@ -209,7 +209,7 @@ class StaticScene:
             for name, r in self.statics.system.motion.points[body].items()
             if name not in ("origin", "center")
         ]
-        found = np.mean(places or [self.sketch.position((body, ZERO))], axis=0)
+        found = np.mean(places or [self.sketch.position((body, Vector.ZERO))], axis=0)
         return float(found[0]), float(found[1])
 
 
@@ -291,7 +291,7 @@ def _members(panel: Any, scene: StaticScene) -> None:
         if reaction is None or reaction.value is None:
             continue
         (value,) = scene.sketch.numbers((reaction.value,))
-        a, b = (np.array(scene.sketch.position((node, ZERO))) for node in (first, second))
+        a, b = (np.array(scene.sketch.position((node, Vector.ZERO))) for node in (first, second))
         small = abs(value) < tolerances.COMPUTED * scene.largest
         color = "#808080" if small else TENSION if value > 0 else COMPRESSION
         name_along(panel, "0" if small else scene.label(reaction.value), (a, b), color)

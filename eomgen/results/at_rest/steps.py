@@ -48,7 +48,7 @@ from eomgen.mechanics.statics import (
 )
 from eomgen.model import BodyPoint, Couple, PointForce, SpreadLoad, is_node
 from eomgen.proof import ReportedBlock, ReportedMotion, ReportedWork
-from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero, plus, times, vector_of
+from eomgen.symbolic.expression import Fraction, Node, Scalar, Vector, is_zero
 from eomgen.symbolic.print import Symbol, to_text
 
 METHOD = "statics"
@@ -478,7 +478,7 @@ def _along(plan: VelocityPlan, load: SpreadLoad) -> list[Displaced]:
     v, w = (plan.velocity(place) for place in (load.start, load.end))
     if not _same(load.at_start, load.at_end):
         return [(a, v, None), (b, w, None)]
-    middle = vector_of(map(plan.simple, times(Fraction(1, 2), plus(v, w))))
+    middle = Vector(map(plan.simple, Fraction(1, 2) * (v + w)))
     return [(f"middle of {a}, {b}", middle, None)]
 
 

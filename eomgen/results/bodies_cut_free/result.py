@@ -46,7 +46,7 @@ from eomgen.scene import (
     space_drawing,
 )
 from eomgen.study import model_to_study
-from eomgen.symbolic.expression import ZERO, Fraction, Scalar, Vector, is_zero, vector_of
+from eomgen.symbolic.expression import Fraction, Scalar, Vector, is_zero
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import Notation, Setter, Symbol, text_size, to_text
 
@@ -236,7 +236,7 @@ def numbered_forces(state: CutState, pushes: Sequence[CutForce]) -> list[Numbere
     """Pushes at a state."""
     flat: list[Scalar] = []
     for push in pushes:
-        flat += [*push.at, *push.direction, *(push.along or ZERO), push.given, *push.shares.values()]
+        flat += [*push.at, *push.direction, *(push.along or Vector.ZERO), push.given, *push.shares.values()]
     numbers = iter(state.numbers(flat))
     return [_numbered(push, numbers, state.components) for push in pushes]
 
@@ -365,7 +365,7 @@ def _arrows(forces: Sequence[BodyForce], lines: Sequence[np.ndarray], extent: fl
 
 
 def _exact(numbers: Sequence[float] | np.ndarray) -> Vector:
-    return vector_of(Fraction(float(x)) for x in [*numbers, 0.0][:3])
+    return Vector(Fraction(float(x)) for x in [*numbers, 0.0][:3])
 
 
 # -------- letters ---------------------------------------------------------------------------------------------

@@ -55,15 +55,7 @@ from eomgen.results.mass_properties.steps import (
 )
 from eomgen.scene import scene_of_inertia
 from eomgen.study import study_of
-from eomgen.symbolic.expression import (
-    IDENTITY,
-    Node,
-    State,
-    Vector,
-    is_zero,
-    minus,
-    symbols_of,
-)
+from eomgen.symbolic.expression import Matrix, Node, State, Vector, is_zero, symbols_of
 from eomgen.symbolic.print import readable_text, text_size
 
 TENSOR = Law(
@@ -297,12 +289,12 @@ class _Report:
             if self.about is None:
                 raise UsageError(f"the axis {self.axis} goes through what point?", fix="write --about POINT")
             point = self._place(self.about)
-            return point, self.about, None if self.axis is None else (point, IDENTITY["xyz".index(self.axis)])
+            return point, self.about, None if self.axis is None else (point, Matrix.IDENTITY["xyz".index(self.axis)])
         first, comma, second = (part.strip() for part in self.axis.partition(","))
         if not comma:
             raise UsageError(f"'{self.axis}' is no axis", fix='write x, y or z, or two points: "A,B"')
         point, other = self._place(first), self._place(second)
-        along = minus(other, point)
+        along = other - point
         if all(is_zero(x) for x in along):
             raise UsageError(
                 f"'{first}' and '{second}' are in one place, so they are on no single axis",

@@ -30,7 +30,6 @@ from eomgen.symbolic.expression import (
     tangent,
     tidy,
     united,
-    vector_of,
 )
 from eomgen.symbolic.numeric import Work
 from eomgen.symbolic.print import has_nested_quotient, products_of, text_size
@@ -337,7 +336,7 @@ class Legibly:
 
     def vector(self, v: Iterable[Scalar]) -> Vector:
         """The vector with its three components at their simplest."""
-        return vector_of(map(self, v))
+        return Vector(map(self, v))
 
 
 def quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:

@@ -102,13 +102,9 @@ from eomgen.symbolic.expression.rational import fraction_of as fraction_of
 
 # Has sympy take the compiled rationals as the exact numbers that they are: it would make floats of them
 from eomgen.symbolic.expression.rational import known_to_sympy as known_to_sympy
-from eomgen.symbolic.expression.spatial import IDENTITY as IDENTITY
-from eomgen.symbolic.expression.spatial import ZERO as ZERO
-from eomgen.symbolic.expression.spatial import AnyScalar as AnyScalar
-from eomgen.symbolic.expression.spatial import Matrix as Matrix
 
-# a vector at one state: floats, or numbers of fifty digits
-from eomgen.symbolic.expression.spatial import Numbers as Numbers
+# Three rows of three: A + B, k * A; `R @ a`, `A @ B`, `R.T`
+from eomgen.symbolic.expression.spatial import Matrix as Matrix
 
 # Position and orientation of frame B in frame A
 from eomgen.symbolic.expression.spatial import Pose as Pose
@@ -118,49 +114,12 @@ from eomgen.symbolic.expression.spatial import SpatialInertia as SpatialInertia
 
 # Velocity of a rigid body, at one of its points
 from eomgen.symbolic.expression.spatial import Twist as Twist
+
+# Three scalars: a + b, a - b, -a, k * a; `a @ b` is the scalar product a . b, `a.cross(b)` is a x b
 from eomgen.symbolic.expression.spatial import Vector as Vector
 
 # Force and couple on a rigid body, at one of its points
 from eomgen.symbolic.expression.spatial import Wrench as Wrench
-
-# A + B
-from eomgen.symbolic.expression.spatial import added as added
-
-# R a
-from eomgen.symbolic.expression.spatial import apply as apply
-
-# a x b
-from eomgen.symbolic.expression.spatial import cross as cross
-
-# a . b; what is multiplied by the number 0 is not looked at
-from eomgen.symbolic.expression.spatial import dot as dot
-
-# R a; a itself where nothing is turned
-from eomgen.symbolic.expression.spatial import in_turned_axes as in_turned_axes
-
-# The matrix with these three rows of three
-from eomgen.symbolic.expression.spatial import matrix_of as matrix_of
-
-# a - b
-from eomgen.symbolic.expression.spatial import minus as minus
-
-# a + b
-from eomgen.symbolic.expression.spatial import plus as plus
-
-# A B
-from eomgen.symbolic.expression.spatial import product as product
-
-# Rotation about a unit axis n (Rodrigues): R = c 1 + s n~ + (1 - c) n n^T
-from eomgen.symbolic.expression.spatial import rotation as rotation
-
-# k a
-from eomgen.symbolic.expression.spatial import times as times
-
-# R^T, the inverse of a rotation
-from eomgen.symbolic.expression.spatial import transposed as transposed
-
-# The vector with these three components
-from eomgen.symbolic.expression.spatial import vector_of as vector_of
 
 # Samples as they were given, and the way between them: what proofs look at
 from eomgen.symbolic.expression.splines import DeclaredSamples as DeclaredSamples

@@ -101,7 +101,7 @@ class Node:
         return self.graph.add(other, self.graph.neg(self))
 
     def __mul__(self, other: Scalar) -> Scalar:
-        return self.graph.mul(self, other)
+        return NotImplemented if isinstance(other, tuple) else self.graph.mul(self, other)  # k a: the vector's own
 
     def __rmul__(self, other: Scalar) -> Scalar:
         return self.graph.mul(other, self)

@@ -8,97 +8,109 @@ expression; nothing here asks which. A twist has its angular part first; a wrenc
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, ClassVar, overload
 
 from eomgen.frozen import dataclass
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 
-AnyScalar = Scalar
-Vector = tuple[AnyScalar, AnyScalar, AnyScalar]
-Matrix = tuple[Vector, Vector, Vector]
-Numbers = tuple[Any, Any, Any]  # a vector at one state: floats, or numbers of fifty digits
 
-ZERO: Vector = (0, 0, 0)
-IDENTITY: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+class Vector(tuple[Any, Any, Any]):
+    """Three scalars: a + b, a - b, -a, k * a; `a @ b` is the scalar product a . b, `a.cross(b)` is a x b."""
 
+    __slots__ = ()
+    __array_ufunc__ = None  # numpy's numbers leave `k * a` to the vector
+    ZERO: ClassVar[Vector]
 
-def vector_of(components: Iterable[AnyScalar]) -> Vector:
-    """The vector with these three components."""
-    x, y, z = components
-    return (x, y, z)
+    def __add__(self, other: Vector) -> Vector:  # type: ignore[override]
+        return Vector((self[0] + other[0], self[1] + other[1], self[2] + other[2]))
 
+    def __sub__(self, other: Vector) -> Vector:
+        return Vector((self[0] - other[0], self[1] - other[1], self[2] - other[2]))
 
-def matrix_of(rows: Iterable[Iterable[AnyScalar]]) -> Matrix:
-    """The matrix with these three rows of three."""
-    first, second, third = (vector_of(row) for row in rows)
-    return (first, second, third)
+    def __rmul__(self, k: Scalar) -> Vector:  # type: ignore[override]
+        return Vector((k * self[0], k * self[1], k * self[2]))
 
+    def __mul__(self, k: Scalar) -> Vector:  # type: ignore[override]
+        return k * self
 
-def dot(a: Vector, b: Vector) -> AnyScalar:
-    """a . b; what is multiplied by the number 0 is not looked at."""
-    total: AnyScalar = 0
-    for x, y in zip(a, b, strict=True):
-        if (type(x) is not int or x != 0) and (type(y) is not int or y != 0):
-            total = total + x * y
-    return total
+    def __neg__(self) -> Vector:
+        return -1 * self
 
+    def __matmul__(self, other: Vector) -> Scalar:
+        """a . b; what is multiplied by the number 0 is not looked at."""
+        total: Scalar = 0
+        for x, y in zip(self, other, strict=True):
+            if (type(x) is not int or x != 0) and (type(y) is not int or y != 0):
+                total = total + x * y
+        return total
 
-def cross(a: Vector, b: Vector) -> Vector:
-    """a x b"""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+    @property
+    def largest(self) -> Any:
+        """max |x_i|, of numbers."""
+        return max(map(abs, self))
 
-
-def plus(a: Vector, b: Vector) -> Vector:
-    """a + b"""
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
-
-
-def minus(a: Vector, b: Vector) -> Vector:
-    """a - b"""
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+    def cross(self, other: Vector) -> Vector:
+        """a x b"""
+        a, b = self, other
+        return Vector((a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]))
 
 
-def times(k: AnyScalar, a: Vector) -> Vector:
-    """k a"""
-    return (k * a[0], k * a[1], k * a[2])
+class Matrix(tuple[Vector, Vector, Vector]):
+    """Three rows of three: A + B, k * A; `R @ a` is the vector R a, `A @ B` the product, `R.T` the transpose."""
+
+    __slots__ = ()
+    IDENTITY: ClassVar[Matrix]
+
+    @classmethod
+    def of(cls, rows: Iterable[Iterable[Any]]) -> Matrix:
+        """The matrix with these three rows of three."""
+        first, second, third = (Vector(row) for row in rows)  # each at once: a row may be a generator over what changes
+        return cls((first, second, third))
+
+    @classmethod
+    def rotation(cls, axis: Vector, cosine: Scalar, sine: Scalar) -> Matrix:
+        """Rotation about a unit axis n (Rodrigues): R = c 1 + s n~ + (1 - c) n n^T."""
+        x, y, z = axis
+        k = 1 - cosine
+        return cls.of(
+            (
+                (cosine + k * x * x, k * x * y - sine * z, k * x * z + sine * y),
+                (k * x * y + sine * z, cosine + k * y * y, k * y * z - sine * x),
+                (k * x * z - sine * y, k * y * z + sine * x, cosine + k * z * z),
+            )
+        )
+
+    @property
+    def T(self) -> Matrix:
+        """R^T, the inverse of a rotation."""
+        return Matrix(Vector(each) for each in zip(*self, strict=True))
+
+    def __add__(self, other: Matrix) -> Matrix:  # type: ignore[override]
+        return Matrix((self[0] + other[0], self[1] + other[1], self[2] + other[2]))
+
+    def __rmul__(self, k: Scalar) -> Matrix:  # type: ignore[override]
+        return Matrix((k * self[0], k * self[1], k * self[2]))
+
+    def __mul__(self, k: Scalar) -> Matrix:  # type: ignore[override]
+        return k * self
+
+    @overload
+    def __matmul__(self, other: Matrix) -> Matrix: ...
+    @overload
+    def __matmul__(self, other: Vector) -> Vector: ...
+    def __matmul__(self, other: Matrix | Vector) -> Matrix | Vector:
+        """R a, or A B: what is not turned comes back as it is."""
+        if self is Matrix.IDENTITY:
+            return other
+        if not isinstance(other, Matrix):
+            return Vector((self[0] @ other, self[1] @ other, self[2] @ other))
+        a, b, c = other.T
+        return Matrix(Vector((row @ a, row @ b, row @ c)) for row in self)
 
 
-def apply(R: Matrix, a: Vector) -> Vector:
-    """R a"""
-    return (dot(R[0], a), dot(R[1], a), dot(R[2], a))
-
-
-def in_turned_axes(R: Matrix, a: Vector) -> Vector:
-    """R a; a itself where nothing is turned."""
-    return a if R is IDENTITY else apply(R, a)
-
-
-def transposed(R: Matrix) -> Matrix:
-    """R^T, the inverse of a rotation."""
-    return ((R[0][0], R[1][0], R[2][0]), (R[0][1], R[1][1], R[2][1]), (R[0][2], R[1][2], R[2][2]))
-
-
-def product(A: Matrix, B: Matrix) -> Matrix:
-    """A B"""
-    columns = transposed(B)
-    return matrix_of((dot(row, column) for column in columns) for row in A)
-
-
-def added(A: Matrix, B: Matrix) -> Matrix:
-    """A + B"""
-    return (plus(A[0], B[0]), plus(A[1], B[1]), plus(A[2], B[2]))
-
-
-def rotation(axis: Vector, cosine: AnyScalar, sine: AnyScalar) -> Matrix:
-    """Rotation about a unit axis n (Rodrigues): R = c 1 + s n~ + (1 - c) n n^T."""
-    x, y, z = axis
-    k = 1 - cosine
-    return (
-        (cosine + k * x * x, k * x * y - sine * z, k * x * z + sine * y),
-        (k * x * y + sine * z, cosine + k * y * y, k * y * z - sine * x),
-        (k * x * z - sine * y, k * y * z + sine * x, cosine + k * z * z),
-    )
+Vector.ZERO = Vector((0, 0, 0))
+Matrix.IDENTITY = Matrix.of(((1, 0, 0), (0, 1, 0), (0, 0, 1)))
 
 
 @dataclass(frozen=True)
@@ -110,21 +122,21 @@ class Pose:
         p: p_AB, from A to B in A's axes, 3 [m].
     """
 
-    R: Matrix = IDENTITY
-    p: Vector = ZERO
+    R: Matrix = Matrix.IDENTITY
+    p: Vector = Vector.ZERO
 
     def then(self, other: Pose) -> Pose:
         """The pose of C in A, from B in A (self) and C in B (other)."""
-        return Pose(product(self.R, other.R), plus(self.p, apply(self.R, other.p)))
+        return Pose(self.R @ other.R, self.p + self.R @ other.p)
 
     def point(self, p_B: Vector) -> Vector:
         """A point given in B, seen from A [m]."""
-        return plus(self.p, apply(self.R, p_B))
+        return self.p + self.R @ p_B
 
     def inverse(self) -> Pose:
         """The pose of A in B."""
-        R_BA = transposed(self.R)
-        return Pose(R_BA, times(-1, apply(R_BA, self.p)))
+        R_BA = self.R.T
+        return Pose(R_BA, -(R_BA @ self.p))
 
 
 @dataclass(frozen=True)
@@ -136,23 +148,23 @@ class Twist:
         v: velocity of the point, 3 [m/s].
     """
 
-    w: Vector = ZERO
-    v: Vector = ZERO
+    w: Vector = Vector.ZERO
+    v: Vector = Vector.ZERO
 
     def at(self, r: Vector) -> Twist:
         """The same motion at the point r away: v + w x r."""
-        return Twist(self.w, plus(self.v, cross(self.w, r)))
+        return Twist(self.w, self.v + self.w.cross(r))
 
     def plus(self, other: Twist) -> Twist:
-        return Twist(plus(self.w, other.w), plus(self.v, other.v))
+        return Twist(self.w + other.w, self.v + other.v)
 
     def turned(self, R: Matrix) -> Twist:
         """The same twist in the axes to which R leads."""
-        return Twist(apply(R, self.w), apply(R, self.v))
+        return Twist(R @ self.w, R @ self.v)
 
-    def power(self, wrench: Wrench) -> AnyScalar:
+    def power(self, wrench: Wrench) -> Scalar:
         """tau . w + f . v, both at the same point and in the same axes [W]."""
-        return dot(wrench.tau, self.w) + dot(wrench.f, self.v)
+        return wrench.tau @ self.w + wrench.f @ self.v
 
 
 @dataclass(frozen=True)
@@ -164,19 +176,19 @@ class Wrench:
         f: force, 3 [N].
     """
 
-    tau: Vector = ZERO
-    f: Vector = ZERO
+    tau: Vector = Vector.ZERO
+    f: Vector = Vector.ZERO
 
     def moved(self, r: Vector) -> Wrench:
         """The same loading about the point from which the present one is r away: tau + r x f."""
-        return Wrench(plus(self.tau, cross(r, self.f)), self.f)
+        return Wrench(self.tau + r.cross(self.f), self.f)
 
     def plus(self, other: Wrench) -> Wrench:
-        return Wrench(plus(self.tau, other.tau), plus(self.f, other.f))
+        return Wrench(self.tau + other.tau, self.f + other.f)
 
     def turned(self, R: Matrix) -> Wrench:
         """The same wrench in the axes to which R leads."""
-        return Wrench(apply(R, self.tau), apply(R, self.f))
+        return Wrench(R @ self.tau, R @ self.f)
 
 
 @dataclass(frozen=True)
@@ -189,16 +201,16 @@ class SpatialInertia:
         I: inertia about the origin, 3 x 3 [kg m^2].
     """
 
-    m: AnyScalar
+    m: Scalar
     h: Vector
     I: Matrix
 
     @staticmethod
-    def about_center(m: AnyScalar, com: Vector, I_com: Matrix) -> SpatialInertia:
+    def about_center(m: Scalar, com: Vector, I_com: Matrix) -> SpatialInertia:
         """Spatial inertia from the inertia about the mass centre: I = I_com + m (c.c 1 - c c^T) (parallel axes)."""
-        h = times(m, com)
-        shift = matrix_of(((dot(h, com) if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3))
-        return SpatialInertia(m, h, added(I_com, shift))
+        h = m * com
+        shift = Matrix.of(((h @ com if i == j else 0) - h[i] * com[j] for j in range(3)) for i in range(3))
+        return SpatialInertia(m, h, I_com + shift)
 
     def momentum(self, xi: Twist) -> Wrench:
         """I xi: angular momentum about the origin and linear momentum.
@@ -206,11 +218,11 @@ class SpatialInertia:
         L = I w + h x v,  P = m v + w x h
         """
         return Wrench(
-            plus(apply(self.I, xi.w), cross(self.h, xi.v)),
-            plus(times(self.m, xi.v), cross(xi.w, self.h)),
+            self.I @ xi.w + self.h.cross(xi.v),
+            self.m * xi.v + xi.w.cross(self.h),
         )
 
-    def kinetic_energy(self, xi: Twist) -> AnyScalar:
+    def kinetic_energy(self, xi: Twist) -> Scalar:
         """T = (m v.v + w.I w) / 2 + w.(h x v) [J], the twist at the origin in body axes."""
         momentum = self.momentum(xi)
         return Fraction(1, 2) * xi.power(momentum)
