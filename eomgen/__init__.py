@@ -25,6 +25,7 @@
     eomgen.regressor(model)                   # Regressor: tau = Y pi + y0, .parameters, .base: what motions tell apart
     eomgen.identify(model, data)              # Identified: parameters from measured motions, of bodies that can be
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant constraints
+    %load_ext eomgen                          # in a notebook: then %%eomgen NAME above the text of a model
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
 Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`

@@ -42,6 +42,7 @@ from eomgen.model.parts import Unknown as Unknown
 from eomgen.model.reader import load as load
 from eomgen.model.reader import loads as loads
 from eomgen.model.sampled_laws import samples as samples
+from eomgen.notebook import load_ipython_extension as load_ipython_extension
 from eomgen.page.animation import animate as animate
 from eomgen.page.animation import virtual_displacement as virtual_displacement
 from eomgen.page.contents import Report as Report

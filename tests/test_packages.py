@@ -12,7 +12,11 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 EXTRAS: dict[str, list[str]] = PROJECT["optional-dependencies"]
 OF_DEVELOPERS = {"docs", "test", "dev"}
-DISTRIBUTIONS = {"PIL": "pillow", "flint": "python-flint"}  # a module that is not called as its distribution
+DISTRIBUTIONS = {
+    "IPython": "ipython",
+    "PIL": "pillow",
+    "flint": "python-flint",
+}  # a module that is not called as its distribution
 IMPORT = re.compile(r"^ *(?:from (?=[\w.]+ import )|import (?=[\w.]+(?: as \w+)?$))(\w+)", re.MULTILINE)
 READERS_OWN = {"pandas", "xarray"}  # results are handed over in their forms to whoever has them
 

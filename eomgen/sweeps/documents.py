@@ -9,7 +9,7 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-from eomgen.documents import Document, Grid, plain_document, prose, proven
+from eomgen.documents import Document, Grid, plain_document, prose, proven, rendered
 from eomgen.errors import EomgenError, RunFailed, UsageError
 from eomgen.model import Model, Output, Table, requested_of
 from eomgen.pipeline import simulate
@@ -37,6 +37,11 @@ def sweep_reported(model: Model, found: Sweep, files: list[str], *, certify: boo
         files: those that were written besides the sweep's own.
     """
     return proven(_reported(model, found, files), _proof(found) if certify else None)
+
+
+def sweep_in_markdown(found: Sweep) -> str:
+    """The results of a sweep, without a proof, as Markdown."""
+    return rendered(_reported(found.plan.model, found, []), "markdown")
 
 
 def _reported(model: Model, found: Sweep, files: list[str]) -> Document:

@@ -8,6 +8,7 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import IO, Any
 
@@ -157,6 +158,12 @@ class Sweep:
         """The row of a run, computed once more by the same kernel."""
         _refuse_no_run(self.plan, run)
         return SweepKernel(_known(self.plan)).rows(run, run + 1)[0]
+
+    def _repr_markdown_(self) -> str:
+        """Results for notebooks: how the runs ended, and of each value the least, the mean and the largest."""
+        told = import_module("eomgen.sweeps.documents")  # which is made of sweeps, and comes later
+        text: str = told.sweep_in_markdown(self)
+        return text
 
     def __repr__(self) -> str:
         where = "" if self.folder is None else f" in {self.folder}"
