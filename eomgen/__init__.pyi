@@ -60,6 +60,7 @@ from eomgen.questions.outputs_answered import Answer as Answer
 from eomgen.questions.outputs_answered import solve as solve
 from eomgen.questions.reactions import FoundReactions as FoundReactions
 from eomgen.questions.reactions import reactions as reactions
+from eomgen.questions.variants import variant as variant
 from eomgen.resources import OutOfPatience as OutOfPatience
 from eomgen.resources import patience as patience
 from eomgen.results.at_instant.result import Kinematics as Kinematics

@@ -32,6 +32,7 @@ from eomgen.cli_options import (
     OVER,
     UNITS,
     VIEW,
+    WAY,
     WRITTEN,
     form_requested,
     proven_in_full,
@@ -155,15 +156,12 @@ def check_command(
 
 @main.command("derive")
 @with_form
-@click.option(
-    "--method",
-    type=click.Choice(["lagrange", "projection", "kinetostatic"]),
-    default="lagrange",
-    show_default=True,
-    help="By energies, by projection, or body by body with every reaction.",
-)
+@WAY
 @UNITS(help="The unit of every name, equation, reaction and output too.")
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
+@click.option("--section", metavar="NAME", help="Only this section: motion, positions, ...")
+@click.option("--fragment", is_flag=True, help="LaTeX to paste into a document of your own; it needs amsmath alone.")
+@click.option("--numbered", is_flag=True, help="Each formula of --fragment has a number.")
 @click.option("--diff", metavar="OTHER", type=click.Path(exists=True, dir_okay=False), help="What differs from OTHER.")
 @click.option(
     "--fresh",
@@ -178,10 +176,11 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
     A cached derivation and proof are reported again if the equations, derived anew, are the same.
     """
     of_one = options["diff"] is None, "is of one model, and --diff compares two"
-    refuse_idle(units=of_one, full=of_one)
+    form = form_requested(options["wants_json"], options["format_"], options["output"])
+    in_latex = form == "latex", "is of --format latex"
+    refuse_idle(units=of_one, full=of_one, section=of_one, fragment=in_latex)
     if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
-        wants = form_requested(options["wants_json"], options["format_"], options["output"])
-        return write_requested(partial(_derived, data=wants == "json"), **options)
+        return write_requested(partial(_derived, data=form == "json"), **options)
     return _cached_derivation(**options)
 
 
@@ -200,7 +199,7 @@ def _cached_derivation(
     form = form_requested(wants_json, format_, output)
     with reading(model) as source:
         declared = source.model
-        if options["set_"] or options["start"]:
+        if options["set_"] or options["start"] or options["variant"] is not None:
             from eomgen.verbs import typed
 
             declared = typed(source.model, options)[0].model

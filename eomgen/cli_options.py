@@ -142,6 +142,13 @@ def proven_in_full() -> bool:
     return bool(context is not None and context.meta.get(IN_FULL))
 
 
+WAY = click.option(
+    "--method",
+    type=click.Choice(["lagrange", "projection", "kinetostatic"]),
+    default="lagrange",
+    show_default=True,
+    help="By energies, by projection, or body by body with every reaction.",
+)
 DURATION = partial(click.option, "--time", type=time_typed, metavar="TIME")
 TIME = DURATION(default=10.0, show_default=True, help='How long: 5 is in s, or "500 ms".')
 PAGE_TIME = DURATION(
@@ -183,12 +190,31 @@ START = click.option(
 )
 
 
+def variants(context: click.Context, option: click.Parameter, text: str | None) -> int | range | None:
+    """The number of a variant; of a report also several, "1:30".
+
+    Raises:
+        BadParameter: it is none.
+    """
+    if text is None:
+        return None
+    first, colon, last = text.partition(":")
+    if not (first.isdecimal() and (last.isdecimal() or not colon)) or (colon and int(last) < int(first)):
+        raise click.BadParameter(f"'{text}' is no number of a variant: write 7, or 1:30 for a class", context, option)
+    if colon and context.info_name != "report":
+        raise click.BadParameter("several variants are written by `eomgen report`", context, option)
+    return range(int(first), int(last) + 1) if colon else int(first)
+
+
+VARIANT = click.option(
+    "--variant", callback=variants, metavar="N", help="Draw the data of this variant from the file's ranges."
+)
 STRICT = click.option("--strict", is_flag=True, help="Warnings end in exit 1.")
 
 
 def with_values(function: Callable[..., int]) -> Callable[..., int]:
     """Options of all that computes."""
-    return SET(START(STRICT(function)))
+    return SET(START(VARIANT(STRICT(function))))
 
 
 def with_form(function: Callable[..., int]) -> Callable[..., int]:

@@ -37,6 +37,7 @@ from eomgen.cli_options import (
     TRAIL,
     UNITS,
     VIEW,
+    WAY,
     WRITTEN,
     folder,
     form_requested,
@@ -380,28 +381,47 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
 @MODEL
 @JSON
 @WRITTEN(
-    required=True,
-    help="The file: .html, .pdf, .tex, .md or .ipynb.",
+    help="The file: .html, .pdf, .tex, .md or .ipynb.  [required]",
 )
 @PAGE_TIME
 @with_values
+@click.option(
+    "--for",
+    "for_",
+    type=click.Choice(["problem", "worksheet", "solution"]),
+    help="A sheet: without any answer, the same with room to write in, or with the steps to the answers.",
+)
+@click.option(
+    "--steps", metavar="LIST", callback=words, help='Its steps: "positions,energies"; help lists those of the model.'
+)
+@WAY
 @click.option("--with", "with_", metavar="LIST", callback=words, help='Further sections: "linearize,statics".')
 @click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')
 @with_proof
-def report_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
-    """Write a page, paper or notebook of a model.
+def report_command(model: str, wants_json: bool, output: str | None, strict: bool, **options: Any) -> int:
+    """Write a page, paper, notebook or sheet of a model.
 
-    Its figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the model. Sections:
-    figure data derivation reactions free_bodies statics kinematics inertia outputs linearize plots motion certificate
-    downloads.
+    Its problem in words, figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the
+    model. Sections: statement figure data questions derivation reactions free_bodies statics kinematics inertia
+    outputs linearize plots motion certificate downloads. `--variant 1:30 --for problem` writes the sheets of a class
+    and their key.
     """
-    from eomgen.page import form_of, report_document
+    from eomgen.page import form_of, report_document, sheets_document
 
-    form_of(output)  # refused before any work
+    listed = options["steps"] == ("help",)
+    if output is None and not listed:
+        raise click.UsageError("Missing option '-o' / '--output'.")
+    if not listed:
+        form_of(output or "")  # refused before any work
+    options["for_"] = options["for_"] or ""
     with reading(model) as source:
         name = "" if model == "-" else Path(model).name
         text = source.data.decode()
-        document = requested_document(report_document, source, options, output=output, origin=name, text=text)
+        numbers = options["variant"]
+        several = {"variants": tuple(numbers)} if isinstance(numbers, range) else {}
+        options |= {"variant": None} if several else {}
+        made = sheets_document if several else report_document
+        document = requested_document(made, source, options, output=output or "", origin=name, text=text, **several)
     return deliver(document, form_requested(wants_json, None), strict=strict)
 
 

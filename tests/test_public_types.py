@@ -20,6 +20,7 @@ REQUIRED = {
     "target": "numpy",
     "equation": "T = 0",
     "data": {},
+    "number": 1,
 }  # of arguments without a default
 
 SCRIPT = """

@@ -20,9 +20,11 @@ sys.path[:0] = [str(ROOT)]
 from eomgen.model import constraints, forces, joints, outputs, shapes  # noqa: E402
 from eomgen.model.constraints.rolling import Circle, Track  # noqa: E402
 from eomgen.model.constraints.string import Wrap  # noqa: E402
+from eomgen.model.diagnostics import article  # noqa: E402
 from eomgen.model.fields import (  # noqa: E402
     PARAMETERS,
     AxialRule,
+    CountRule,
     EitherRule,
     EquationRule,
     EventRule,
@@ -31,8 +33,10 @@ from eomgen.model.fields import (  # noqa: E402
     InstantRule,
     ListRule,
     NameRule,
+    NumbersRule,
     OutputRule,
     ParsedTextRule,
+    StatementRule,
     TableRule,
     TextRule,
     VectorRule,
@@ -51,6 +55,7 @@ from eomgen.model.parts import (  # noqa: E402
     Output,
     Parameter,
     Piece,
+    Question,
     Speed,
     Truss,
     Unknown,
@@ -90,6 +95,7 @@ TABLES: Mapping[str, type[Any]] = {
     "given": Given,
     "unknowns": Unknown,
     "outputs": Output,
+    "questions": Question,
     "model": Model,
 }
 NAMED = {
@@ -145,7 +151,7 @@ def _(rule: EitherRule) -> str:
 
 @value_of.register
 def _(rule: NameRule) -> str:
-    return NAMED.get(rule.of, f"name of a {rule.of}")
+    return NAMED.get(rule.of, f"name of {article(rule.of)}")
 
 
 @value_of.register
@@ -171,6 +177,21 @@ def _(rule: SeamRule) -> str:
 @value_of.register
 def _(rule: TableRule) -> str:
     return f"names, each of one {rule.what}"
+
+
+@value_of.register
+def _(_rule: StatementRule) -> str:
+    return "text with $formulas$ and {names}"
+
+
+@value_of.register
+def _(_rule: NumbersRule) -> str:
+    return "two ends, or a list of values"
+
+
+@value_of.register
+def _(rule: CountRule) -> str:
+    return f"whole number from {rule.least} to {rule.most}"
 
 
 @value_of.register

@@ -12,6 +12,9 @@ from eomgen.documents.derivation import derivation_of as derivation_of
 # The formulas that hold at any state, and the stated first integrals, as they are printed
 from eomgen.documents.derivation import printed_formulas as printed_formulas
 
+# {name: keys} of sections that are called by one name
+from eomgen.documents.document import SECTION_GROUPS as SECTION_GROUPS
+
 # The result of a verb
 from eomgen.documents.document import Document as Document
 
@@ -280,8 +283,20 @@ from eomgen.documents.reading import answer_text as answer_text
 # Result of a verb that can be shown: a derivation, entries for JSON, and a picture where it has one
 from eomgen.documents.result import Result as Result
 
+# The document with one of its sections, or as a part of another document
+from eomgen.documents.result import fragment_of as fragment_of
+
 # The document in one of the formats of ALL: text, latex, markdown, json
 from eomgen.documents.result import rendered as rendered
+
+# Step with what a model file declares
+from eomgen.documents.sheet import given_step as given_step
+
+# A step for each question of a sheet
+from eomgen.documents.sheet import question_steps as question_steps
+
+# Step with the words of the problem
+from eomgen.documents.sheet import statement_step as statement_step
 
 # A scene in space on matplotlib axes; `show` sets it to another of its frames
 from eomgen.documents.space_drawing import SpacePicture as SpacePicture

@@ -7,9 +7,9 @@ from dataclasses import field, replace
 from typing import Any
 
 from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
-from eomgen.errors import Problem
+from eomgen.errors import Problem, UsageError
 from eomgen.frozen import Pickled, dataclass
-from eomgen.model import Model, Taken
+from eomgen.model import Model, Taken, nearest
 from eomgen.proof import Certificate
 from eomgen.symbolic.expression import Graph, Node, Scalar
 from eomgen.symbolic.print import Notation, Symbol
@@ -46,6 +46,7 @@ class Document:
         parameters: the values of those that have one, exact constants.
         answer_code: the exit code that is an answer: 5 where that is no.
         proven_in_full: its proof is printed check by check, and not in one line.
+        fragment: in LaTeX it is what one pastes into a document of one's own: "plain", "numbered"; "" for a whole file.
     """
 
     title: str
@@ -67,6 +68,7 @@ class Document:
     parameters: Mapping[str, Any] = field(default_factory=dict)
     answer_code: int = 0
     proven_in_full: bool = False
+    fragment: str = ""
 
     @property
     def proof(self) -> str:
@@ -114,6 +116,25 @@ class Document:
         """Warnings that a user should read before using the result."""
         unchecked = self.certificate is not None and self.certificate.ok is None
         return (*self.cautions, *((NOTHING_CHECKED,) if unchecked else ()))
+
+
+SECTION_GROUPS = {"motion": ("equations",), "energies": ("kinetic_energy", "work")}
+"""Sections that are called by one name."""
+
+
+def with_section(document: Document, name: str) -> Document:
+    """The document with this one of its sections, or of the groups of them.
+
+    Raises:
+        UsageError: there is none of that name.
+    """
+    keys = SECTION_GROUPS.get(name, (name,))
+    steps = tuple(step for step in document.steps if step.key in keys)
+    if not steps:
+        known = [*(step.key for step in document.steps if step.key), *SECTION_GROUPS]
+        what = f"there is no section '{name}'"
+        raise UsageError(what, fix=nearest(name, known) or f"one of {', '.join(known)}")
+    return replace(document, steps=steps)
 
 
 def quantities_of(entries: Mapping[str, Any]) -> dict[str, Quantity]:

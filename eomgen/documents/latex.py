@@ -57,6 +57,8 @@ LINE = 95  # characters of words in all columns of a table, in which a formula c
 SIDE = 8
 SHORT = 24  # rows of a table that stays on one page
 _STATEMENTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789")
+ALIGNED, ALIGNED_END = "\\[\\begin{aligned}\n", "\n\\end{aligned}\\]"
+LINE_END = r" \\"
 BLOCK = 12  # rows of one display; a page ends between displays
 LETTERS = {
     "vx": "v_{x",
@@ -122,6 +124,8 @@ def render(document: Document) -> str:
     """The document as a file of LaTeX; its proof is a comment, contradictions are visible."""
     document = with_listings_typeset(document)
     setter = setter_of(document)
+    if document.fragment:
+        return _fragment(document, setter)
     proof = () if document.certificate is None else str(document.certificate).splitlines()
     lines = [*(f"% {line}" for line in proof), PREAMBLE + r"\begin{document}"]
     lines += [rf"\textbf{{{document.distrust}}}"] if document.distrust else []
@@ -136,8 +140,35 @@ def render(document: Document) -> str:
     return "\n".join([*lines, r"\end{document}"]) + "\n"
 
 
-def latex_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
-    """Paragraphs, displays and tables; formulas that follow one another are aligned together."""
+def _fragment(document: Document, setter: Setter) -> str:
+    """The sections as they are pasted into another document, which needs amsmath alone."""
+    proof = () if document.certificate is None else (f"% {line}" for line in document.proof.splitlines())
+    lines = [*proof]
+    several = sum(bool(step.title) for step in document.steps) > 1
+    for step in document.steps:
+        lines += [rf"\subsection*{{{latex_escaped(step.title)}}}"] if step.title and several else []
+        for block in latex_blocks(setter, step.statements, long_tables=False):
+            lines.append(_numbered(block) if document.fragment == "numbered" else block)
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def _numbered(block: str) -> str:
+    """A display with a number for each formula, at its last row; other blocks as they are."""
+    if not (block.startswith(ALIGNED) and block.endswith(ALIGNED_END)):
+        return block
+    rows = block.removeprefix(ALIGNED).removesuffix(ALIGNED_END).split("\n")
+    for k, later in enumerate(rows[1:]):
+        if later.startswith(("&\\quad", "&=")):  # it goes on with the row before, whose end has no number then
+            rows[k] = rf"{rows[k].removesuffix(LINE_END)} \notag{LINE_END}"
+    return "\n".join([r"\begin{align}", *rows, r"\end{align}"])
+
+
+def latex_blocks(setter: Setter, statements: Sequence[Statement], *, long_tables: bool = True) -> list[str]:
+    """Paragraphs, displays and tables; formulas that follow one another are aligned together.
+
+    Args:
+        long_tables: those of many rows may go over pages, which takes a package.
+    """
     blocks: list[str] = []
     groups = grouped(statements)
     for group, after in zip_longest(groups, groups[1:]):
@@ -149,7 +180,7 @@ def latex_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
         elif isinstance(group, Lines):
             blocks.append("\n".join([r"\begin{verbatim}", *group.lines, r"\end{verbatim}"]))
         else:
-            blocks.append(_grid(setter, group))
+            blocks.append(_grid(setter, group, long_tables))
     return blocks
 
 
@@ -205,7 +236,7 @@ def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
 def quantity_sides(graph: Graph, found: Quantity) -> tuple[Side, ...]:
     """The formula and the number of a quantity, as far as they are known."""
     exact = () if found.exact is None else (_read_back(graph, found.exact),)
-    return (*exact, Law(found.number, _number_latex(found.number))) if found.number else exact
+    return (*exact, Law(found.number, number_latex(found.number))) if found.number else exact
 
 
 def _read_back(graph: Graph, exact: str) -> Side:
@@ -216,7 +247,8 @@ def _read_back(graph: Graph, exact: str) -> Side:
     return read
 
 
-def _number_latex(number: str) -> str:
+def number_latex(number: str) -> str:
+    """A number and its unit, inside a formula: 2 kg, 45°."""
     value, _, unit = number.partition(" ")
     return value_latex(value).strip("$") + (rf"\ \text{{{unit_latex(unit)}}}" if unit else "")
 
@@ -323,18 +355,18 @@ def value_latex(value: str) -> str:
     return f"${number[1]}" + (rf" \cdot 10^{{{int(number[2])}}}$" if number[2] else "$")
 
 
-def _ruled(alignment: str, head: str, rows: list[str]) -> str:
+def _ruled(alignment: str, head: str, rows: list[str], long: bool) -> str:
     """A table with a line under its head; a long one may go over pages, and then needs a second run of LaTeX."""
     top = head + r" \\ \hline \noalign{\vskip 3pt}"
     columns, lines = f"{{@{{}}{alignment}@{{}}}}", [rf"{row} \\" for row in rows]
-    if len(rows) > SHORT:
+    if long and len(rows) > SHORT:
         lines = [rf"\begin{{longtable}}{columns}", rf"{top} \endhead", *lines, r"\end{longtable}"]
     else:
         lines = [r"\medskip", rf"\begin{{tabular}}{columns}", top, *lines, r"\end{tabular}\medskip", ""]
     return "\n".join(lines)
 
 
-def _grid(setter: Setter, table: Grid | Table) -> str:
+def _grid(setter: Setter, table: Grid | Table, long: bool = True) -> str:
     """A table of words and formulas; columns of long words are wrapped, units and numbers set as such."""
     grid = table if isinstance(table, Grid) else table.grid
     longest = [
@@ -346,7 +378,7 @@ def _grid(setter: Setter, table: Grid | Table) -> str:
     alignment = wide if table is grid else [MEANING if head == "meaning" else "l" for head in grid.head]
     units = [head == "unit" for head in grid.head]
     head = _cells(setter, grid.head, [True] * len(grid.head))
-    return _ruled("".join(alignment), head, [_cells(setter, row, units) for row in grid.rows])
+    return _ruled("".join(alignment), head, [_cells(setter, row, units) for row in grid.rows], long)
 
 
 def _cells(setter: Setter, row: tuple[Cell, ...], units: Sequence[bool]) -> str:

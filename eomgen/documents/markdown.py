@@ -66,7 +66,13 @@ def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str
 def listing_markdown(rows: Sequence[Found], model: Model | None = None) -> str:
     """Quantities in a table, a row each: name, formula and number typeset; one longer than a line is shortened."""
     setter = Setter(Notation() if model is None else notation_of(model))
-    return "\n".join(["| | |", "|---|---|", *(f"| `{row.name}` | {_reported(setter, row.quantity)} |" for row in rows)])
+    return "\n".join(
+        ["| | |", "|---|---|", *(f"| {_row_name(row)} | {_reported(setter, row.quantity)} |" for row in rows)]
+    )
+
+
+def _row_name(row: Found) -> str:
+    return f"`{row.name}`" if row.symbol is None else f"${row.symbol.tex}$"
 
 
 def _reported(setter: Setter, found: Quantity) -> str:

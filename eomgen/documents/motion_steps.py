@@ -17,7 +17,7 @@ from eomgen.mechanics.constraints import Rank, Row
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.kinematics import BodyEnergy, BodyLink, Scope
 from eomgen.mechanics.start import ExactStart
-from eomgen.model import Coordinate, Input, Parameter, PointForce
+from eomgen.model import Coordinate, Input, Model, Parameter, PointForce
 from eomgen.symbolic.expression import Expression, Node, Scalar, Vector, is_zero
 from eomgen.symbolic.print import to_text
 
@@ -210,25 +210,28 @@ def count(number: int, noun: str, plural: str = "") -> str:
 
 def data_step(system: System) -> Step:
     """Step with the given data."""
-    model, symbols = system.scope.model, system.symbols
+    symbols = system.symbols
+    return Step("data", "Data", data_tables(system.scope.model, {**symbols.parameters, **symbols.inputs}))
+
+
+def data_tables(model: Model, symbols: Mapping[str, Node]) -> tuple[Statement, ...]:
+    """Tables of the parameters and of the inputs.
+
+    Args:
+        symbols: of each of them.
+    """
     values = model.exact_parameters()
     rows = []
-    for name, symbol in symbols.parameters.items():
-        part = model.parameters[name]
-        rows.append(Meaning(symbol, part.about or "", _unit(part), _in_unit(values.get(name), part)))
+    for name, part in model.parameters.items():
+        rows.append(Meaning(symbols[name], part.about or "", _unit(part), _in_unit(values.get(name), part)))
     statements: list[Statement] = [Table(PARAMETERS, tuple(rows))] if rows else [prose("No parameters.")]
     inputs = tuple(
-        Meaning(
-            symbol,
-            model.inputs[name].about or "a known function of time",
-            _unit(model.inputs[name]),
-            model.inputs[name].value.text,
-        )
-        for name, symbol in symbols.inputs.items()
+        Meaning(symbols[name], part.about or "a known function of time", _unit(part), part.value.text)
+        for name, part in model.inputs.items()
     )
     if inputs:
         statements.append(Table(INPUTS, inputs))
-    return Step("data", "Data", tuple(statements))
+    return tuple(statements)
 
 
 def open_at_rest(system: System) -> list[Statement]:
@@ -341,13 +344,13 @@ def _coordinates(system: System) -> Step:
         if q.name in free:
             u, a = free[q.name]
             speed = "" if part.dependent else _start(part, part.speed, values)
-            rows.append(Meaning(u, "its rate", _per(unit, "s"), begun.get(u.name, speed)))
+            rows.append(Meaning(u, "its rate", unit_per(unit, "s"), begun.get(u.name, speed)))
             if part.dependent or u in symbols.u:
-                rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
+                rows.append(Meaning(a, "its acceleration", unit_per(unit, "s^2")))
         for x in (x for x in scope.laws if x.name.rstrip("'") == q.name):
             second = x.name.endswith("''")
             what = "its acceleration, as given" if second else "its rate, as given"
-            rows.append(Meaning(x, what, _per(unit, "s^2" if second else "s")))
+            rows.append(Meaning(x, what, unit_per(unit, "s^2" if second else "s")))
     rows += _speeds(system, begun)
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
@@ -398,12 +401,12 @@ def _speeds(system: System, begun: Mapping[str, str]) -> list[Meaning]:
     for u, a in zip(symbols.u, symbols.a, strict=True):
         if u.name in model.speeds:
             part = model.speeds[u.name]
-            start = begun.get(u.name, "" if part.start is None else _shown_value(part.start, values, None))
+            start = begun.get(u.name, "" if part.start is None else start_shown(part.start, values, None))
             rows += [Meaning(u, part.about or "speed", "", start), Meaning(a, "its derivative", "")]
     return rows
 
 
-def _per(unit: str, time: str) -> str:
+def unit_per(unit: str, time: str) -> str:
     """A unit per second: rad/s."""
     return "" if not unit else f"{unit}/{time}" if "/" not in unit else f"({unit})/{time}"
 
@@ -412,10 +415,10 @@ def _start(part: Coordinate, expression: Expression | None, values: Mapping[str,
     """A start value in the user's unit, "0" where none is given."""
     if expression is None:
         return "" if part.driven else "0"
-    return _shown_value(expression, values, part)
+    return start_shown(expression, values, part)
 
 
-def _shown_value(expression: Expression, values: Mapping[str, Any], part: Coordinate | None) -> str:
+def start_shown(expression: Expression, values: Mapping[str, Any], part: Quantified) -> str:
     """A value in the unit of a coordinate, else in SI; an expression of parameters without values as text."""
     if expression.names <= values.keys() | {"pi"}:
         return _in_unit(expression.evaluate({**values, "pi": math.pi}), part)

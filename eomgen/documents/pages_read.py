@@ -87,9 +87,10 @@ def said_by(tex: str) -> str:
 
 
 def latex_page(text: str) -> Iterator[PageBlock]:
-    """Blocks of a page of LaTeX."""
-    body = text.partition("\\begin{document}\n")[2].rpartition("\\end{document}")[0]
-    lines = body.split("\n")
+    """Blocks of a page of LaTeX, or of a part of one that is pasted into another."""
+    whole = "\\begin{document}\n" in text
+    body = text.partition("\\begin{document}\n")[2].rpartition("\\end{document}")[0] if whole else text
+    lines = [line for line in body.split("\n") if whole or not line.startswith("%")]
     while lines:
         line = lines.pop(0)
         if not line or line == r"\medskip":
@@ -99,6 +100,9 @@ def latex_page(text: str) -> Iterator[PageBlock]:
             yield PageBlock("heading", latex_line(heading[1]))
         elif line == r"\[\begin{aligned}":
             yield from displayed("\n".join(_until(lines, r"\end{aligned}\]")))
+        elif line == r"\begin{align}":
+            rows = (row.replace(r"\notag ", "") for row in _until(lines, r"\end{align}"))
+            yield from displayed("\n".join(rows))
         elif line == r"\begin{verbatim}":
             yield PageBlock("lines", lines=tuple(_until(lines, r"\end{verbatim}")))
         elif kind := _TABLE.match(line):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.documents import json_form, latex, markdown, text
-from eomgen.documents.document import Document
+from eomgen.documents.document import Document, with_section
 from eomgen.documents.figures import Picture
 from eomgen.documents.markdown import markdown_below
 from eomgen.errors import UsageError, visible
@@ -32,6 +32,18 @@ def drawn(document: Document, format: str) -> str:
     if format not in formats:
         raise UsageError(f"unknown format '{format}'", fix=f"one of {', '.join(formats)}")
     return formats[format](document)
+
+
+def fragment_of(document: Document, section: str | None, fragment: bool, numbered: bool) -> Document:
+    """The document with one of its sections, or all; as a part of another document, where that is requested.
+
+    Raises:
+        UsageError: there is no such section; numbers are requested for a whole document.
+    """
+    if numbered and not fragment:
+        raise UsageError("numbers are those of a fragment", fix="give fragment=True, or --fragment, too")
+    found = document if section is None else with_section(document, section)
+    return replace(found, fragment=("numbered" if numbered else "plain") if fragment else "")
 
 
 class Result:
@@ -77,9 +89,17 @@ class Result:
         """Content of the output of `--json`."""
         return json_form.as_dict(self.document)
 
-    def latex(self) -> str:
-        """The derivation in LaTeX."""
-        return self.render("latex")
+    def latex(self, section: str | None = None, fragment: bool = False, numbered: bool = False) -> str:
+        """The derivation in LaTeX, a file that compiles.
+
+        Args:
+            section: only this one of its sections: "motion", "positions", ...
+            fragment: what one pastes into a document of one's own, which needs amsmath alone.
+            numbered: each formula of a fragment has a number.
+        Raises:
+            UsageError: there is no such section.
+        """
+        return rendered(fragment_of(self.document, section, fragment, numbered), "latex")
 
     def plot(self, path: str | Path) -> None:
         """Draw it as .png, .svg or .pdf."""

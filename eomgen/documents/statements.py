@@ -5,6 +5,7 @@ Plain strings are plain text in every format: each format escapes them in its ow
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Container, Iterator, Mapping, Sequence
 from dataclasses import field
@@ -183,17 +184,21 @@ class Found:
 
     Args:
         letter: a name under which formulas have it; "" where that is its own.
+        symbol: how it is set, where its author says so.
     """
 
     name: str
     quantity: Quantity
     words: str = ""
     letter: str = ""
+    symbol: Symbol | None = None
 
     @property
     def letters(self) -> tuple[Law, ...]:
         """The letter that formulas have for it; none where it has none."""
         name = self.letter or self.name
+        if self.symbol is not None:
+            return (Law(name, self.symbol.tex),)
         return (Law.of_letter(name),) if name.isidentifier() else ()
 
 
@@ -229,11 +234,17 @@ def parts_of(statement: Statement) -> list[Piece | Side]:
 
 @dataclass(frozen=True)
 class Step:
-    """One step of a derivation, a section of a document; `key` names it for machines, "" where it has no head."""
+    """One step of a derivation, a section of a document.
+
+    Args:
+        key: names it for machines, "" where it has no head.
+        room: to write in, below it [cm].
+    """
 
     key: str
     title: str
     statements: tuple[Statement, ...]
+    room: int = 0
 
 
 @dataclass(frozen=True)
@@ -331,6 +342,7 @@ def quantities(statement: Statement) -> Iterator[Name]:
 # The results for one quantity: exact, as a number, the method; or the reason why they are missing.
 
 
+SMALLEST, LARGEST = 1e-4, 1e6  # numbers in between have no power of ten, however few digits of them are printed
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
 
@@ -351,6 +363,7 @@ class Quantity:
         method: the method by which it was found.
         message: the reason if something is missing, or None.
         beside: further JSON entries by name: the way of its proof, its work.
+        digits: those that it is printed with; None: ten, without zeros at the end.
     """
 
     exact: str | None = None
@@ -359,6 +372,7 @@ class Quantity:
     method: str = ""
     message: str | None = None
     beside: Mapping[str, Any] = field(default_factory=dict)
+    digits: int | None = None
 
     @property
     def answered(self) -> bool:
@@ -367,7 +381,16 @@ class Quantity:
     @property
     def number(self) -> str:
         """The number with its unit, as it is printed; "" where there is none."""
-        return "" if self.value is None else f"{self.value:.10g} {unit_text(self.unit or '')}".rstrip()
+        return "" if self.value is None else f"{self._digits(self.value)} {unit_text(self.unit or '')}".rstrip()
+
+    def _digits(self, value: float) -> str:
+        """The number in its digits: of those that were requested zeros at the end stay, 7.00."""
+        if self.digits is None or not math.isfinite(value):
+            return f"{value:.10g}"
+        text = f"{value:#.{self.digits}g}"
+        if "e" not in text:
+            return text.removesuffix(".")
+        return f"{float(text):.0f}" if SMALLEST <= abs(value) < LARGEST else f"{value:.{self.digits - 1}e}"
 
     @property
     def lines(self) -> list[str]:

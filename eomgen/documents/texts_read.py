@@ -11,7 +11,7 @@ from itertools import chain
 from typing import Any
 
 from eomgen.documents.document import Document
-from eomgen.documents.read_back import NAME, Unlike, columns_of, misspelt
+from eomgen.documents.read_back import NAME, Unlike, columns_of, misspelt, number_said
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -262,7 +262,7 @@ def _quantity_said(found: Quantity) -> str:
     if found.exact is None and found.value is None:
         return f"not answered: {found.message}"
     said = "" if found.exact is None else f"={found.exact}"
-    said += "" if found.value is None else f"={format(found.value, '.10g')}{found.unit or ''}"
+    said += "" if found.value is None else f"={number_said(found)}{found.unit or ''}"
     return said + (f"[{found.method}]" if found.method else "") + (f"({found.message})" if found.message else "")
 
 

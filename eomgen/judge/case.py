@@ -109,7 +109,7 @@ class Case:
             free = {
                 name: replace(scope.let_go(name) if q.driven else q, dependent=False) for name, q in coordinates.items()
             }
-            return Case(replace(self.model, coordinates=Table(free), outputs=Table()), self.at_rest)
+            return Case(replace(self.model.requesting({}), coordinates=Table(free)), self.at_rest)
         return None
 
     @property
@@ -473,6 +473,6 @@ class Case:
 def _asking(model: Model, outputs: Mapping[str, Output]) -> Model:
     """The model with these outputs alone, checked as a whole."""
     try:
-        return replace(model, outputs=Table(outputs))
+        return model.requesting(outputs)
     except ModelError as error:
         raise ExpressionError(error.what.partition(" in the ")[0], 0, error.fix) from error

@@ -112,7 +112,7 @@ def edited_models(model: Model, parts: Contributions) -> tuple[ModelEdit, ...]:
         model: as its file has it.
         parts: the contributions to its equations.
     """
-    found = sorted(_Editor(replace(model, outputs=Table()), parts).edits(), key=lambda each: each.mistake.rank)
+    found = sorted(_Editor(model.requesting({}), parts).edits(), key=lambda each: each.mistake.rank)
     return tuple(found[:MOST])
 
 

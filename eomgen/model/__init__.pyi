@@ -72,6 +72,9 @@ from eomgen.model.diagnostics import whereabouts as whereabouts
 # A law of the state: an expression with coordinates, rates or speeds in it; None for everything else
 from eomgen.model.driven import law_of as law_of
 
+# Parts of the words of a problem that are no words: $formula$, {name}
+from eomgen.model.fields import STATEMENT as STATEMENT
+
 # The place at which all forces balance, instead of an instant
 from eomgen.model.fields import AtRest as AtRest
 

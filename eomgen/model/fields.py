@@ -7,7 +7,9 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 (`leaves`) and the JSON Schema (`schema`). Nothing is computed here.
 """
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
+from fractions import Fraction
 from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
@@ -325,6 +327,64 @@ class TextRule(WholeRule):
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"enum": list(self.options)} if self.options else {"type": "string"}
+
+
+STATEMENT = re.compile(r"\$(?P<math>[^$]*)\$|\{(?P<name>[^{}]*)\}|(?P<open>\$)|\\(?P<plain>[$\\{}])")
+"""Parts of a statement of a problem that are no words: $formula$, {name}, a dollar alone, and signs behind a bar."""
+
+
+@dataclass(frozen=True)
+class StatementRule(TextRule):
+    """Words of a problem: `$\\varphi_0$` is a formula in LaTeX, `{m}` a declared name with its value and unit."""
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> str | None:
+        text = TextRule.read(self, raw, path, found)
+        for each in STATEMENT.finditer(text or ""):
+            if each["open"]:
+                fix = "write \\\\$ for a dollar in double quotes, \\$ in single quotes"
+                found.append(Diagnostic(path, "a formula begins at $ and does not end", fix, each.start(), 1))
+        return text
+
+
+@dataclass(frozen=True)
+class NumbersRule(WholeRule):
+    """Numbers from which the values of variants are drawn: two ends, or a list of values."""
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> tuple[Any, ...] | None:
+        given = raw if isinstance(raw, (list, tuple)) else ()
+        numbers = [Fraction(str(x)) for x in given if not isinstance(x, bool) and isinstance(x, (int, float, Decimal))]
+        if len(numbers) < 2 or len(numbers) < len(given):
+            fix = "write range = [0.5, 2] for all between, or a list of values: [1, 2, 5]"
+            found.append(Diagnostic(path, f"two numbers or more are needed here, not {shown(raw)}", fix))
+            return None
+        if len(numbers) == 2 and numbers[0] >= numbers[1]:
+            found.append(
+                Diagnostic(path, "the first end of a range is not below the second", "give the lower one first")
+            )
+            return None
+        return tuple(given)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        return {"type": "array", "items": {"type": "number"}, "minItems": 2}
+
+
+@dataclass(frozen=True)
+class CountRule(WholeRule):
+    """A whole number between two others, ends included."""
+
+    least: int
+    most: int
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Diagnostic]) -> int | None:
+        whole = not isinstance(raw, (bool, str)) and isinstance(raw, (int, Decimal)) and raw == int(raw)
+        if whole and self.least <= int(raw) <= self.most:
+            return int(raw)
+        what = f"a whole number from {self.least} to {self.most} is needed here, not {shown(raw)}"
+        found.append(Diagnostic(path, what))
+        return None
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        return {"type": "integer", "minimum": self.least, "maximum": self.most}
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from eomgen.model.fields import (
     ListRule,
     NameRule,
     ParsedTextRule,
+    StatementRule,
     Table,
     TextRule,
     VectorRule,
@@ -98,6 +99,7 @@ CoordinateName = Annotated[str, NameRule("coordinate")]
 AxesName = Annotated[str, NameRule("axes")]
 Flag = Annotated[bool, FlagRule()]
 Text = Annotated[str, TextRule()]
+Paragraphs = Annotated[tuple[str, ...], ListRule(StatementRule(), single=True)]
 Turn = Annotated[str, TextRule(("cw", "ccw"))]
 
 TwoOwnPoints = Annotated[tuple[str, ...], ListRule(NameRule("own point"), 2, 2)]

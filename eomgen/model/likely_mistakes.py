@@ -14,7 +14,7 @@ from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
 from eomgen.model.checks.bodies import possible
 from eomgen.model.diagnostics import Diagnostic, whereabouts
 from eomgen.model.dimensions import inferred
-from eomgen.model.fields import Leaf, NameRule, WrittenEquation
+from eomgen.model.fields import STATEMENT, Leaf, NameRule, StatementRule, WrittenEquation
 from eomgen.model.positions import DocumentPath
 from eomgen.model.sampled_laws import laws_through_samples
 from eomgen.symbolic.expression import Expression, Fraction
@@ -227,7 +227,10 @@ def _unused(catalog: Catalog) -> Iterator[Diagnostic]:
     """Diagnostics of parameters and points of the ground that nothing names."""
     named: dict[str, set[DocumentPath]] = {}
     for leaf in catalog.leaves:
-        if leaf.path[-1] not in PROSE:
+        if isinstance(leaf.rule, StatementRule):  # of the words of a problem the names in braces
+            for found in STATEMENT.finditer(leaf.value):
+                named.setdefault((found["name"] or "").strip(), set()).add(leaf.path[:2])
+        elif leaf.path[-1] not in PROSE:
             for name in _NAME.findall(_written(leaf.value)):
                 named.setdefault(name, set()).add(leaf.path[:2])
     joints = (body.joint for body in catalog.table("bodies").values() if body is not None)

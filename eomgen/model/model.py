@@ -1,6 +1,7 @@
 """Text or Python -> "Model": the whole that a user declares, and what follows from its declarations alone."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from importlib import import_module
 from typing import Annotated, Any, ClassVar
 
@@ -16,12 +17,14 @@ from eomgen.model.diagnostics import Diagnostic
 from eomgen.model.dimensions import Inferred, inferred, inferred_units
 from eomgen.model.fields import (
     Leaf,
+    ListRule,
     Table,
     TableRule,
     TextRule,
 )
 from eomgen.model.forces import Force
 from eomgen.model.kinds import (
+    Paragraphs,
     Text,
 )
 from eomgen.model.likely_mistakes import unbuilt, unbuilt_constraints, warnings_of
@@ -36,6 +39,7 @@ from eomgen.model.parts import (
     Linearize,
     Output,
     Parameter,
+    Question,
     Speed,
     Truss,
     Unknown,
@@ -71,6 +75,9 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
         name: of the system (the file's stem where it is left out).
         space: the plane (x right, y up, turns about z, counter-clockwise positive), or space; required.
         about, source: remarks.
+        text: the words of the problem, one paragraph or several, for sheets.
+        language: of what is printed about it: "en", "de", "fr", "es".
+        questions: what a sheet asks, in words.
         parameters: constants.
         coordinates: what moves.
         speeds: generalized speeds that are not rates.
@@ -94,6 +101,8 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     space: Annotated[str, TextRule(("plane", "space"))]
     about: Text | None = None
     source: Text | None = None
+    text: Paragraphs | None = None
+    language: Text | None = None
     parameters: Annotated[Table[Parameter], _table(Parameter, "parameter")] = Table()
     coordinates: Annotated[Table[Coordinate], _table(Coordinate, "coordinate")] = Table()
     speeds: Annotated[Table[Speed], _table(Speed, "speed")] = Table()
@@ -107,6 +116,7 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
     given: Annotated[Given, PartRule(Given)] | None = None
     unknowns: Annotated[Table[Unknown], _table(Unknown, "unknown")] = Table()
     outputs: Annotated[Table[Output], _table(Output, "output")] = Table()
+    questions: Annotated[tuple[Question, ...], ListRule(PartRule(Question))] | None = None
 
     def __post_init__(self) -> None:
         finish(self)
@@ -143,6 +153,14 @@ class Model(Numbers, Connections, UnitsOfNames, Part):
             "required": ["eomgen", *table["required"]],
             "$defs": definitions,
         }
+
+    def requesting(self, outputs: Mapping[str, Output]) -> "Model":
+        """The model with other requested results; without the words of its problem, which speak of those of the file.
+
+        Raises:
+            ModelError: one of them is wrong.
+        """
+        return replace(self, outputs=Table(outputs), text=None, questions=None)
 
     @property
     def warnings(self) -> tuple[Diagnostic, ...]:

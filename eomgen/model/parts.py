@@ -9,12 +9,15 @@ from eomgen.model.fields import (
     EVERY,
     UNIT,
     AtRest,
+    CountRule,
     EquationRule,
     EventRule,
     InstantRule,
     ListRule,
     NameRule,
+    NumbersRule,
     OutputRule,
+    StatementRule,
     Table,
     TableRule,
     TextRule,
@@ -60,6 +63,7 @@ class Parameter(Part):
         about: a remark, printed in the derivation.
         positive: roots of its squares may be taken; a value that is not positive is an error.
         symbol: in formulas, in LaTeX (None: by its name).
+        range: the numbers in `unit` from which variants of the problem draw it: two ends, or a list of values.
     """
 
     shorthand: ClassVar[str] = "value"
@@ -70,6 +74,7 @@ class Parameter(Part):
     about: Text | None = None
     positive: Flag = False
     symbol: SymbolField | None = None
+    range: Annotated[tuple[Any, ...], NumbersRule()] | None = None
 
     @property
     def formula(self) -> Expression | None:
@@ -297,6 +302,8 @@ class Output(Part):
         event: with `at`: which of the events of a run, from 1 on, or "every".
         unit: in which the answer is given (None: SI, and the unit that the formula has, as far as the file says).
         about: a remark.
+        symbol: of the result, in LaTeX (None: by its name).
+        digits: those that the answer is printed with (None: ten); in JSON and Python it has all.
     """
 
     shorthand: ClassVar[str] = "value"
@@ -308,8 +315,25 @@ class Output(Part):
     event: Annotated[int | str, EventRule()] | None = None
     unit: UnitText | None = None
     about: Text | None = None
+    symbol: SymbolField | None = None
+    digits: Annotated[int, CountRule(1, 15)] | None = None
 
     @property
     def of_every_event(self) -> bool:
         """True if all values are requested, one at each event of a run."""
         return self.event == EVERY
+
+
+@dataclass(frozen=True, kw_only=True)
+class Question(Part):
+    """A question of a sheet, in words.
+
+    Args:
+        text: the question; `$...$` is a formula in LaTeX, `{m}` a declared name with its value.
+        outputs: the names of the outputs that answer it.
+    """
+
+    shorthand: ClassVar[str] = "text"
+    title: ClassVar[str] = "a question"
+    text: Annotated[str, StatementRule()]
+    outputs: Annotated[tuple[str, ...], ListRule(NameRule("output"), 1, single=True)] | None = None

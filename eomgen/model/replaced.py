@@ -495,7 +495,7 @@ def requested_of(model: Model, text: str) -> Output:
             output = replace(output, at=when)
         if comma:
             output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
-        replace(model, outputs=Table({"asked": output}))
+        model.requesting({"asked": output})
     except ValueError as error:
         raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", fix=f"2, or {EVERY}") from error
     except ExpressionError as error:

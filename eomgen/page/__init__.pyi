@@ -39,5 +39,8 @@ from eomgen.page.report import form_of as form_of
 # Writes the report; the document names its files
 from eomgen.page.report import report_document as report_document
 
+# Writes the sheets of a class, and their key
+from eomgen.page.report import sheets_document as sheets_document
+
 # The picture of a model at its start, as one element <svg>
 from eomgen.page.svg_picture import model_svg as model_svg

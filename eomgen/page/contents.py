@@ -19,8 +19,10 @@ from eomgen.page.markup import Html
 from eomgen.proof import Certificate, Check
 
 SECTIONS = {
+    "statement": "Problem",
     "figure": "Figure",
     "data": "Data",
+    "questions": "Questions",
     "derivation": "Derivation",
     "reactions": "Reactions",
     "free_bodies": "Free bodies",
@@ -106,6 +108,11 @@ class ReportFigure:
     save: Callable[[Path], object] | None = None
     fixed: bool = False
 
+    def drawn(self, ending: str) -> bytes:
+        """The picture as a file with this ending."""
+        assert self.save is not None
+        return _drawn(self.save, ending)
+
     def __getstate__(self) -> dict[str, Any]:
         """State to be pickled: the drawn files take the place of the function that draws them."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
@@ -169,6 +176,7 @@ class Report:
         source: the text of the model, "" where it was made in Python.
         values: "parameters" and "start" that replace those of the text, in SI.
         time: the duration of the motion [s].
+        is_open: it holds no answer, and no code that gives one.
     """
 
     head: Document
@@ -177,6 +185,7 @@ class Report:
     source: str = ""
     values: Mapping[str, Mapping[str, str]] = Table()
     time: float = 0.0
+    is_open: bool = False
 
     def __repr__(self) -> str:
         keys = ", ".join(section.key for section in self.sections)

@@ -5,7 +5,9 @@ The formats of a report, by the ending of its file: each gives the files, by nam
 
 from __future__ import annotations
 
+from base64 import b64encode
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import replace
 from typing import Any
 
 from eomgen.documents import PREAMBLE, latex_blocks, markdown_blocks, markdown_escaped, setter_of
@@ -46,6 +48,7 @@ def _section(setter: Setter, section: ReportSection, report: Report, pictures: P
     for step in section.steps:
         lines += [rf"\subsection*{{{latex_escaped(step.title)}}}"] if step.title not in ("", section.title) else []
         lines += latex_blocks(setter, step.statements)
+        lines += [rf"\par\vspace*{{{step.room}cm}}"] if step.room else []
     for drawing in section.drawings:
         lines += _picture(drawing, pictures.name(drawing))
     if section.key == "certificate" and report.certificate is not None:
@@ -101,6 +104,7 @@ def section_markdown(setter: Setter, section: ReportSection, report: Report) -> 
     for step in section.steps:
         blocks += [f"### {markdown_escaped(step.title)}"] if step.title not in ("", section.title) else []
         blocks += markdown_blocks(setter, step.statements)
+        blocks += [f'<div style="height: {step.room}cm"></div>'] if step.room else []
     if section.key == "certificate" and report.certificate is not None:
         blocks.append(f"```\n{report.certificate}\n```")
     return blocks
@@ -158,7 +162,7 @@ def notebook_text(report: Report) -> str:
         ToolMissing: the program that runs notebooks is not installed.
         RunFailed: a cell fails.
     """
-    if not report.source:
+    if not report.source and not report.is_open:
         raise UsageError(
             "a notebook holds the text of its model, and this one was made in Python", fix="write an .html"
         )
@@ -175,6 +179,8 @@ def notebook_text(report: Report) -> str:
         made[is_code](text if is_code else visible(text), id=f"c{k}")
         for k, (is_code, text) in enumerate(_cells(report))
     ]
+    for cell in cells if report.is_open else ():
+        cell.update(_pictured(cell, report))
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
     notebook = v4.new_notebook(cells=cells, metadata=kernel)
     try:
@@ -190,6 +196,9 @@ def _cells(report: Report) -> Iterator[tuple[bool, str]]:
     """(whether it is code, text) of each cell."""
     setter, keys = setter_of(report.as_document), [section.key for section in report.sections]
     yield False, "\n\n".join(markdown_head(report))
+    if report.is_open:
+        yield from _open_cells(report)
+        return
     other = f"values = {dict(report.values)!r}  # in place of those of the text\n" if report.values else ""
     yield True, f"import eomgen\n\nmodel = eomgen.loads({_quoted(report.source)}, {report.origin!r})\n{other}model"
     for section in report.printed:
@@ -197,6 +206,30 @@ def _cells(report: Report) -> Iterator[tuple[bool, str]]:
         if section.key in CALLS and not section.remark and (section.key != "certificate" or "derivation" in keys):
             call = CALLS[section.key] if section.drawings else CALLS[section.key].removesuffix(".picture")
             yield True, call.format(time=report.time, values=", **values" if report.values else "")
+
+
+def _open_cells(report: Report) -> Iterator[tuple[bool, str]]:
+    """Cells of a sheet: its words, its pictures, and an empty cell where there is room for an answer."""
+    setter = setter_of(report.as_document)
+    for section in report.printed:
+        pictures = [f"![{markdown_escaped(each.caption)}](attachment:{each.key}.png)" for each in section.drawings]
+        written = [replace(step, room=0) for step in section.steps]
+        if not any(step.room for step in section.steps):
+            blocks = section_markdown(setter, replace(section, steps=tuple(written)), report)
+            yield False, "\n\n".join([*blocks, *pictures])
+            continue
+        yield False, f"## {section.title}"
+        for step in written:
+            yield False, "\n\n".join(markdown_blocks(setter, step.statements))
+            yield True, ""
+
+
+def _pictured(cell: Any, report: Report) -> dict[str, Any]:
+    """The pictures that a cell shows, as it carries them."""
+    drawn = (each for section in report.sections for each in section.drawings if each.save is not None)
+    shown = {f"{each.key}.png": each for each in drawn if f"(attachment:{each.key}.png)" in cell["source"]}
+    found = {name: {"image/png": b64encode(each.drawn(".png")).decode()} for name, each in shown.items()}
+    return {"attachments": found} if found else {}
 
 
 def _quoted(text: str) -> str:

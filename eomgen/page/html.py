@@ -152,7 +152,8 @@ def _live(live: Callable[[], Html]) -> Html:
 def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:
     """A step of a derivation, its title above it."""
     heading = [element("h3", step.title)] if step.title and titled else []
-    return [*heading, *(_group(setter, group) for group in grouped(step.statements))]
+    room = [element("div", class_="room", style=f"height: {step.room}cm")] if step.room else []
+    return [*heading, *(_group(setter, group) for group in grouped(step.statements)), *room]
 
 
 def document_html(document: Document, wanted: Callable[[Step], bool] = lambda step: True) -> Html:

@@ -84,7 +84,9 @@ def _section(setter: Setter, section: ReportSection, certificate: Certificate | 
         groups = grouped(step.statements)
         for group, after in zip_longest(groups, groups[1:]):
             parts = _group(setter, group)
-            lines += [_kept_with_next(parts[0])] if isinstance(group, Prose) and isinstance(after, list) else parts
+            kept = isinstance(group, Prose) and (isinstance(after, list) or (after is None and step.room))
+            lines += [_kept_with_next(parts[0])] if kept else parts
+        lines += [f"#rect(width: 100%, height: {step.room}cm, stroke: 0.4pt + luma(190))"] if step.room else []
     lines += [_drawing(setter, drawing) for drawing in section.drawings]
     return [*lines, _certificate(certificate)] if section.key == "certificate" and certificate is not None else lines
 
@@ -213,7 +215,7 @@ TYPST_SIGNS = dict(zip(NAMED, "∂∑⋅×±≤≥≠≈∞→∫…⋯…∘⟨
 TYPST_SIGNS |= {"quad": "quad", "qquad": "quad quad", **dict.fromkeys(("lvert", "rvert", "mid"), r"\|")}
 TYPST_SIGNS |= {"lbrace": r"\{", "rbrace": r"\}", "lbrack": r"\[", "rbrack": r"\]"}
 WORDS = "sin cos tan sinh cosh tanh arcsin arccos arctan ln log exp min max det".split()
-SPACES = {",": "thin", ":": "med", ";": "thick", " ": "space", "!": ""}
+SPACES = {",": "thin", ":": "med", ";": "thick", " ": "thick", "!": ""}
 ACCENTS = {"dot": "dot", "ddot": "dot.double", "dddot": "dot.triple", "vec": "arrow", "bar": "macron"}
 ACCENTS |= {"hat": "hat", "widehat": "hat", "tilde": "tilde", "widetilde": "tilde", "overline": "overline"}
 UPRIGHT = {"mathrm": "upright", "mathsf": "sans", "mathbf": "bold", "mathit": "italic", "mathcal": "cal"}
@@ -303,6 +305,8 @@ class _Reader:
             return SPACES[name]
         if name in ACCENTS:
             return f"{ACCENTS[name]}({self._argument()})"
+        if name in ("mathrm", "mathsf") and SCRIPTED.match(self._tex, self._place):
+            return f"{UPRIGHT[name]}({self._argument()})"
         if name in UPRIGHT:
             return f"{UPRIGHT[name]}({string(self._words())})" if UPRIGHT[name] else string(self._words())
         if name in STRUCTURES:
@@ -347,6 +351,7 @@ class _Reader:
         raise UnknownCommand(f"\\begin{{{name}}}")
 
 
+SCRIPTED = re.compile(r"\s*\{[^{}]*[\^_]")  # letters of another type with an exponent or an index: m/s^2
 LEADING = re.compile(r"^(& ?(?:quad)?) ([+-])")  # a sign that goes on with the row above stands apart from its term
 
 STRUCTURES: dict[str, Callable[[_Reader], str]] = {

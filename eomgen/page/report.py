@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import csv
 import io
 import zipfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -13,14 +14,20 @@ from typing import Any
 from eomgen import files, pipeline
 from eomgen.codegen import identifier
 from eomgen.documents import (
+    SECTION_GROUPS,
     Document,
     Lines,
     Result,
+    Step,
     document_of,
     drawing_at_rest,
+    given_step,
+    lines_document,
     nearest_name,
     plain_document,
     proven,
+    question_steps,
+    statement_step,
     with_listings_typeset,
     with_start_reported,
 )
@@ -43,7 +50,7 @@ from eomgen.page.player import (
 )
 from eomgen.page.read_back import report_read_back
 from eomgen.proof import Certificate, Check, pictures_reported, states_shown
-from eomgen.questions import solve
+from eomgen.questions import solve, variant_of
 from eomgen.resources import doing
 from eomgen.results import Statics, free_bodies, inertia, kinematics, linearize, statics
 from eomgen.runs import PAGE_TIME, run_of_a_page
@@ -65,6 +72,42 @@ CAPTIONS = {
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of files in archives: the same bytes at any time
 
 
+SOLUTION = "solution"
+AUDIENCES = ("problem", "worksheet", SOLUTION)
+STEPS_LISTED = "help"  # in place of the keys of steps
+OPEN = ("statement", "figure", "data", "questions")  # sections that hold no answer
+SOLVING = ("reactions", "outputs")  # sections of a solution beside its main one
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """Readers of a report, and the method of its derivation.
+
+    Args:
+        audience: one of AUDIENCES; "" for a whole report.
+        steps: keys of the steps that stand in it; () for all.
+        method: of the derivation, as `derive` takes it.
+    """
+
+    audience: str = ""
+    steps: tuple[str, ...] = ()
+    method: str = "lagrange"
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of its steps, those of groups one by one."""
+        return tuple(key for name in self.steps for key in SECTION_GROUPS.get(name, (name,)))
+
+    @property
+    def is_open(self) -> bool:
+        """True if it is handed out before anybody has solved the problem."""
+        return self.audience in ("problem", "worksheet")
+
+    def chosen(self, steps: Iterable[Step]) -> tuple[Step, ...]:
+        """The requested steps among these."""
+        return tuple(step for step in steps if not self.steps or step.key in self.keys)
+
+
 @dataclass(frozen=True)
 class Subject:
     """A model and the options of its report; each result is found once.
@@ -74,6 +117,7 @@ class Subject:
         certify: results are proven.
         origin: the name of the model's file, "" for none.
         source: its text.
+        sheet: its readers.
     """
 
     model: Model
@@ -81,6 +125,7 @@ class Subject:
     certify: bool
     origin: str
     source: str
+    sheet: Sheet = Sheet()
 
     @property
     def stem(self) -> str:
@@ -126,7 +171,7 @@ class Subject:
 
     @cached_property
     def equations(self) -> Equations:
-        return pipeline.derive(self.model)
+        return pipeline.derive(self.model, self.sheet.method)
 
     @cached_property
     def followed(self) -> tuple[Trajectory, str]:
@@ -174,6 +219,9 @@ def report(
     with_: Sequence[str] = (),
     without: Sequence[str] = (),
     certify: bool = True,
+    for_: str = "",
+    steps: Sequence[str] = (),
+    method: str = "lagrange",
 ) -> Report:
     """A model and the results for it, as a page (.html), a paper (.pdf, .tex), text (.md) or an executed notebook.
 
@@ -183,8 +231,11 @@ def report(
         parameters, start: values that replace the model's, each as `model_at` takes it.
         with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
         certify: its results are proven.
+        for_: "problem" for a sheet without any answer, "worksheet" for one with room to write in, "solution".
+        steps: keys of the steps of its sections that stand in it; () for all.
+        method: of the derivation, as `derive` takes it.
     Raises:
-        UsageError: no format has that ending; there is no such section.
+        UsageError: no format has that ending; there is no such section, step or reader.
         ToolMissing: the program that runs notebooks is not installed.
     """
     form = None if path is None else form_of(str(path))
@@ -192,7 +243,8 @@ def report(
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
     lasts = None if time is None else seconds(time)
-    subject = Subject(model_to_study(model, parameters, start), lasts, certify, origin, source)
+    sheet = Sheet(for_, tuple(steps), method)
+    subject = Subject(model_to_study(model, parameters, start), lasts, certify, origin, source, sheet)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         found, texts = _read_back(subject, found, form, Path(path).name)
@@ -254,10 +306,17 @@ def report_document(
     origin: str = "",
     text: str = "",
     certify: bool = True,
+    for_: str = "",
+    steps: Sequence[str] = (),
+    method: str = "lagrange",
 ) -> Document:
-    """Writes the report; the document names its files."""
+    """Writes the report; the document names its files, or its steps where these are requested."""
+    sheet = Sheet(for_, () if STEPS_LISTED in steps else tuple(steps), method)
+    if STEPS_LISTED in steps:
+        found = step_titles(Subject(model, time, False, origin, text, replace(sheet, audience=SOLUTION)))
+        return lines_document(lambda: {"steps": found}, *(f"{key:<16}{title}" for key, title in found.items()))
     form = form_of(output)
-    subject = Subject(model, time, certify, origin, text)
+    subject = Subject(model, time, certify, origin, text, sheet)
     found, texts = _read_back(subject, report_of(subject, with_, without), form, Path(output).name)
     paths = files.write_all(Path(output).parent, texts)
     sections = [section.key for section in found.sections]
@@ -273,6 +332,36 @@ def report_document(
     return proven(with_start_reported(document, model), found.certificate)
 
 
+def sheets_document(
+    model: Model,
+    *,
+    variants: Sequence[int],
+    output: str,
+    certify: bool = True,
+    for_: str = "",
+    **options: Any,
+) -> Document:
+    """Writes the sheets of a class, FILE_1, FILE_2, ..., and the data and answers of each as FILE_key.csv."""
+    path, names, rows = Path(output), list[str](), list[list[str]]()
+    proofs: dict[str, Certificate | None] = {}
+    for number in variants:
+        drawn = variant_of(model, number)
+        sheet = str(path.with_name(f"{path.stem}_{number}{path.suffix}"))
+        made = report_document(drawn.model, output=sheet, certify=certify, for_=for_, **options)
+        answers = solve(drawn.model)
+        proofs[str(number)] = answers.certify() if certify else None
+        names += made.entries()["files"]
+        heads = [*(f"{x.name} [{x.unit}]" for x in drawn.taken), *(f"{k} [{x.unit}]" for k, x in answers.items())]
+        values = [*(x.value for x in drawn.taken), *(x.value for x in answers.values())]
+        rows += [] if rows else [["variant", *(head.removesuffix(" []") for head in heads)]]
+        rows.append([str(number), *("" if x is None else f"{x:.10g}" for x in values)])
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    names += map(str, files.write_all(path.parent, {f"{path.stem}_key.csv": text.getvalue()}))
+    entries = {"name": model.name, "files": names, "variants": list(variants)}
+    return proven(plain_document(model, lambda: entries, Lines(tuple(names))), joint_proof(proofs))
+
+
 def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str] = ()) -> Report:
     """The report of a model: the sections that fit it, and those that are requested.
 
@@ -284,15 +373,22 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
             raise UsageError(f"there is no section '{name}'", fix=nearest_name(name, SECTIONS))
         if name in with_ and name in without:
             raise UsageError(f"the section '{name}' is wanted and left out", fix="say one of the two")
+    sheet, model = subject.sheet, subject.model
+    if sheet.audience not in ("", *AUDIENCES):
+        raise UsageError(f"no sheet is written for '{sheet.audience}'", fix=f"one of {', '.join(AUDIENCES)}")
+    if sheet.is_open and (told := [name for name in with_ if name not in OPEN]):
+        raise UsageError(f"the section '{told[0]}' holds answers", fix="write it for the solution")
     keys = [key for key in SECTIONS if key not in without and (key in with_ or key in fitting(subject))]
     made = [_made(subject, key, key in with_) for key in keys]
     sections = tuple(section for section in made if section is not None)
+    if sheet.is_open:
+        return Report(replace(document_of(model, "", ()), about="", source=""), sections, is_open=True)
+    _refuse_unknown_steps(subject)
     proofs: dict[str, Certificate | None] = {key: each.certificate for key, each in subject.documents.items()}
     if "followed" in vars(subject):
         proofs["motion"] = subject.run.certify() if subject.certify else None
     if "code" in vars(subject):
         proofs["code"] = subject.code.certify() if subject.certify else None
-    model = subject.model
     failures = [document.failed for document in subject.documents.values()]
     failures += [subject.run.message] if "followed" in vars(subject) and not subject.run.ok else []
     failed = "; ".join(filter(None, failures))
@@ -301,6 +397,27 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     lasted = float(subject.run.t[-1]) if "followed" in vars(subject) and len(subject.run.t) else PAGE_TIME
     lasted = subject.time or lasted
     return Report(proven(head, joint_proof(proofs)), sections, subject.origin, subject.source, values, lasted)
+
+
+def step_titles(subject: Subject) -> dict[str, str]:
+    """{key: title} of every step of the sections of a report, in their order."""
+    documents = [subject.main[1], *(subject.document(key) for key in fitting(subject) if key in FOUND)]
+    known = {step.key: step.title for document in documents for step in document.steps if step.title}
+    groups = {name: ", ".join(known[key] for key in keys if key in known) for name, keys in SECTION_GROUPS.items()}
+    return known | {name: titles for name, titles in groups.items() if titles}
+
+
+def _refuse_unknown_steps(subject: Subject) -> None:
+    """Refuses the name of a step that there is not.
+
+    Raises:
+        UsageError: it is named.
+    """
+    known = step_titles(subject) if subject.sheet.steps else {}
+    for name in subject.sheet.steps:
+        if name not in known:
+            fix = nearest_name(name, known) or "`--steps help` lists them"
+            raise UsageError(f"the solution has no step '{name}'", fix=fix)
 
 
 def replaced(subject: Subject) -> dict[str, dict[str, str]]:
@@ -321,9 +438,16 @@ def _other(before: Mapping[str, Any], after: Mapping[str, Any], field: str) -> d
 
 
 def fitting(subject: Subject) -> tuple[str, ...]:
-    """The sections that fit a model."""
-    model, (main, _) = subject.model, subject.main
-    keys = ["figure", "data", main, "certificate", "downloads"]
+    """The sections that fit a model, for the readers of the sheet."""
+    model, sheet = subject.model, subject.sheet
+    told = ("statement",) if model.text else ()
+    told += ("questions",) if model.questions or (sheet.audience and model.outputs) else ()
+    if sheet.is_open:
+        return ("figure", "data", *told)
+    main, _ = subject.main
+    if sheet.audience:
+        return ("figure", "data", *told, main, *(key for key in SOLVING if key == "reactions" or model.outputs))
+    keys = ["figure", "data", *told, main, "certificate", "downloads"]
     keys += ["reactions"] if main in ("derivation", "statics") else []
     keys += ["outputs"] if model.outputs else []
     keys += ["linearize"] if model.linearize is not None else []
@@ -346,7 +470,19 @@ def _made(subject: Subject, key: str, requested: bool) -> ReportSection | None:
     return section
 
 
+def _statement(subject: Subject) -> ReportSection | None:
+    step = statement_step(subject.model)
+    return ReportSection("statement", (step,)) if step.statements else None
+
+
+def _questions(subject: Subject) -> ReportSection | None:
+    steps = question_steps(subject.model, room=subject.sheet.audience == "worksheet")
+    return ReportSection("questions", steps) if steps else None
+
+
 def _setting(subject: Subject) -> ReportSection | None:
+    if subject.sheet.audience:
+        return ReportSection("data", (given_step(subject.model),))
     steps = tuple(step for step in subject.main[1].steps if step.key in SETTING)
     return ReportSection("data", steps) if steps else None
 
@@ -355,8 +491,9 @@ def _steps(key: str) -> Callable[[Subject], ReportSection]:
     """Function that makes the section of a verb, without the steps that have sections of their own."""
 
     def made(subject: Subject) -> ReportSection:
-        own = (*SETTING, *(("reactions",) if key == subject.main[0] else ()))
-        steps = tuple(step for step in subject.document(key).steps if step.key not in own)
+        own = ("assumptions", "data") if subject.sheet.audience else SETTING
+        own += ("reactions",) if key == subject.main[0] else ()
+        steps = subject.sheet.chosen(step for step in subject.document(key).steps if step.key not in own)
         return ReportSection(key, steps, _pictures(subject, key))
 
     return made
@@ -374,7 +511,7 @@ def _pictures(subject: Subject, key: str) -> tuple[ReportFigure, ...]:
 
 
 def _reactions(subject: Subject) -> ReportSection | None:
-    steps = tuple(step for step in subject.main[1].steps if step.key == "reactions")
+    steps = subject.sheet.chosen(step for step in subject.main[1].steps if step.key == "reactions")
     return ReportSection("reactions", steps) if steps else None
 
 
@@ -466,8 +603,10 @@ def _archive(texts: Mapping[str, str | bytes]) -> bytes:
 
 
 MADE: dict[str, Callable[[Subject], ReportSection | None]] = {
+    "statement": _statement,
     "figure": _figure,
     "data": _setting,
+    "questions": _questions,
     **{key: _steps(key) for key in ("derivation", "statics", "kinematics", "inertia", "linearize")},
     "reactions": _reactions,
     "free_bodies": _free_bodies,

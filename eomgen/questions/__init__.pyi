@@ -11,3 +11,6 @@ from eomgen.questions.reactions import positions_at_rest as positions_at_rest
 
 # Every reaction, as `reactions` finds it, in words and for machines
 from eomgen.questions.reactions import reactions_document as reactions_document
+
+# The model with the data of a variant, and a record of what was drawn
+from eomgen.questions.variants import variant_of as variant_of

@@ -66,14 +66,19 @@ class Answers(dict[str, Answer], Result):
 
     def _repr_markdown_(self) -> str:
         """Answers by name, exact and as numbers, typeset."""
-        return listing_markdown([Found(name, answer) for name, answer in self.items()], self._solver.model)
+        return listing_markdown(self._rows, self._solver.model)
+
+    @property
+    def _rows(self) -> tuple[Found, ...]:
+        """Every answer under its name, and as its author sets it."""
+        outputs = self._solver.model.outputs
+        return tuple(Found(name, answer, symbol=outputs[name].symbol) for name, answer in self.items())
 
     @property
     def derivation(self) -> Document:
         """Answers by name: exact, as a number, and the method."""
-        rows = tuple(Found(name, answer) for name, answer in self.items())
         notes = () if self else ("the model requests nothing: it has no [outputs]",)
-        return plain_document(self._solver.model, self.entries, Listing(rows), notes=notes)
+        return plain_document(self._solver.model, self.entries, Listing(self._rows), notes=notes)
 
     @property
     def failed(self) -> str:
@@ -151,7 +156,7 @@ class _Solver:
     def answer(self, output: Output) -> Answer:
         """Answer to one output; an error becomes its message."""
         try:
-            return replace(self._answer(output), unit=self._unit(output))
+            return replace(self._answer(output), unit=self._unit(output), digits=output.digits)
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
             return self.unanswered(output, error)
 

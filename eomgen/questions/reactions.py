@@ -244,7 +244,7 @@ def _answers(
     from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
     values = [parse(text, references=True) for text in requested]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
-    model = _checked(model, f"--at {getattr(at, 'text', at)}", outputs=Table(outputs))
+    model = _checked(model, f"--at {getattr(at, 'text', at)}", outputs=Table(outputs), text=None, questions=None)
     solved = solve(model)
     pairs = zip(requested.items(), solved.values(), strict=True)
     return {text: replace(answer, unit=unit) for (text, unit), answer in pairs}, partial(_proof_of_answers, solved)

@@ -6,7 +6,6 @@ It ends early at a singular position, where the constraints do not determine how
 from __future__ import annotations
 
 import csv
-import dataclasses
 import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -25,7 +24,7 @@ from eomgen.frozen import with_fields
 from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.instant import Quantities
 from eomgen.mechanics.kinematics import Motion, Scope, SystemScene
-from eomgen.model import Model, Output, Table, Typed, WrittenEquation, equation_in
+from eomgen.model import Model, Output, Typed, WrittenEquation, equation_in
 from eomgen.proof import ReportedRun, RunProof, run_reported
 from eomgen.resources import PatienceEnded, doing, keep_what_there_is
 from eomgen.simulation import (
@@ -468,7 +467,7 @@ def _condition_of(model: Model, until: WrittenEquation | str) -> Callable[[Syste
     text = until.text if isinstance(until, WrittenEquation) else until
     try:
         equation = equation_in(model, until)
-        dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
+        model.requesting({"until": Output(value=parse("t"), at=equation)})
     except ExpressionError as error:
         raise UsageError(f"until '{text}': {error.what}", fix=error.fix or 'write "theta = pi/2"') from error
     except ModelError as error:

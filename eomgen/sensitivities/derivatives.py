@@ -29,7 +29,6 @@ from eomgen.model import (
     ModelOrPath,
     Output,
     OutputSource,
-    Table,
     Typed,
     Unit,
     Values,
@@ -232,7 +231,7 @@ def _unit_of(model: Model, text: str) -> Unit | None:
         return own
     if output.at is not None and output.value.text in model.coordinates and output.unit is None:
         return model.units_of([output.value.text]).get(output.value.text)
-    return replace(model, outputs=Table({"asked": output})).units_of(["asked"]).get("asked")
+    return model.requesting({"asked": output}).units_of(["asked"]).get("asked")
 
 
 @doing("the sensitivities")

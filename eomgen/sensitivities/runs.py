@@ -16,7 +16,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.linearization import CORNERS
 from eomgen.mechanics.start import Seeds
 from eomgen.mechanics.state import Numbers
-from eomgen.model import Model, Output, Table, model_at, requested_of
+from eomgen.model import Model, model_at, requested_of
 from eomgen.pipeline import simulator
 from eomgen.proof import Certificate, Check, checked, unchecked
 from eomgen.questions import solve
@@ -325,7 +325,7 @@ def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], lis
     requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
 
     def found(value: float) -> list[np.ndarray]:
-        answers = solve(_with(replace(model, outputs=Table[Output](requested)), to, value))
+        answers = solve(_with(model.requesting(requested), to, value))
         return [np.array([np.nan if x.value is None else x.value]) for x in answers.values()]
 
     return found
@@ -334,9 +334,7 @@ def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], lis
 def _run(model: Model, of: Sequence[str], to: str, run: ChangingRun) -> Callable[[float], list[np.ndarray]]:
     """value -> each formula along the motion."""
     requested = {f"asked{k}": replace(requested_of(model, text), unit=None) for k, text in enumerate(of)}
-    again = simulator(
-        replace(model, outputs=Table[Output](requested)), rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN
-    )
+    again = simulator(model.requesting(requested), rtol=tolerances.FINE_RUN, atol=tolerances.FINE_RUN)
 
     def found(value: float) -> list[np.ndarray]:
         parameters = {to: value} if to in model.parameters else None

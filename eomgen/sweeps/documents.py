@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.documents import Document, Grid, plain_document, prose, proven, rendered
 from eomgen.errors import EomgenError, RunFailed, UsageError
-from eomgen.model import Model, Output, Table, requested_of
+from eomgen.model import Model, Output, requested_of
 from eomgen.pipeline import simulate
 from eomgen.proof import Certificate, Check, Tally, answered_otherwise, differing, drawn_otherwise, reported_of_all
 from eomgen.questions import solve
@@ -125,7 +125,7 @@ def _proof(found: Sweep) -> Certificate | None:
     model = kernel.valued(set_)
     formulas = [text for text in plan.requested if text not in plan.slopes]
     requested = {f"asked{k}": requested_of(plan.model, text) for k, text in enumerate(formulas)}
-    model = replace(model, outputs=Table(requested))
+    model = model.requesting(requested)
     run = None if first[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
     certificate = solve(model).certify() if run is None else run.certify()
     slopes = [check for pair in plan.slopes.values() for check in checks_of_slope(model, *pair, plan.how.time)]
@@ -151,7 +151,7 @@ def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[
         reported = dict(zip(plan.requested, row[4 + len(plan.runs.names) :], strict=True))
         model, run = made.get(row[0], (None, None))
         if model is None:
-            model = replace(kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))), outputs=Table({}))
+            model = kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))).requesting({})
             run = None if row[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
         for text, wrong in _answered_otherwise(plan, model, reported, run):
             tally.add(f"{text} of run {row[0]}", wrong)
@@ -194,7 +194,7 @@ def _sampled_otherwise(model: Model, how: Stepped, run: Trajectory, output: Outp
 
 
 def _solved_otherwise(model: Model, output: Output, reported: float | None) -> str:
-    (answer,) = solve(replace(model, outputs=Table({"asked": output}))).values()
+    (answer,) = solve(model.requesting({"asked": output})).values()
     return _other_number(reported, answer.value)
 
 

@@ -7,7 +7,6 @@ import io
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from typing import IO, Any
@@ -21,7 +20,6 @@ from eomgen.model import (
     LIKE,
     Model,
     ModelOrPath,
-    Table,
     Typed,
     TypedNumbers,
     bytes_at,
@@ -124,7 +122,7 @@ class Sweep:
         model = self.plan.model
         slopes, texts = self.plan.slopes, self.plan.requested
         requested = {f"asked{k}": requested_of(model, text) for k, text in enumerate(texts) if text not in slopes}
-        found = replace(model, outputs=Table(requested)).units_of(requested)
+        found = model.requesting(requested).units_of(requested)
         found |= {f"asked{k}": unit_of_slope(model, *slopes[text]) for k, text in enumerate(texts) if text in slopes}
         units = model.units_of(self.plan.runs.names)
         columns = enumerate(self.columns[-len(texts) :])

@@ -29,7 +29,7 @@ from typing import Any
 from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
 from eomgen.frozen import dataclass
 from eomgen.mechanics.instant import requests_of
-from eomgen.model import AtRest, Model, Output, OutputSource, Table, requested_of, with_values
+from eomgen.model import AtRest, Model, Output, OutputSource, requested_of, with_values
 from eomgen.pipeline import simulator
 from eomgen.questions import solve
 from eomgen.resources import PatienceEnded
@@ -307,7 +307,7 @@ class SweepKernel:
             return ""
         requested = list(self._solved)
         outputs = {f"asked{k}": replace(self._solved[text], unit=None) for k, text in enumerate(requested)}
-        answers = dict(zip(requested, solve(replace(self.valued(set_), outputs=Table(outputs))).values(), strict=True))
+        answers = dict(zip(requested, solve(self.valued(set_).requesting(outputs)).values(), strict=True))
         for text, answer in answers.items():
             reported[text] = answer.value
             messages += [f"{text}: {answer.message}"] if answer.value is None else []
@@ -329,7 +329,7 @@ class SweepKernel:
     @cached_property
     def _simulator(self) -> Simulator:
         how = self.plan.how
-        model = replace(self.plan.model, outputs=Table({}))
+        model = self.plan.model.requesting({})
         return simulator(model, rtol=how.rtol, atol=how.atol, method=how.method)
 
     @cached_property

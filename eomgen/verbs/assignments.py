@@ -7,7 +7,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.model import AtRest, Model, Taken, Valued, assignments, equation_typed, with_values
-from eomgen.questions import positions_at_rest
+from eomgen.questions import positions_at_rest, variant_of
 
 OPTIONS = {"set_": "--set", "start": "--start", "from_rest": "--from-rest", "at": "--at", "until": "--until"}
 OPTIONS |= {"given": "--given"}
@@ -21,10 +21,13 @@ def typed(model: Model, options: Mapping[str, Any]) -> tuple[Valued, dict[str, A
     Raises:
         UsageError: a name that there is not; a value, a unit or an equation that is none.
     """
-    left = {name: value for name, value in options.items() if name not in ("set_", "start")}
+    left = {name: value for name, value in options.items() if name not in ("set_", "start", "variant")}
+    number = options.get("variant")
+    drawn = Valued(model) if number is None else variant_of(model, number)
+    model = drawn.model
     given, start = (dict(assignments(options.get(name, ()), EXAMPLES[OPTIONS[name]])) for name in ("set_", "start"))
     valued = with_values(model, given, start, options=("--set", "--start"), declared=True)
-    taken = list(valued.taken)
+    taken = [*drawn.taken, *valued.taken]
     if left.get("from_rest"):
         rest = positions_at_rest(model, left["from_rest"], EXAMPLES["--from-rest"])
         placed = with_values(valued.model, None, rest, options=("--set", "--from-rest"), declared=True)

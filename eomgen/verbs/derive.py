@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
-from eomgen.documents import Document, Grid, Step, proven, with_constraints_closed
+from eomgen.documents import Document, Grid, Step, fragment_of, proven, with_constraints_closed
 from eomgen.equations import Equations
 from eomgen.model import Model
 from eomgen.proof import Certificate
@@ -23,6 +23,9 @@ def derive_document(
     units: bool = False,
     diff: str | None = None,
     data: bool = False,
+    section: str | None = None,
+    fragment: bool = False,
+    numbered: bool = False,
 ) -> Document:
     """The derivation, and its certificate.
 
@@ -31,6 +34,7 @@ def derive_document(
         units: those of names, equations, reactions and outputs too.
         diff: the file of another model: the differences from it are reported instead.
         data: the texts for machines are proven, too.
+        section, fragment, numbered: of it only that section; as a part of another document.
     """
     if diff is not None:
         first, second = pipeline.derive(model, method), pipeline.derive(diff, method)
@@ -40,6 +44,7 @@ def derive_document(
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document
     document = with_constraints_closed(document, equations.system)
+    document = fragment_of(document, section, fragment, numbered)
     return equations.proven(document, data=data) if certify else proven(document, None)
 
 

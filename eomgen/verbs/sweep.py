@@ -8,6 +8,7 @@ from eomgen.documents import Document
 from eomgen.errors import UsageError
 from eomgen.frozen import dataclass
 from eomgen.model import Model, assignments, range_of, requested_typed
+from eomgen.questions import variant_of
 from eomgen.sweeps import TABLE, Stepped, planned, spread_of, sweep_reported, swept
 from eomgen.verbs.assignments import typed
 
@@ -26,6 +27,7 @@ class SweepRequested:
     how: Stepped
     workers: int
     set_: tuple[str, ...] = ()
+    variant: int | None = None
     start: tuple[str, ...] = ()
 
 
@@ -42,6 +44,9 @@ def sweep_document(
     certify: bool = True,
 ) -> Document:
     """The runs that the folder lacks are made; the document states their results."""
+    if requested.variant is not None:
+        drawn = variant_of(model, requested.variant).taken
+        requested = replace(requested, set_=(*(f"{x.name}={x.typed}" for x in drawn), *requested.set_))
     valued, _ = typed(model, {"set_": requested.set_, "start": requested.start})
     ranges = [range_of(valued.model, word, starts=True) for word in requested.over]
     spreads = [spread_of(valued.model, word) for word in requested.random]

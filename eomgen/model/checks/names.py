@@ -12,7 +12,18 @@ from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import OBJECT_TABLES, SYMBOL_TABLES, Catalog
 from eomgen.model.declared_speeds import begun_speeds
 from eomgen.model.diagnostics import Diagnostic, article, nearest, one_of, whereabouts
-from eomgen.model.fields import EVERYTHING, AxialRule, Leaf, NameRule, VectorRule, WrittenEquation, is_mixed, mixed
+from eomgen.model.fields import (
+    EVERYTHING,
+    STATEMENT,
+    AxialRule,
+    Leaf,
+    NameRule,
+    StatementRule,
+    VectorRule,
+    WrittenEquation,
+    is_mixed,
+    mixed,
+)
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import typing_of
@@ -93,6 +104,8 @@ def references(catalog: Catalog) -> Iterator[Diagnostic]:
     for leaf in catalog.leaves:
         if isinstance(leaf.rule, NameRule):
             yield from _CHECKS[leaf.rule.of](catalog, leaf)
+        elif isinstance(leaf.rule, StatementRule):
+            yield from _statement(catalog, leaf)
         elif isinstance(leaf.rule, VectorRule):
             yield from _vector(catalog, leaf)
         elif isinstance(leaf.rule, AxialRule):
@@ -175,6 +188,18 @@ def _seat(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
         yield from _reported(leaf, _missing_own(catalog, owner, name, len(owner) + 1))
 
 
+def _statement(catalog: Catalog, leaf: Leaf) -> Iterator[Diagnostic]:
+    """Diagnostics of names in braces, in the words of a problem, that have no value."""
+    known = [*catalog.table("parameters"), *catalog.table("coordinates"), *catalog.table("inputs")]
+    known += [f"{name}'" for name in catalog.table("coordinates")]
+    for each in STATEMENT.finditer(leaf.value):
+        name = (each["name"] or "").strip()
+        if each["name"] is not None and name not in known:
+            fix = nearest(name, known) or "a formula stands between dollars: $\\{...\\}$"
+            what = f"'{name}' in braces is no parameter, coordinate or input"
+            yield Diagnostic(leaf.path, what, fix, each.start("name"), max(1, len(each["name"])))
+
+
 def _idle_nodes(catalog: Catalog) -> Iterator[Diagnostic]:
     """Diagnostics of nodes that no member joins to a truss."""
     for name, truss in catalog.table("trusses").items():
@@ -235,6 +260,7 @@ _CHECKS: dict[str, Callable[[Catalog, Leaf], Any]] = {
     "seat": _seat,
     "axes": _axes,
     "member": _member,
+    "output": _declared("outputs", "output"),
 }
 
 

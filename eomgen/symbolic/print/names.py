@@ -176,8 +176,9 @@ ACCENTS = frozenset("\\" + x for x in "dot ddot hat bar tilde vec widehat overli
 STYLES = frozenset("\\" + x for x in "mathrm mathit mathbf mathsf mathcal".split())
 OTHERS = "ell hbar infty partial ast star circ bullet dagger prime parallel perp".split()
 SIGNS = frozenset("\\" + x for x in (*SMALL, *LARGE, *OTHERS))
+WORDS = frozenset("\\" + x for x in "max min sup inf lim".split())  # set upright: S_{\max}
 SPACES = frozenset((r"\,", r"\;", r"\ "))
-COMMANDS = (*sorted(SIGNS), *sorted(ACCENTS), *sorted(STYLES))
+COMMANDS = (*sorted(WORDS), *sorted(SIGNS), *sorted(ACCENTS), *sorted(STYLES))
 _DECLARED_TOKEN = re.compile(r"\\(?:[a-zA-Z]+|.|$)|.", re.DOTALL)
 _PLAIN = re.compile(r"[A-Za-z0-9]")
 _BESIDE = frozenset(",+-*/()|<>=.")  # what may stand in an index, and nowhere else
@@ -267,6 +268,8 @@ def _declared_piece(tokens: _Tokens, *, index: bool, bare: bool = False) -> str:
         return _braces(tokens, index=index, bare=bare)
     if token in SIGNS or _PLAIN.fullmatch(token) or (index and token in ("+", "-", "*")):
         return tokens.take()
+    if token in WORDS:
+        return rf"\mathrm{{{tokens.take()[1:]}}}"
     if token in ACCENTS or token in STYLES:
         tokens.take()
         if not tokens.now or tokens.now in ("}", "_", "^", "'"):
