@@ -7,13 +7,13 @@ from fractions import Fraction
 
 import pytest
 from each import each
-from mpmath.ctx_mp import MPContext
 from slider_crank import SLIDER_CRANK
 
 import eomgen
 from eomgen.symbolic.expression.formula import cos, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.arithmetic import balls
+from eomgen.symbolic.numeric.digits import ball_of, precision
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 
@@ -86,14 +86,6 @@ def test_a_branch_that_is_not_taken_needs_no_number():
 
 
 WIDE = Fraction(1, 10**25)
-
-
-def _wide(arithmetic, c):
-    """The ball around c that reaches to c - 1e-25 and c + 1e-25."""
-    (x, r), (d, _) = arithmetic.number(c), arithmetic.number(WIDE)
-    return x, r + d
-
-
 FUNCTIONS = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log abs".split()
 
 
@@ -101,28 +93,40 @@ FUNCTIONS = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log abs".split()
 @each("name", FUNCTIONS)
 def test_a_ball_holds_the_true_value(name, x):
     """The ball of f around x, 1e-25 wide, holds f with 120 digits at both ends of it."""
-    mp = MPContext()
-    mp.dps = 120
-    rough, fine = balls(30), balls(120)
-    value, r = rough.functions[name](_wide(rough, x))
-    for end in (x - WIDE, x + WIDE):
-        true, _ = fine.functions[name](fine.number(end))
-        assert abs(mp.mpf(true) - mp.mpf(value)) <= mp.mpf(r)
-    assert r <= 1e-10 * abs(value) + 1e-20
+    f = balls().functions[name]
+    with precision(100):
+        ball = f(ball_of(x, float(WIDE)))
+    with precision(400):
+        assert all(
+            ball.contains(f(ball_of(end)).mid())
+            for end in (x - WIDE * Fraction(999, 1000), x + WIDE * Fraction(999, 1000))
+        )
+    assert ball.rad() <= 1e-10 * abs(ball) + 1e-20
 
 
 @each("op", "add sub mul div pow atan2 min max".split())
 def test_a_ball_of_two_arguments_holds_the_true_value(op):
     """As of one argument, at the four corners."""
-    mp = MPContext()
-    mp.dps = 120
-    rough, fine, d = balls(30), balls(120), WIDE
-    a, b = Fraction(17, 10), Fraction(-23, 10)
-    value, r = rough.functions[op](_wide(rough, a), _wide(rough, b))
-    for one in (a - d, a + d):
-        for other in (b - d, b + d):
-            true, _ = fine.functions[op](fine.number(one), fine.number(other))
-            assert abs(mp.mpf(true) - mp.mpf(value)) <= mp.mpf(r) < 1e-20
+    a, b, d, f = Fraction(17, 10), Fraction(-23, 10), WIDE * Fraction(999, 1000), balls().functions[op]
+    with precision(100):
+        ball = f(ball_of(a, float(WIDE)), ball_of(b, float(WIDE)))
+    with precision(400):
+        corners = [f(ball_of(x), ball_of(y)).mid() for x in (a - d, a + d) for y in (b - d, b + d)]
+    assert all(map(ball.contains, corners)) and ball.rad() < 1e-20
+
+
+def test_where_nothing_can_be_said_a_ball_has_no_end_and_where_there_is_no_value_it_is_nan():
+    """0 in the ball of a divisor, a logarithm or a power; an angle of no direction."""
+    near, two, f = ball_of(0, 1e-9), ball_of(2), balls().functions
+    open_ = [f["div"](two, near), f["log"](near), f["pow"](near, ball_of(-0.5)), f["atan2"](near, near)]
+    none = [f["div"](two, ball_of(0)), f["log"](-two), f["pow"](-two, ball_of(0.5)), f["sqrt"](-two), f["asin"](two)]
+    assert not any(x.is_finite() or x.is_nan() for x in open_) and all(x.is_nan() for x in none)
+    for name in ("add", "mul", "div", "min"):  # they are passed on
+        assert f[name](open_[0], two).is_finite() is f[name](open_[0], two).is_nan() is False
+        assert f[name](open_[0], none[0]).is_nan()
+    assert f["sqrt"](near).contains(2e-5) and f["asin"](ball_of(1, 1e-9)).contains(f["asin"](ball_of(1)).mid())
+    assert f["select"](f["less"](near, ball_of(0)), two, -two).contains(2)
+    assert balls(last=True).functions["less"](near, ball_of(0)).is_zero()
 
 
 def test_a_root_of_a_root_of_nothing_is_nothing():

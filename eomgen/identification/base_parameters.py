@@ -396,7 +396,7 @@ def _plain(x: Any) -> Fraction | None:
     if isinstance(x, Fraction | int):
         return Fraction(x)
     near = Fraction(float(x)).limit_denominator(LARGEST_PLAIN)
-    return near if abs(x - x.context.mpf(near.numerator) / near.denominator) <= tolerances.FOLLOWS_AT_50 else None
+    return near if abs(x - fifty_digits().number(near)) <= tolerances.FOLLOWS_AT_50 else None
 
 
 # -------- transfers -------------------------------------------------------------------------------------------

@@ -150,4 +150,4 @@ def echelon_in_digits(W: np.ndarray, right: np.ndarray | None = None) -> tuple[l
 
 def in_50_digits(x: Any) -> Any:
     """An exact number, or one that has as many digits already."""
-    return fifty_digits().number(x) if isinstance(x, Fraction | int) else fifty_digits().number(1) * x
+    return fifty_digits().number(x)

@@ -143,7 +143,7 @@ class Numbers(NumberField):
 
     def with_values(self, more: Mapping[Node, Any]) -> Numbers:
         number = fifty_digits().number
-        return Numbers({**self.state, **{node: number(1) * x for node, x in more.items()}})
+        return Numbers({**self.state, **{node: number(x) for node, x in more.items()}})
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,6 @@ from eomgen.symbolic.expression import (
     substituted,
 )
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
-from eomgen.symbolic.numeric import of_50_digits as precise
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times the change between nearby states, by which a number may be wrong
@@ -64,7 +63,9 @@ class NumericState:
         """t, q, u, parameters and inputs with 50 digits."""
         values = evaluate(tuple(self.parameters.values()), {}, fifty_digits())
         known = dict(zip(self.parameters, values, strict=True))
-        return with_inputs(self.equations.system, known | {x: precise(float(v)) for x, v in self.numbers.items()})
+        return with_inputs(
+            self.equations.system, known | {x: fifty_digits().number(float(v)) for x, v in self.numbers.items()}
+        )
 
     @cached_property
     def unknowns(self) -> dict[Node, Any]:

@@ -36,7 +36,7 @@ from eomgen.proof.posed_model import misplaced
 from eomgen.proof.states import own_start
 from eomgen.simulation import Phase, PhaseModel, ReactionColumns, sliding_velocity
 from eomgen.symbolic.expression import Scalar, State
-from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 STATES = 100  # of a phase that are looked at
 
@@ -169,10 +169,10 @@ def _misplaced(phase: Phase, apart: System) -> str:
 def _state(system: System, values: Mapping[str, float], p: np.ndarray, t: float) -> State:
     """State of the run with 50 digits; quaternions of doubles are normalized, as their norm is off by 1e-16."""
     symbols = system.symbols
-    known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
+    known = {node: fifty_digits().number(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
     known |= system.scope.on_unit_norms(known)
     given = zip(symbols.parameters.values(), p, strict=True)
-    return {**known, symbols.t: of_50_digits(t)} | {node: of_50_digits(float(x)) for node, x in given}
+    return {**known, symbols.t: fifty_digits().number(t)} | {node: fifty_digits().number(float(x)) for node, x in given}
 
 
 # -- from phase to phase ---------------------------------------------------------------------------

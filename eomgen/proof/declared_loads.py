@@ -346,12 +346,12 @@ def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -
     )
     sine, cosine, way, square, rate = evaluate(requested, state, fifty_digits())
     size = square**0.5
-    return square.context.atan2(sine / size, cosine) / size if turning else way / square, rate / square
+    return fifty_digits().functions["atan2"](sine / size, cosine) / size if turning else way / square, rate / square
 
 
 def _by_whole_turns(angle: Any, other: Any) -> Any:
     """Angle with the number of whole turns that brings it nearest to another."""
-    turn = 2 * angle.context.pi
+    turn = 2 * fifty_digits().functions["pi"]()
     return angle + turn * round((other - angle) / turn)
 
 
@@ -414,7 +414,7 @@ class ActingElement(InNumbers):
             return 0, 0
         link = self.motion.link(body)
         c, s, w = self.at((link.pose.R[0][0], link.pose.R[1][0], link.twist.w[2]))
-        angle = c.context.atan2(s, c)
+        angle = fifty_digits().functions["atan2"](s, c)
         return angle if link.angle is None else _by_whole_turns(angle, self.one(link.angle)), w
 
     # -- the law ---------------------------------------------------------------------------------------------

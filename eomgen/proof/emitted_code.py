@@ -28,7 +28,6 @@ from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import instant_of, with_inputs
 from eomgen.symbolic.expression import Node, Scalar, ScalarRow, State, order
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, floats_of, of_one_length, tolerances
-from eomgen.symbolic.numeric import of_50_digits as precise
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
 FAR = 1e-2  # of the least of the singular values of scaled rows, from which doubles solve them to COMPUTED
@@ -66,9 +65,9 @@ class PhaseMotion:
         """Values of every symbol except a and lam at a state, with 50 digits; inputs of the model, or given ones."""
         symbols = self.equations.symbols
         nodes = (*symbols.q, *symbols.u, *symbols.parameters.values())
-        found = {node: precise(float(value)) for node, value in zip(nodes, (*at.x, *at.p), strict=True)}
+        found = {node: fifty_digits().number(float(value)) for node, value in zip(nodes, (*at.x, *at.p), strict=True)}
         found[symbols.t] = instant_of(self.equations.system, float(at.t))
-        given = {symbols.inputs[name]: precise(float(x)) for name, x in at.inputs.items()}
+        given = {symbols.inputs[name]: fifty_digits().number(float(x)) for name, x in at.inputs.items()}
         return with_inputs(self.equations.system, found | given)
 
     @property
@@ -98,7 +97,7 @@ class PhaseMotion:
         a = code(state)[len(symbols.q) :]
         if not np.all(np.isfinite(a)):
             return None
-        moving = found | dict(zip(symbols.a, map(precise, a.tolist()), strict=True))
+        moving = found | dict(zip(symbols.a, map(fifty_digits().number, a.tolist()), strict=True))
         friction = evaluate(equations.friction, moving, fifty_digits())
         wrong = moved_otherwise(system, moving, friction)
         return wrong if not wrong or _sure(code, state) else moved_otherwise(system, moving, friction, regular=FAR)
@@ -251,7 +250,7 @@ def values_agree(
     """
 
     def wrong(instant: TriedState) -> str | None:
-        known = motion.values(instant) | {node: precise(float(x)) for node, x in further(instant).items()}
+        known = motion.values(instant) | {node: fifty_digits().number(float(x)) for node, x in further(instant).items()}
         right = np.array([float(x) for x in evaluate(tuple(scalars.values()), known, fifty_digits())])
         found = np.asarray(code(instant), dtype=float)
         apart = np.abs(found - right) / (1 + np.max(np.abs(right), initial=0.0))

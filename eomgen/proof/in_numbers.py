@@ -196,7 +196,7 @@ def instant_of(system: System, t: float) -> Any:
     """
     number = fifty_digits().number
     at = (number(x) for times in _times_of_samples(system) for x in times if float(x) == t)
-    return next(at, number(1) * t)
+    return next(at, number(t))
 
 
 def _side(system: System, state: State) -> int:

@@ -33,7 +33,7 @@ from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through, with_inputs
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression import Call, Matrix, Node, Scalar, Vector, is_zero, parse_equation, symbols_of
-from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, rank, tolerances
+from eomgen.symbolic.numeric import NoValue, eigenpairs_in_digits, evaluate, fifty_digits, rank, tolerances
 
 DIFFERENCES = "differences at 50 digits"
 MOST_TRIPLES = 60  # of bodies whose three centres are looked at
@@ -606,9 +606,7 @@ class NearbyStates:
 
     def eigenvalues(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
         """Eigenvalues of a symmetric matrix, ascending."""
-        context = rows[0][0].context
-        found: list[Any] = sorted(context.eigsy(context.matrix(rows), eigvals_only=True))
-        return found
+        return list(eigenpairs_in_digits(rows, Matrix.IDENTITY)[0])
 
     def faster(self, speed: str, by: float) -> NearbyStates:
         """The same with one speed larger.

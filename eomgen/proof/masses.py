@@ -25,7 +25,7 @@ from eomgen.model import Cell, MassProperties, PlacedPiece, Shape, pose_of
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.declared_numbers import other_functions
 from eomgen.symbolic.expression import Expression, Node, Pose, Scalar, Vector
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, of_50_digits, tolerances
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, floats_of, tolerances
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"
@@ -220,7 +220,7 @@ class _Proof:
         if all(map(math.isfinite, found)):
             return found
         try:  # 1e300^2 * 0
-            values = {x: of_50_digits(v) for x, v in self.values.items()}
+            values = {x: fifty_digits().number(v) for x, v in self.values.items()}
             return floats_of(evaluate(tuple(scalars), values, fifty_digits()))
         except (NoValue, ZeroDivisionError):
             return found

@@ -23,11 +23,10 @@ from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.symbolic.expression import LONGEST, Call, Fraction, Node, Scalar, State, Vector, gradient, inner, parse
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_one_length, tolerances
-from eomgen.symbolic.numeric import of_50_digits as precise
 
 SPINS = ("omega_1", "omega_2", "omega_3")  # about the axes of the body
-SOON = (precise(1) / 1000, precise(1) / 70)  # s after the start, in whose piece a law holds
-SHORT = precise(1) / 10**12  # s, of differences
+SOON = (fifty_digits().number(1) / 1000, fifty_digits().number(1) / 70)  # s after the start, in whose piece a law holds
+SHORT = fifty_digits().number(1) / 10**12  # s, of differences
 LAST = fifty_digits().number(1) / 10**44  # of the numbers of a state: their last digits
 SHOWN = 60  # characters of one that cannot be read
 
@@ -197,7 +196,7 @@ class ReadBack:
     def wrong_data(self, state: State) -> str:
         """Message that names a text whose value at a state is not that of its quantity, with some a and lam; ""."""
         symbols = self.equations.symbols
-        some = {x: precise(1 + 1 / k) for k, x in enumerate((*symbols.a, *symbols.lam), start=2)}
+        some = {x: fifty_digits().number(1 + 1 / k) for k, x in enumerate((*symbols.a, *symbols.lam), start=2)}
         return self.unreadable(text for _, text, _ in self.printed.texts) or _unequal(self.data, {**some, **state})
 
     def drifting(self, state: State) -> str:
@@ -230,7 +229,7 @@ class ReadBack:
             raise NoValue("no law is read")
         start = self._declared_start()
         closed = not e.J or not _broken(e, start)
-        for instant in (precise(0),) if closed else ():
+        for instant in (fifty_digits().number(0),) if closed else ():
             for q, (value, rate, _) in _along(laws, start, instant).items():
                 for what, found, due in (("is", value, start[q]), ("moves by", rate, start[speeds[f"{q.name}'"]])):
                     if abs(found - due) > tolerances.COMPUTED * (1 + abs(due)):
@@ -252,14 +251,21 @@ class ReadBack:
         """Values of t, parameters (random without a value), coordinates and speeds at the start, as declared."""
         scope, symbols = self.equations.system.scope, self.equations.symbols
         known, parts = scope.model.exact_parameters(), scope.model.coordinates
-        values: dict[Node, Any] = {symbols.t: precise(0), **dict.fromkeys(symbols.inputs.values(), precise(0))}
+        values: dict[Node, Any] = {
+            symbols.t: fifty_digits().number(0),
+            **dict.fromkeys(symbols.inputs.values(), fifty_digits().number(0)),
+        }
         for k, (name, node) in enumerate(symbols.parameters.items()):
-            values[node] = precise(float(known.get(name, 1 + Fraction(1, k + 2))))
+            values[node] = fifty_digits().number(float(known.get(name, 1 + Fraction(1, k + 2))))
         for suffix, nodes in (("", symbols.q), ("'", symbols.u)):
             for x in nodes:
                 part = parts.get(x.name.removesuffix("'"))
                 given = None if part is None else part.speed if suffix else part.start or part.near
-                values[x] = precise(0) if given is None else evaluate((scope.value(given),), values, fifty_digits())[0]
+                values[x] = (
+                    fifty_digits().number(0)
+                    if given is None
+                    else evaluate((scope.value(given),), values, fifty_digits())[0]
+                )
         return values
 
     @staticmethod
@@ -319,4 +325,4 @@ def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, 
     sizes = np.linalg.norm(J, axis=1)
     scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=tolerances.COMPUTED)[0]
     lam = scaled / np.where(sizes > 0, sizes, 1.0)
-    return {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}
+    return {node: fifty_digits().number(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}

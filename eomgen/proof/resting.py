@@ -72,7 +72,7 @@ def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
     curve = place.curve
     points: Any = () if curve is None else curve.points[:: 1 + len(curve.points) // MOST]
     for z in points:
-        there = {**known, **{x: digits.number(1) * float(v) for x, v in zip(statics.unknowns, z, strict=True)}}
+        there = {**known, **{x: digits.number(float(v)) for x, v in zip(statics.unknowns, z, strict=True)}}
         left = evaluate(statics.equations, there, digits)
         for x, usual in zip(left, _usual(statics, there), strict=True):
             if abs(x) > tolerances.SAME_PLACE * usual + tolerances.ZERO_AT_50:
@@ -128,7 +128,7 @@ def _places(place: Equilibrium, wanted: Sequence[Node], known: Mapping[Node, Any
     if missing:
         raise NoValue(f"'{missing[0]}' has no value")
     found = dict(zip(exact, evaluate(tuple(exact.values()), known, fifty_digits()), strict=True))
-    return found | {x: fifty_digits().number(1) * place.numbers[x] for x in wanted if x not in exact}
+    return found | {x: fifty_digits().number(place.numbers[x]) for x in wanted if x not in exact}
 
 
 def _resting_checks(first: FirstOrder, places: Sequence[Equilibrium]) -> Iterator[Check]:

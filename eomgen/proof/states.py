@@ -18,7 +18,7 @@ from eomgen.mechanics.dynamics import System
 from eomgen.mechanics.start import Start
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.symbolic.expression import Scalar, State, is_zero
-from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, of_50_digits, switches_of, tolerances
+from eomgen.symbolic.numeric import NoValue, Switch, evaluate, fifty_digits, switches_of, tolerances
 
 CONSISTENT = (11,)  # seeds of states at which all constraints hold
 OWN_START = "own start"
@@ -187,7 +187,7 @@ def own_start(system: System) -> State | None:
 
 
 def _own_state(system: System, rng: Random) -> State | None:
-    model, symbols = system.scope.model, system.symbols
+    model, symbols, number = system.scope.model, system.symbols, fifty_digits().number
     known = model.exact_parameters()
     drawn = {name: round(rng.uniform(0.7, 1.3), 6) for name in symbols.parameters if name not in known}
     try:
@@ -197,11 +197,8 @@ def _own_state(system: System, rng: Random) -> State | None:
     known = {**model.exact_parameters(drawn), **values}
     given = {node: known[name] for name, node in symbols.parameters.items()}
     given |= {node: known[node.name] for node in (*symbols.q, *symbols.u)}
-    state = {
-        node: of_50_digits(value) if isinstance(value, float) else fifty_digits().number(value)
-        for node, value in given.items()
-    }
-    state |= {symbols.t: of_50_digits(0.0)} | {x: of_50_digits(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
+    state = {node: number(value) for node, value in (*given.items(), (symbols.t, 0))}
+    state |= {x: number(rng.uniform(-1, 1)) for x in (*symbols.a, *symbols.lam)}
     state |= system.scope.on_unit_norms(state)
     if not all(row.identical for row in system.constraints.rows):
         state = Closure(system.constraints).closed(state, system.constraints.movable) or state
@@ -212,14 +209,14 @@ def _own_state(system: System, rng: Random) -> State | None:
 
 def _set_moving(system: System, state: State, rng: Random) -> State:
     """The state with speeds of its own."""
-    return state | {u: state[u] + of_50_digits(rng.uniform(-1, 1)) for u in system.symbols.u}
+    return state | {u: state[u] + fifty_digits().number(rng.uniform(-1, 1)) for u in system.symbols.u}
 
 
 def _shaken(system: System, state: State, spread: float, rng: Random) -> State:
     """State near another one, its constraints satisfied where they can be."""
     symbols = system.symbols
-    shifted = {x: state[x] + of_50_digits(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
-    shifted[symbols.t] = state[symbols.t] + of_50_digits(rng.uniform(0, spread))
+    shifted = {x: state[x] + fifty_digits().number(rng.uniform(-spread, spread)) for x in (*symbols.q, *symbols.u)}
+    shifted[symbols.t] = state[symbols.t] + fifty_digits().number(rng.uniform(0, spread))
     state = state | shifted
     state |= system.scope.on_unit_norms(state)
     if all(row.identical for row in system.constraints.rows):
@@ -286,7 +283,7 @@ def consistent_states(system: System) -> tuple[tuple[str, Supply], ...]:
 
 def in_doubles(state: State) -> State:
     """The state rounded to numbers that code can take as they are."""
-    return {node: of_50_digits(float(value)) for node, value in state.items()}
+    return {node: fifty_digits().number(float(value)) for node, value in state.items()}
 
 
 def closed_state(system: System, rng: Random) -> tuple[State, str]:

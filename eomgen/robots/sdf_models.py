@@ -13,7 +13,6 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-import mpmath
 import numpy as np
 
 from eomgen.errors import ModelError
@@ -23,6 +22,7 @@ from eomgen.model import nearest
 from eomgen.robots.tables import (
     DIGITS,
     ORIGIN,
+    PI,
     ZERO,
     Entries,
     computed,
@@ -384,9 +384,7 @@ def _simple(what: XmlElement, density: Decimal) -> MassPart:
         sizes += element.value(3 if tag in ("size", "radii") else 1)
     if min(sizes) < 0:
         raise ModelError(f"a negative size of <{what.tag}>", what.where, "give sizes above 0")
-    with mpmath.workdps(DIGITS + 5):
-        pi = Decimal(mpmath.nstr(mpmath.pi, DIGITS))
-    return _SHAPES[what.tag](sizes, density, pi)
+    return _SHAPES[what.tag](sizes, density, PI.decimal(DIGITS))
 
 
 def _diagonal(mass: Decimal, moments: Sequence[Decimal], down: Decimal = ZERO) -> MassPart:

@@ -11,14 +11,12 @@ from dataclasses import field
 from decimal import Context, Decimal, localcontext
 from typing import Any
 
-import mpmath
-
 from eomgen.errors import HIDDEN, visible
 from eomgen.frozen import dataclass
 from eomgen.model import rotation_of
 from eomgen.resources import check_patience
 from eomgen.symbolic.expression import Fraction, Matrix, Vector
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.numeric import fifty_digits, tolerances
 
 # -------- numbers ---------------------------------------------------------------------------------------------
 # Decimals of robot files: places, turns and inertias by 40 digits, written with 17; angles that are parts of pi.
@@ -33,6 +31,13 @@ ZERO = Decimal(0)
 ORIGIN = Vector((ZERO, ZERO, ZERO))
 EXACTLY = Context(prec=DIGITS)
 """in which robots are read"""
+FUNCTIONS = fifty_digits().functions
+PI = FUNCTIONS["pi"]()
+
+
+def in_digits(x: Decimal) -> Any:
+    """A decimal with 50 digits."""
+    return fifty_digits().number(Fraction(x))
 
 
 def decimals(values: Iterable[Any]) -> Vector:
@@ -57,9 +62,8 @@ def part_of_pi(angle: Decimal) -> Fraction | None:
     """Rational part of pi that an angle is, if all its digits agree and are enough; None."""
     if angle == 0:
         return Fraction(0)
-    with mpmath.workdps(DIGITS):
-        part = Fraction(round(mpmath.mpf(str(angle)) / mpmath.pi * PARTS), PARTS)
-        exact = Decimal(mpmath.nstr(mpmath.pi * part.numerator / part.denominator, DIGITS))
+    part = Fraction(round(in_digits(angle) / PI * PARTS), PARTS)
+    exact = (PI * part).decimal(DIGITS)
     digits = len(angle.as_tuple().digits)
     unit = Decimal(1).scaleb(int(angle.as_tuple().exponent))
     return part if part and digits >= SURE and abs(angle - exact) <= 2 * unit else None
@@ -77,9 +81,8 @@ def angle_text(angle: Decimal) -> Decimal | str:
 def sine_cosine(angle: Decimal) -> tuple[Any, Any]:
     """(sin, cos) of an angle, by DIGITS; of a part of pi exactly that part's."""
     part = part_of_pi(angle)
-    with mpmath.workdps(DIGITS + 5):
-        x = mpmath.mpf(str(angle)) if part is None else mpmath.pi * part.numerator / part.denominator
-        pair = [Decimal(mpmath.nstr(y, DIGITS)) for y in (mpmath.sin(x), mpmath.cos(x))]
+    x = in_digits(angle) if part is None else PI * part
+    pair = [FUNCTIONS[op](x).decimal(DIGITS) for op in ("sin", "cos")]
     sine, cosine = (ZERO if abs(y) < tolerances.ROUNDED_AWAY else y for y in pair)
     return sine, cosine
 
@@ -105,8 +108,8 @@ def roll_pitch_yaw(angles: Vector) -> tuple[Matrix, list[dict[str, Any]]]:
 
 def in_radians(degrees: Decimal) -> Decimal:
     """An angle, by DIGITS."""
-    with mpmath.workdps(DIGITS + 5):
-        return Decimal(mpmath.nstr(mpmath.mpf(str(degrees)) * mpmath.pi / 180, DIGITS))
+    radians: Decimal = (in_digits(degrees) * PI / 180).decimal(DIGITS)
+    return radians
 
 
 def turned_by(quaternion: Sequence[Decimal]) -> Matrix:
@@ -144,12 +147,11 @@ def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
         largest = max(v, key=abs)
         axis = [_plain(x / abs(largest)) for x in v]
         sign = -1 if largest < 0 and sum(map(bool, axis)) == 1 else 1
-        with mpmath.workdps(DIGITS):
-            angle = 2 * mpmath.atan2(mpmath.mpf(str(length)), mpmath.mpf(str(w)))
-            if angle > mpmath.pi:
-                angle -= 2 * mpmath.pi
-            decimal = Decimal(mpmath.nstr(sign * angle, 14, strip_zeros=False))
-            full = Decimal(mpmath.nstr(sign * angle, WRITTEN))
+        angle = 2 * FUNCTIONS["atan2"](in_digits(length), in_digits(w))
+        if angle > PI:
+            angle -= 2 * PI
+        decimal = (sign * angle).decimal(14)
+        full = (sign * angle).decimal(WRITTEN).normalize()
     text = angle_text(decimal)
     return [{"axis": [sign * x for x in axis], "angle": text if isinstance(text, str) else full}]
 

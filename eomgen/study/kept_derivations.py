@@ -37,7 +37,7 @@ from eomgen.symbolic.numeric import FLOAT, evaluate
 
 SUFFIX = ".json"
 ENTRY = {"key": str, "values": list, "text": str, "lines": list, "code": int}
-LIBRARIES = ("numpy", "mpmath", "quicktions", "python_flint", "sympy", "scipy")
+LIBRARIES = ("numpy", "quicktions", "python_flint", "sympy", "scipy")
 
 
 @dataclass(frozen=True)

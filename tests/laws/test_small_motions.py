@@ -62,8 +62,7 @@ def own_state_matrix(small: SmallMotions) -> np.ndarray:
         right = [next(flat) for _ in range(n)] + [-next(flat) for _ in range(k)]
         A = [[*M[i], *(-J[m][i] for m in range(k))] for i in range(n)]
         A += [[*J[m], *[mpmath.mpf(0)] * k] for m in range(k)]
-        with mpmath.workdps(50):
-            a = mpmath.lu_solve(mpmath.matrix(A), mpmath.matrix(right))
+        a = mpmath.lu_solve(mpmath.matrix(A), mpmath.matrix(right))
         return [*rates, *list(a)[:n]]
 
     with mpmath.workdps(50):

@@ -38,7 +38,6 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     lengths_of,
-    of_50_digits,
     of_one_length,
     tolerances,
 )
@@ -168,7 +167,7 @@ def _assembled(constraints: Constraints, declared: dict[Node, Scalar], seed: int
     state, guesses = Closure(constraints).still(Random(seed))
     state = state | dict(zip(declared, evaluate(tuple(declared.values()), state, fifty_digits()), strict=True))
     sought = constraints.fixed_by_position
-    state |= {q: of_50_digits(guesses[q.name]) for q in sought}
+    state |= {q: fifty_digits().number(guesses[q.name]) for q in sought}
     state = (Closure(constraints).closed(state, sought) or state) if sought else state
     called = frozenset(q.name for q in scope.symbols.q if scope.model.is_typed(q.name))
     return Assembly(constraints).with_gaps_closed(state, called)[0]
@@ -205,7 +204,7 @@ def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
     for node in nodes:
         if node.op in _OF_TERMS:
             terms[node] = _OF_TERMS[node.op](
-                *(terms[a] if type(a) is Node else abs(of_50_digits(a)) for a in node.args)
+                *(terms[a] if type(a) is Node else abs(fifty_digits().number(a)) for a in node.args)
             )
     return (float(abs(values[x])), float(terms[x])) if type(x) is Node else (abs(float(x)), 0.0)
 

@@ -26,7 +26,6 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     lengths_of,
-    of_50_digits,
     tolerances,
 )
 
@@ -74,8 +73,8 @@ class Closure:
         state, q = self.still(Random(1))
         numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
         speeds = model.start_values(numbers)[1]
-        given = {node: of_50_digits(q[node.name]) for node in symbols.q}
-        given |= {u: of_50_digits(speeds.get(u.name, 0.0)) for u in symbols.u}
+        given = {node: fifty_digits().number(q[node.name]) for node in symbols.q}
+        given |= {u: fifty_digits().number(speeds.get(u.name, 0.0)) for u in symbols.u}
         given |= self.constraints.motion.scope.on_unit_norms(state | given)
         found = self.closed(state | given, self.constraints.movable)
         if found is None:
@@ -98,12 +97,12 @@ class Closure:
             p = {name: value * rng.uniform(0.8, 1.2) if value else rng.uniform(0.05, 0.2) for name, value in p.items()}
         given = {node: p[name] for name, node in symbols.parameters.items()} | {symbols.t: 0.0}
         given |= {node: rng.uniform(-1, 1) for node in (*symbols.u, *symbols.a)}
-        state = {node: of_50_digits(value) for node, value in given.items()}
+        state = {node: fifty_digits().number(value) for node, value in given.items()}
         for name, node in symbols.inputs.items():
             try:
                 state[node] = evaluate((scope.value(model.inputs[name].value),), state, fifty_digits())[0]
             except NoValue:  # at t = 0, as 1/t: of another instant then
-                state[node] = of_50_digits(rng.uniform(-1, 1))
+                state[node] = fifty_digits().number(rng.uniform(-1, 1))
         return state, model.start_values(p)[0] | model.first_guesses(p)
 
     def rows_at(self, state: State) -> np.ndarray:
@@ -183,9 +182,9 @@ class Closure:
 def _scattered(constraints: Constraints, q: Mapping[str, float], spread: float, rng: Random) -> State:
     """Coordinates that lie about those given, soon after t = 0."""
     symbols = constraints.motion.scope.symbols
-    shifted = {node: of_50_digits(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
+    shifted = {node: fifty_digits().number(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
     shifted |= constraints.motion.scope.on_unit_norms(shifted)
-    return shifted | {symbols.t: of_50_digits(rng.uniform(0, spread))}
+    return shifted | {symbols.t: fifty_digits().number(rng.uniform(0, spread))}
 
 
 def _with_laws(constraints: Constraints, state: State) -> State:

@@ -39,7 +39,6 @@ from eomgen.symbolic.numeric import (
     compared_sides,
     evaluate,
     fifty_digits,
-    of_50_digits,
     piecewise_nodes,
     switches_of,
     tolerances,
@@ -240,7 +239,7 @@ def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
     division = division_of(equations, (x,))
     if division is None:
         return Extent(True)
-    moving, near = moving_symbols(equations.system), of_50_digits(tolerances.DIFFERENCE_AT_50)
+    moving, near = moving_symbols(equations.system), fifty_digits().number(tolerances.DIFFERENCE_AT_50)
     for switch in switches_of((x,), moving):
         for state in division.found.values():
             try:
@@ -336,10 +335,16 @@ class _Search:
         try:
             if begun is None:
                 return Closure(constraints).generic(rng)
-            moved = {x: begun[x] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[x])) for x in symbols.q}
-            moved |= {u: begun[u] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[u])) for u in symbols.u}
-            moved |= {symbols.t: begun[symbols.t] + of_50_digits(spread * rng.uniform(0, 1))}
-            moved |= {x: of_50_digits(spread * rng.uniform(-1, 1)) for x in symbols.inputs.values()}
+            moved = {
+                x: begun[x] + fifty_digits().number(spread * rng.uniform(-1, 1)) * (1 + abs(begun[x]))
+                for x in symbols.q
+            }
+            moved |= {
+                u: begun[u] + fifty_digits().number(spread * rng.uniform(-1, 1)) * (1 + abs(begun[u]))
+                for u in symbols.u
+            }
+            moved |= {symbols.t: begun[symbols.t] + fifty_digits().number(spread * rng.uniform(0, 1))}
+            moved |= {x: fifty_digits().number(spread * rng.uniform(-1, 1)) for x in symbols.inputs.values()}
             return self._closed(begun | moved)
         except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):
             return None
@@ -376,9 +381,9 @@ class _Search:
         try:
             a = exact_accelerations(self.equations, slopes_at)
             rates = evaluate(scope.rates, slopes_at, fifty_digits())
-            later = {x: state[x] + of_50_digits(step) * r for x, r in zip(symbols.q, rates, strict=True)}
-            later |= {u: state[u] + of_50_digits(step) * r for u, r in zip(symbols.u, a, strict=True)}
-            later[symbols.t] = state[symbols.t] + of_50_digits(step)
+            later = {x: state[x] + fifty_digits().number(step) * r for x, r in zip(symbols.q, rates, strict=True)}
+            later |= {u: state[u] + fifty_digits().number(step) * r for u, r in zip(symbols.u, a, strict=True)}
+            later[symbols.t] = state[symbols.t] + fifty_digits().number(step)
             known = state | later
             own = {x: self._system.inputs[name] for name, x in symbols.inputs.items()}
             return known | dict(zip(own, evaluate(tuple(own.values()), known, fifty_digits()), strict=True))
@@ -388,7 +393,7 @@ class _Search:
     def _beside(self, state: State, rng: Random) -> Iterator[State]:
         """States in the pieces next to one, over every switch."""
         moving = moving_symbols(self._system)
-        shaken = state | {u: state[u] + of_50_digits(rng.uniform(-0.5, 0.5)) for u in self._system.symbols.u}
+        shaken = state | {u: state[u] + fifty_digits().number(rng.uniform(-0.5, 0.5)) for u in self._system.symbols.u}
         for switch in self._switches:
             try:
                 targets = switch.targets(state)

@@ -18,7 +18,7 @@ from eomgen.mechanics.kinematics import BodyLink
 from eomgen.mechanics.state import Doubles
 from eomgen.symbolic.exact import equal_at_random_states
 from eomgen.symbolic.expression import Expression, Fraction, Node, Scalar, State, depends_on, is_zero, order, symbols_of
-from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, of_50_digits, of_one_length, tolerances
+from eomgen.symbolic.numeric import FLOAT, NoValue, evaluate, fifty_digits, of_one_length, tolerances
 from eomgen.symbolic.print import text_size, to_text
 
 # -------- wellposed -------------------------------------------------------------------------------------------
@@ -199,7 +199,7 @@ def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Prob
 
 def _spin(link: BodyLink, u: Mapping[Node, float], state: State) -> list[float]:
     """The part of a body's angular velocity that is linear in u, at these speeds."""
-    ways = [state | {node: of_50_digits(k * x) for node, x in u.items()} for k in (1, 0)]
+    ways = [state | {node: fifty_digits().number(k * x) for node, x in u.items()} for k in (1, 0)]
     with_u, without = (evaluate(link.twist.w, way, fifty_digits()) for way in ways)
     return [float(x - y) for x, y in zip(with_u, without, strict=True)]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -39,7 +39,6 @@ from eomgen.symbolic.numeric import (
     Layers,
     NoValue,
     Work,
-    digits_at,
     evaluate,
     fifty_digits,
     isolated,
@@ -457,7 +456,7 @@ class ClosedForms:
             entries = readable_all([x for row in rows for x in row], Work.VALUE) if rows and statics.lam else ()
             n = len(statics.lam)
             lines = [{j: entries[n * k + j] for j in range(n)} for k in range(len(rows))]
-            values = digits_at(self.values)
+            values = partial(evaluate, values=self.values, arithmetic=fifty_digits())
             solution = LinearSystem(lines, readable_all(right, Work.VALUE), n, values).solution()
         except (DerivationError, NoValue, ZeroDivisionError):
             return None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from random import Random
 
 from eomgen.errors import DerivationError
@@ -14,7 +15,7 @@ from eomgen.mechanics.free_bodies import Indeterminate, NamedReaction, Reactions
 from eomgen.mechanics.start import values_where_at_rest
 from eomgen.symbolic.exact import LinearSystem, Solution, readable_all, simplest, vanishes
 from eomgen.symbolic.expression import Fraction, Node, Scalar, depends_on, is_zero, jacobian, substituted
-from eomgen.symbolic.numeric import Work, digits_at
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits
 
 # -------- resting reactions -----------------------------------------------------------------------------------
 # An equilibrium -> every reaction there, by the balance of the bodies.
@@ -149,7 +150,9 @@ def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
     rows = [{j: next(flat) for j in range(len(sought))} for _ in slopes]
     readable_right = readable_all(right, Work.VALUE)
     own, shaken = (
-        LinearSystem(rows, readable_right, len(sought), digits_at(values)).solution()
+        LinearSystem(
+            rows, readable_right, len(sought), partial(evaluate, values=values, arithmetic=fifty_digits())
+        ).solution()
         for values in (statics.system.scope.values_of_parameters(Random(3), shaken=each) for each in (False, True))
     )
     return shaken if len(shaken.free) == len(own.free) else own  # m1 - m2 is 0 at m1 = m2 alone

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from random import Random
 from typing import Any
 
@@ -16,17 +16,7 @@ from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen
 from eomgen.mechanics.equilibrium.equations import StaticEquations
 from eomgen.symbolic.exact import LinearSystem, cramer, readable, sign_of_terms, simplest, vanishes
 from eomgen.symbolic.expression import Node, Scalar, gradient, is_zero, jacobian, substituted
-from eomgen.symbolic.numeric import (
-    NoValue,
-    Work,
-    balanced,
-    digits_at,
-    evaluate,
-    fifty_digits,
-    rank,
-    tolerances,
-    without_noise,
-)
+from eomgen.symbolic.numeric import NoValue, Work, balanced, evaluate, fifty_digits, rank, tolerances, without_noise
 
 # -------- stability -------------------------------------------------------------------------------------------
 # An equilibrium -> whether it is stable: the second variation of the potential energy along the constraints.
@@ -104,7 +94,7 @@ class _Place:
     def state(self) -> dict[Node, Any]:
         """Values of everything at the place: with 50 digits where it is exact and the parameters have values."""
         if not self.known or self.values is None:
-            return {node: fifty_digits().number(1) * x for node, x in self.numbers.items()}
+            return {node: fifty_digits().number(x) for node, x in self.numbers.items()}
         keys = [*self.statics.unknowns]
         found = evaluate([self.exact[x] for x in keys], self.values, fifty_digits())
         return {**self.values, **dict(zip(keys, found, strict=True))}
@@ -228,7 +218,9 @@ class _Place:
         values = self.values or self.statics.system.scope.values_of_parameters(Random(3))
         for column, a in enumerate(along):
             rows = [{j: row[k] for j, k in enumerate(others)} for row in J]
-            solution = LinearSystem(rows, [-row[a] for row in J], len(others), digits_at(values)).solution()
+            solution = LinearSystem(
+                rows, [-row[a] for row in J], len(others), partial(evaluate, values=values, arithmetic=fifty_digits())
+            ).solution()
             if len(solution.constants) < len(others):
                 raise NoValue("the constraints do not determine the other coordinates there")
             for j, k in enumerate(others):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -31,7 +31,7 @@ from eomgen.symbolic.expression import (
     tangent,
     tangents,
 )
-from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, sparse_rank
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, sparse_rank
 
 # -------- structure -------------------------------------------------------------------------------------------
 # System, a configuration -> Structure: the reactions that hold the bodies there, and the motions left to them.
@@ -245,7 +245,9 @@ class Structure:
         parameters = self._parameters(shaken=not self.is_special)
         deltas = tuple(graph.symbol(f"(delta {k})") for k in range(len(self.rows)))
         sure = () if self.is_special else tuple(self.system.symbols.parameters.values())
-        equations = LinearSystem(self.rows, deltas, len(self.columns), digits_at(parameters))
+        equations = LinearSystem(
+            self.rows, deltas, len(self.columns), partial(evaluate, values=parameters, arithmetic=fifty_digits())
+        )
         solution = equations.solution(Pivots(factors=sure))
         return _Solved(solution, deltas, len(self.columns), parameters)
 

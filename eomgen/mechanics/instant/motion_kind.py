@@ -30,7 +30,7 @@ from eomgen.symbolic.expression import (
     substituted,
     tangent,
 )
-from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, of_50_digits, tolerances
+from eomgen.symbolic.numeric import Newton, NoValue, Work, evaluate, fifty_digits, tolerances
 
 # -------- motion kind -----------------------------------------------------------------------------------------
 # System -> Kind: what kind of motion a body makes, from its field of velocities along every possible motion.
@@ -443,7 +443,7 @@ class Possible:
     def _state(self, rng: Random) -> State:
         constraints, symbols = self.system.constraints, self.system.symbols
         state = Closure(constraints).generic(rng, shaken=self.shaken)
-        state |= {node: of_50_digits(rng.uniform(-1, 1)) for node in self.jerks}
+        state |= {node: fifty_digits().number(rng.uniform(-1, 1)) for node in self.jerks}
         rows = tuple(row.velocity for row in constraints.closing)
         J = tuple(x for row in constraints.J for x in row)
         for unknowns in (symbols.u, symbols.a, self.jerks):

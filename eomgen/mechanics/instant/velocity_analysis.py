@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from random import Random
 
 import numpy as np
@@ -35,7 +35,7 @@ from eomgen.symbolic.expression import (
     parse,
     substituted,
 )
-from eomgen.symbolic.numeric import Work, digits_at, evaluate, fifty_digits, independent_rows, lengths_of, tolerances
+from eomgen.symbolic.numeric import Work, evaluate, fifty_digits, independent_rows, lengths_of, tolerances
 from eomgen.symbolic.print import text_size
 
 SHORT = 80  # characters of where a coordinate is that stands for it in formulas
@@ -494,7 +494,9 @@ def solution_of(
     values = shaken if near is None and _rank(_matrix(lines, unknowns, shaken)) == rank else own
     index = {node: j for j, node in enumerate(unknowns)}
     rows = [{index[node]: x for node, x in line.entries.items()} for line in lines]
-    found = LinearSystem(rows, [line.right for line in lines], len(unknowns), digits_at(values)).solution(
+    found = LinearSystem(
+        rows, [line.right for line in lines], len(unknowns), partial(evaluate, values=values, arithmetic=fifty_digits())
+    ).solution(
         Pivots(tolerance=tolerances.ELIMINATED_AT_50 if near is None else tolerances.RANK),
     )
     result = {}

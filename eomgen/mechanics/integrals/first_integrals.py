@@ -32,7 +32,6 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     follows,
-    of_50_digits,
     tolerances,
 )
 from eomgen.symbolic.print import text_size
@@ -277,7 +276,7 @@ def _alone(rate: Scalar, vanishes: bool, others: Sequence[Node]) -> Scalar | Non
 def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[bool]:
     """True for each rate that 50 digits show to change when the other coordinates change and t does not."""
     state, rng = Closure(system.constraints).scattered(), Random(2)
-    moved = state | {x: state[x] + of_50_digits(rng.uniform(0.1, 0.4)) for x in others}
+    moved = state | {x: state[x] + fifty_digits().number(rng.uniform(0.1, 0.4)) for x in others}
     moved |= system.scope.on_unit_norms(moved)
     try:
         here, there = (evaluate(rates, each, fifty_digits()) for each in (state, moved))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import partial
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.frozen import dataclass
@@ -30,7 +31,7 @@ from eomgen.symbolic.expression import (
     over,
     substituted,
 )
-from eomgen.symbolic.numeric import FLOAT, PIECEWISE, Work, digits_at, evaluate, tolerances
+from eomgen.symbolic.numeric import FLOAT, PIECEWISE, Work, evaluate, fifty_digits, tolerances
 
 # -------- speeds ----------------------------------------------------------------------------------------------
 # First integrals, start -> every speed as a function of the coordinates, without time.
@@ -328,12 +329,19 @@ def _solved(
     Parameters are off any special value, m1 - m2 is 0 at m1 = m2 alone, unless the rows determine less for these.
     """
     try:
-        own = LinearSystem(rows, right, unknowns, digits_at(Closure(system.constraints).generic())).solution()
+        own = LinearSystem(
+            rows,
+            right,
+            unknowns,
+            partial(evaluate, values=Closure(system.constraints).generic(), arithmetic=fifty_digits()),
+        ).solution()
     except (DerivationError, MissingValues):
         return None
     with suppress(DerivationError, MissingValues):
         shaken = Closure(system.constraints).generic(shaken=True)
-        found = LinearSystem(rows, right, unknowns, digits_at(shaken)).solution()
+        found = LinearSystem(
+            rows, right, unknowns, partial(evaluate, values=shaken, arithmetic=fifty_digits())
+        ).solution()
         return found if len(found.free) == len(own.free) else own
     return own
 

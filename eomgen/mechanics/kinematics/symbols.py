@@ -49,7 +49,7 @@ from eomgen.symbolic.expression import (
     tangent,
     through_samples,
 )
-from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, fifty_digits, numbers_of, of_50_digits
+from eomgen.symbolic.numeric import FLOAT, NoValue, Work, evaluate, fifty_digits, numbers_of
 from eomgen.symbolic.print import length_of, text_size, to_text
 
 # -------- scope -----------------------------------------------------------------------------------------------
@@ -243,9 +243,9 @@ class Scope:
         for node in names.values():
             value = values.get(node)
             if value is None:
-                values[node] = of_50_digits(rng.uniform(0.7, 1.3))
+                values[node] = fifty_digits().number(rng.uniform(0.7, 1.3))
             elif shaken:
-                values[node] = value * rng.uniform(0.8, 1.2) if value else of_50_digits(rng.uniform(0.05, 0.2))
+                values[node] = value * rng.uniform(0.8, 1.2) if value else fifty_digits().number(rng.uniform(0.05, 0.2))
         return values
 
     def values_for(
@@ -264,7 +264,7 @@ class Scope:
             rng = Random(seed)
             values = self.values_of_parameters(rng, shaken=shaken)
             values |= {node: arithmetic.number(Fraction(x)) for node, x in (near or {}).items()}
-            values |= {x: of_50_digits(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
+            values |= {x: fifty_digits().number(rng.uniform(0.5, 2)) for x in symbols_of(wanted) if x not in values}
             try:
                 evaluate(wanted, values, arithmetic)
             except (NoValue, ZeroDivisionError):

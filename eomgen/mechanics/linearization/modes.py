@@ -19,7 +19,16 @@ from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_f
 from eomgen.mechanics.state import Entries, Numbers
 from eomgen.symbolic.exact import Conditions, Polynomial, book_form, simplest
 from eomgen.symbolic.expression import Fraction, Node, Scalar, is_zero
-from eomgen.symbolic.numeric import NoValue, Work, dense, evaluate, fifty_digits, tolerances
+from eomgen.symbolic.numeric import (
+    NoValue,
+    Work,
+    dense,
+    eigenpairs_in_digits,
+    evaluate,
+    fifty_digits,
+    floats_of,
+    tolerances,
+)
 from eomgen.symbolic.print import text_size
 
 # -------- modes -----------------------------------------------------------------------------------------------
@@ -506,7 +515,6 @@ def _drifting(modes: Sequence[Mode]) -> str:
 
 
 MOST_BY_DIGITS = 30  # rows of a matrix whose eigenvalues are sought with more digits
-DIGITS = 40
 
 
 def eigenpairs(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -514,11 +522,8 @@ def eigenpairs(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     values, vectors = np.linalg.eig(A)
     if not _is_wide(values):
         return values, vectors
-    from mpmath import mp
-
-    with mp.workdps(DIGITS):
-        E, V = mp.eig(mp.matrix(A.tolist()))
-        return np.array([complex(x) for x in E]), _as_floats(V, complex)
+    found, by_digits = eigenpairs_in_digits(A.tolist())
+    return np.array(found), np.array(by_digits)
 
 
 def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -529,23 +534,14 @@ def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     squares, vectors = np.linalg.eigh((A + A.T) / 2)
     if not _is_wide(squares):
         return squares, np.linalg.solve(lower.T, vectors)
-    from mpmath import mp
-
-    with mp.workdps(DIGITS):
-        L = mp.inverse(mp.cholesky(mp.matrix(M.tolist())))
-        E, V = mp.eigsy(L * mp.matrix(K.tolist()) * L.T)
-        return np.array([float(x) for x in E]), _as_floats(L.T * V, float)
+    found, by_digits = eigenpairs_in_digits(K.tolist(), M.tolist())
+    V = np.array([floats_of(row) for row in by_digits])
+    return np.array(floats_of(found)), V / abs(V).max(axis=0)
 
 
 def _is_wide(values: np.ndarray) -> bool:
     sizes = abs(values)
     return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < tolerances.WIDE_SPECTRUM * sizes.max()
-
-
-def _as_floats(A: Any, kind: type) -> np.ndarray:
-    """The columns, each with the largest entry of size 1."""
-    found = np.array([[kind(A[i, j]) for j in range(A.cols)] for i in range(A.rows)])
-    return np.asarray(found / abs(found).max(axis=0))
 
 
 # -- zeros ---------------------------------------------------------------------------------------------------------
@@ -568,7 +564,7 @@ def _of_polynomial(e: LinearEquations, polynomial: Polynomial, trial: Mapping[No
     largest = abs(np.linalg.eigvals(np.linalg.solve(B, A))).max(initial=0)
     if not largest:
         return None
-    unit = fifty_digits().number(1) * float(largest)
+    unit = fifty_digits().number(float(largest))
     sizes = [abs(c) * unit**k for k, c in enumerate(evaluate(polynomial.coefficients, trial, fifty_digits()))]
     return next((k for k, x in enumerate(sizes) if x > tolerances.COEFFICIENT_AT_50 * sizes[-1]), None)
 

@@ -105,7 +105,7 @@ class WithSlopes(NumberField):
     def with_values(self, more: Mapping[Node, Any]) -> WithSlopes:
         known = {node: sloped(x) for node, x in more.items()}
         number = fifty_digits().number
-        state = {**self.state, **{node: number(1) * x.value for node, x in known.items()}}
+        state = {**self.state, **{node: number(x.value) for node, x in known.items()}}
         return WithSlopes(state, {**self.seeds, **{node: Fraction(x.slope) for node, x in known.items()}})
 
 

@@ -146,7 +146,7 @@ def _place(place: Equilibrium) -> ReferenceMotion:
     trial = system.scope.values_of_parameters(Random(3))
     numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
     for q in symbols.q:
-        numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(1) * place.numbers[q]
+        numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(place.numbers[q])
     return _with_inputs(ReferenceMotion(system, EQUILIBRIUM, exact, numbers, place))
 
 
@@ -180,7 +180,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
     exact = exact if symbols.parameters.keys() - model.exact_parameters().keys() else _short(exact)
     for x in (*symbols.q, *symbols.u):
-        numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(1) * located.numbers[x]
+        numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(located.numbers[x])
     return _with_inputs(ReferenceMotion(system, EQUILIBRIUM if at_rest else START, exact, numbers))
 
 

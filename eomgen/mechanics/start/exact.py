@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from random import Random
 from typing import Any
 
@@ -31,17 +31,7 @@ from eomgen.symbolic.expression import (
     symbols_of,
     tangent,
 )
-from eomgen.symbolic.numeric import (
-    NoValue,
-    Work,
-    digits_at,
-    evaluate,
-    fifty_digits,
-    number_of,
-    numbers_of,
-    of_50_digits,
-    tolerances,
-)
+from eomgen.symbolic.numeric import NoValue, Work, evaluate, fifty_digits, number_of, numbers_of, tolerances
 
 # -------- exact start -----------------------------------------------------------------------------------------
 # System -> ExactStart: the one start that every verb takes, in closed form where it has one, in numbers else.
@@ -297,7 +287,9 @@ class _Sought:
 
     def _digits(self, scalars: Sequence[Scalar]) -> Any:
         """Scalars of the parameters with 50 digits."""
-        return evaluate(scalars, {x: of_50_digits(value) for x, value in self.located.numbers.items()}, fifty_digits())
+        return evaluate(
+            scalars, {x: fifty_digits().number(value) for x, value in self.located.numbers.items()}, fifty_digits()
+        )
 
     def _independent(self, J: Sequence[Sequence[Scalar]]) -> list[int]:
         """Indices of the rows of J that are independent of those before them."""
@@ -449,7 +441,7 @@ def speeds_near(system: System, places: State, numbers: Mapping[Node, float]) ->
     rows = substituted(tuple(row.velocity for row in system.constraints.closing), places | {system.symbols.t: 0})
     still = substituted(rows, dict.fromkeys(u, 0))
     lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in jacobian(rows, u)]
-    values = digits_at(system.scope.values_of_parameters(Random(3)))
+    values = partial(evaluate, values=system.scope.values_of_parameters(Random(3)), arithmetic=fifty_digits())
     solution = LinearSystem(lines, [-x for x in still], len(u), values).solution()
     known = {j: Fraction(f"{numbers[u[j]]:.{DIGITS}g}") for j in solution.free}
     found: dict[Node, Scalar] = {u[j]: x for j, x in known.items()}

@@ -27,7 +27,6 @@ from eomgen.symbolic.numeric import (
     evaluate,
     fifty_digits,
     least_left,
-    of_50_digits,
     tolerances,
 )
 
@@ -350,8 +349,10 @@ def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[st
     used |= set(symbols_of(system.inputs.values()))
     needed = [name for name, node in symbols.parameters.items() if node in used]
     p = system.scope.model.numeric_parameters(parameters, needed=needed)
-    state = {symbols.parameters[name]: of_50_digits(value) for name, value in p.items()} | {symbols.t: of_50_digits(0)}
-    state |= {node: of_50_digits(values[node.name]) for node in (*symbols.q, *symbols.u)}
+    state = {symbols.parameters[name]: fifty_digits().number(value) for name, value in p.items()} | {
+        symbols.t: fifty_digits().number(0)
+    }
+    state |= {node: fifty_digits().number(values[node.name]) for node in (*symbols.q, *symbols.u)}
     for name, node in symbols.inputs.items():
         state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
     return state
@@ -396,7 +397,7 @@ def _nearest(system: System, state: State) -> str:
     if not miss.open:
         return f"; all constraints close at {there}, farther than a start is moved"
     stay = f"{quoted_names(miss.constraints)} {'stays' if len(miss.constraints) == 1 else 'stay'} open"
-    left = state | {q: of_50_digits(miss.values[q.name]) for q in system.symbols.q if q.name in miss.values}
+    left = state | {q: fifty_digits().number(miss.values[q.name]) for q in system.symbols.q if q.name in miss.values}
     rows = [row for row in system.constraints.rows if row.gap is not None and row.constraint in miss.constraints]
     gaps = evaluate([row.gap for row in rows if row.gap is not None], left, fifty_digits())
     size = max((_in_full(system, row, abs(float(x)), left) for row, x in zip(rows, gaps, strict=True)), default=0)
@@ -513,7 +514,7 @@ def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
 
 def _closes(system: System, state: Mapping[Node, Any], place: Mapping[Node, float]) -> bool:
     """True if all constraints can be satisfied near a place to 50 digits."""
-    there = {node: of_50_digits(float(x)) for node, x in {**state, **place}.items()}
+    there = {node: fifty_digits().number(float(x)) for node, x in {**state, **place}.items()}
     return Closure(system.constraints).closed(there, system.constraints.movable) is not None
 
 

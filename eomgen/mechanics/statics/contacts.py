@@ -17,7 +17,7 @@ from eomgen.mechanics.kinematics import ContactMode, ContactModes
 from eomgen.mechanics.start import Start
 from eomgen.model import Contact, Model
 from eomgen.symbolic.expression import Scalar, State, symbols_of
-from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, of_50_digits, tolerances
+from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
 
 # -------- contacts at start -----------------------------------------------------------------------------------
 # Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.
@@ -257,8 +257,8 @@ def _state(system: System, drawn: Numbers) -> State:
     symbols, values = system.symbols, Start.of(system, drawn).values
     known = {**system.scope.model.exact_parameters(drawn), **values}
     nodes = {**symbols.parameters, **{x.name: x for x in (*symbols.q, *symbols.u)}}
-    state = {node: of_50_digits(float(known[name])) for name, node in nodes.items()}
-    state |= {x: of_50_digits(0.0) for x in (symbols.t, *symbols.lam)}
+    state = {node: fifty_digits().number(float(known[name])) for name, node in nodes.items()}
+    state |= {x: fifty_digits().number(0.0) for x in (symbols.t, *symbols.lam)}
     own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())
     return state | dict(zip(symbols.inputs.values(), own, strict=True))
 

@@ -26,6 +26,7 @@ from eomgen.model.outputs.points import (
     turned,
 )
 from eomgen.symbolic.expression import Call, Matrix, Scalar, Vector, sqrt
+from eomgen.symbolic.numeric import fifty_digits
 
 BODY = ("body", "body")
 
@@ -46,8 +47,8 @@ def _angle_of_axes(trial: Trial, body: str, frame: str = GROUND) -> Any:
     own, sides = (axes_at(trial, name).T if name in scene.bodies else Matrix.IDENTITY for name in (body, frame))
     sine, cosine = own[x] @ sides[y], own[x] @ sides[x]
     (counted,), _, _ = trial.along((scene.angle(body) - scene.angle(frame),))
-    angle = counted.context.atan2(sine, cosine)
-    turn = 2 * counted.context.pi
+    angle = fifty_digits().functions["atan2"](sine, cosine)
+    turn = 2 * fifty_digits().functions["pi"]()
     return angle + turn * round((counted - angle) / turn)
 
 

@@ -21,12 +21,11 @@ from eomgen.symbolic.numeric import (
     PRIME,
     PRIME_FIELD,
     Arithmetic,
-    Ball,
     NoMeaning,
     NoValue,
-    balls,
     evaluate,
     fifty_digits,
+    in_balls,
     tolerances,
 )
 
@@ -421,34 +420,6 @@ class NumberKind:
     states: int = STATES  # at how many it is looked at
 
 
-@dataclass(frozen=True)
-class SureNumber:
-    """A number as far as it is sure: its ball."""
-
-    ball: Ball
-
-    def __sub__(self, other: SureNumber) -> SureNumber:
-        return SureNumber(BALLS.functions["sub"](self.ball, other.ball))
-
-    def __mul__(self, other: SureNumber) -> SureNumber:
-        return SureNumber(BALLS.functions["mul"](self.ball, other.ball))
-
-    def __neg__(self) -> SureNumber:
-        return SureNumber(BALLS.functions["neg"](self.ball))
-
-    def __abs__(self) -> Any:
-        return abs(self.ball[0])
-
-    @property
-    def inverse(self) -> SureNumber:
-        return SureNumber(BALLS.functions["div"](BALLS.number(1), self.ball))
-
-    @property
-    def may_vanish(self) -> bool:
-        return not abs(self.ball[0]) > self.ball[1]
-
-
-BALLS = balls(50, last=True)
 IN_FIELD = NumberKind("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
 IN_DIGITS = NumberKind(
     "50 digits",
@@ -459,10 +430,9 @@ IN_DIGITS = NumberKind(
 )
 IN_BALLS = NumberKind(
     "balls of 50 digits",
-    lambda x: x.inverse,
+    lambda x: 1 / x,
     lambda x: x,
-    lambda x, size: x.may_vanish,
-    lambda x: SureNumber(BALLS.number(x)),
+    lambda x, size: not (x > 0 or x < 0),
     states=1,
 )
 
@@ -548,11 +518,9 @@ def _sure_states(
     """All entries in balls at the states where all have values."""
     flat = _entries(row, rows)
     for state in states:
-        values = evaluate(
-            flat, {x: (v, v * 0 + (tolerances.ZERO_AT_50 if x in rounded else 0)) for x, v in state.items()}, BALLS
-        )
-        if not any(x != x for x, _ in values):
-            yield [SureNumber(each) for each in values]
+        values = in_balls(flat, state, dict.fromkeys(rounded, tolerances.ZERO_AT_50), last=True)
+        if not any(x.is_nan() for x in values):
+            yield values
 
 
 def _entries(row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> tuple[Scalar, ...]:

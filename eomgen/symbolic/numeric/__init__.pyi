@@ -5,13 +5,12 @@ from eomgen.symbolic.numeric import dense as dense
 
 # Every tolerance of the package: its value, what it is a share of, and why it is that large
 from eomgen.symbolic.numeric import tolerances as tolerances
-from eomgen.symbolic.numeric.arithmetic import Ball as Ball
-
-# Balls around numbers of so many digits
-from eomgen.symbolic.numeric.arithmetic import balls as balls
 
 # True if the row is a combination of the others, modulo the prime
 from eomgen.symbolic.numeric.arithmetic import follows as follows
+
+# Values at a state of numbers of 50 digits, in balls
+from eomgen.symbolic.numeric.arithmetic import in_balls as in_balls
 
 # (D A E, D, E) with the largest entry of every row and column of D A E near 1
 from eomgen.symbolic.numeric.dense import balanced as balanced
@@ -39,6 +38,15 @@ from eomgen.symbolic.numeric.dense import sparse_rank as sparse_rank
 
 # The matrix; entries below that share of the largest, or with axis 1 of the largest in their row, are 0
 from eomgen.symbolic.numeric.dense import without_noise as without_noise
+
+# (w, V) of A V = V diag(w), or of A V = M V diag(w) where both are symmetric; found with 50 digits
+from eomgen.symbolic.numeric.digits import eigenpairs_in_digits as eigenpairs_in_digits
+
+# x of as many rows [A | b] as unknowns, with 50 digits; None where they are few, or A is nearly singular
+from eomgen.symbolic.numeric.digits import solved_quickly as solved_quickly
+
+# (row column, |row| |column|) with 50 digits, for each row, in a list for each column
+from eomgen.symbolic.numeric.digits import sums_of_products as sums_of_products
 from eomgen.symbolic.numeric.evaluation import ARRAYS as ARRAYS
 from eomgen.symbolic.numeric.evaluation import FLOAT as FLOAT
 
@@ -58,9 +66,6 @@ from eomgen.symbolic.numeric.evaluation import NoMeaning as NoMeaning
 # This state has no value in this arithmetic (a root that is not there, a zero divisor): take another state
 from eomgen.symbolic.numeric.evaluation import NoValue as NoValue
 
-# scalars -> their values at the state, with 50 digits
-from eomgen.symbolic.numeric.evaluation import digits_at as digits_at
-
 # The outputs' values
 from eomgen.symbolic.numeric.evaluation import evaluate as evaluate
 
@@ -69,15 +74,6 @@ from eomgen.symbolic.numeric.evaluation import fifty_digits as fifty_digits
 
 # Numbers of many digits as floats
 from eomgen.symbolic.numeric.evaluation import floats_of as floats_of
-
-# A float as a number of 50 digits
-from eomgen.symbolic.numeric.evaluation import of_50_digits as of_50_digits
-
-# x of as many rows [A | b] as unknowns, with 50 digits; None where they are few, or A is nearly singular
-from eomgen.symbolic.numeric.evaluation import solved_quickly as solved_quickly
-
-# (row column, |row| |column|) with 50 digits, for each row, in a list for each column
-from eomgen.symbolic.numeric.evaluation import sums_of_products as sums_of_products
 
 # The scalars with each symbol replaced by what its name means in another graph
 from eomgen.symbolic.numeric.evaluation import transplanted as transplanted

@@ -1,203 +1,193 @@
-"""Arithmetics that know their error: balls, intervals, Arb's balls, the prime field."""
+"""Arithmetics that know their error: balls, intervals, linear dependence in the prime field."""
 
 from __future__ import annotations
 
 import math
+import operator
 import sys
-from collections.abc import Callable, Sequence
-from functools import cache, partial
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 from typing import Any
 
 import numpy as np
+from flint import arb, arf, ctx
 
-from eomgen.symbolic.expression import Node, Number, sampled_of
+from eomgen.symbolic.expression import Node, Number, Scalar, sampled_of
 from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, nearest
+from eomgen.symbolic.numeric.digits import ZERO, LongReal, ball_of
+from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, evaluate, nearest
 
 # -------- balls -----------------------------------------------------------------------------------------------
-# Balls: a number of many digits and how far from it the true one may be, (x, r) with |true - x| <= r.
+# Balls, Arb's: numbers of many digits that know how far from them the true ones may be.
 #
-# Rounding of each operation widens its ball; what cancels shows as a ball that is wide compared with its number. r = 0
-# of a number that is exact; r = inf where nothing can be said: 1/x with 0 in the ball of x. x = nan: surely no value.
+# What cancels shows as a ball that is wide compared with its number. Where nothing can be said the ball has no end;
+# where there surely is no value it is nan. Arb says nan for both, so that functions with a domain look first.
 
 
-Ball = tuple[Any, Any]
-SLACK = 4  # units in the last place that one operation may lose, and the estimate of r too
+Ball = arb
+UNIT, NONE, OPEN = arb(1), arb.nan(), arb(0, float("inf"))
+EITHER = arb(0.5, 0.5)  # of a condition that is open
+SLACK = 2  # bits, the last ones of a number, that its rounding may have changed
 
 
 @cache
-def balls(digits: int, *, last: bool = False) -> Arithmetic:
-    """Balls around numbers of so many digits.
+def balls(*, last: bool = False) -> Arithmetic:
+    """Balls with the digits of the precision in force.
 
     Args:
         last: True if what no precision could distinguish counts as equal, so that branches and signs are decided.
     """
-    return _Balls(digits, last).arithmetic
+    less = _less_at_last if last else _less
+    table: dict[str, Callable[..., Ball]] = {
+        "neg": operator.neg,
+        "add": operator.add,
+        "sub": operator.sub,
+        "mul": operator.mul,
+        "div": _ball_quotient,
+        "pow": _ball_power,
+        "sqrt": _ball_root,
+        "tan": lambda a: _ball_quotient(a.sin(), a.cos()),
+        "asin": lambda a: _between(arb.asin, a),
+        "acos": lambda a: -_between(lambda x: -x.acos(), a),
+        "atan2": _angle_at_last if last else _angle,
+        "log": _ball_logarithm,
+        "abs": abs,
+        "sign": lambda a: _selected(less(ZERO, a), UNIT, _selected(less(a, ZERO), -UNIT, ZERO)),
+        "less": less,
+        "less_equal": lambda a, b: 1 - less(b, a),
+        "sampled": _sampled,
+        **{op: getattr(arb, op) for op in "sin cos atan sinh cosh tanh exp min max".split()},
+    }
+    guarded = {op: _guarded(function) for op, function in table.items()}
+    return Arithmetic("balls", ball_of, guarded | {"select": _selected, "pi": arb.pi}, lambda x: NONE)
 
 
-class _Balls:
-    """The operations on balls of one precision; the arguments are those of `balls`."""
+def in_balls(
+    scalars: Sequence[Scalar], state: Mapping[Node, Any], radii: Mapping[Node, float], *, last: bool = False
+) -> list[Ball]:
+    """Values at a state of numbers of 50 digits, in balls.
 
-    def __init__(self, digits: int, last: bool) -> None:
-        from mpmath.ctx_mp import MPContext
+    Args:
+        radii: how far from the true ones values may be.
+        last: as of `balls`.
+    """
+    known = {x: ball_of(v, radii.get(x, 0)) for x, v in state.items()}
+    return evaluate(scalars, known, balls(last=last))
 
-        self.mp, self.digits, self.last = MPContext(), digits, last
-        self.mp.dps = digits
-        self.unit = SLACK * self.mp.eps
-        self.zero: Ball = (self.mp.mpf(0), self.mp.mpf(0))
-        self.none: Ball = (self.mp.nan, self.mp.mpf(0))
-        self.open: Ball = (self.mp.mpf(0), self.mp.inf)
 
-    @property
-    def arithmetic(self) -> Arithmetic:
-        from eomgen.symbolic.numeric.sure_digits import in_balls
+def is_rounding(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> bool:
+    """True if all scalars may be 0 at a state whose numbers of 50 digits are rounded themselves."""
+    known = {x: ball_of(v) for x, v in state.items()}
+    known = {x: arb(ball, abs(ball) * _unit(SLACK)) for x, ball in known.items()}
+    return all(ball.contains(0) for ball in evaluate(scalars, known, balls()))
 
-        mp = self.mp
-        table: dict[str, Callable[..., Ball]] = {
-            "neg": lambda a: (-a[0], a[1]),
-            "add": lambda a, b: self._rounded(a[0] + b[0], a[1] + b[1]),
-            "sub": lambda a, b: self._rounded(a[0] - b[0], a[1] + b[1]),
-            "mul": self._mul,
-            "div": self._div,
-            "pow": self._pow,
-            "sqrt": self._sqrt,
-            "sin": lambda a: self._rounded(mp.sin(a[0]), a[1]),
-            "cos": lambda a: self._rounded(mp.cos(a[0]), a[1]),
-            "tan": lambda a: self._div(self._rounded(mp.sin(a[0]), a[1]), self._rounded(mp.cos(a[0]), a[1])),
-            "asin": lambda a: self._on(mp.asin, a, -1, 1),
-            "acos": lambda a: self._on(mp.acos, a, -1, 1),
-            "atan": lambda a: self._rounded(mp.atan(a[0]), a[1]),
-            "atan2": self._atan2,
-            "sinh": lambda a: self._on(mp.sinh, a),
-            "cosh": lambda a: self._rounded(mp.cosh(a[0]), mp.sinh(abs(a[0]) + a[1]) * a[1]),
-            "tanh": lambda a: self._rounded(mp.tanh(a[0]), a[1]),
-            "exp": lambda a: self._on(mp.exp, a),
-            "log": self._log,
-            "abs": lambda a: (abs(a[0]), a[1]),
-            "sign": lambda a: self._selected(self._less(self.zero, a), self.one, self._minus_if_negative(a)),
-            "min": lambda a, b: (min(a[0], b[0]), max(a[1], b[1])),
-            "max": lambda a, b: (max(a[0], b[0]), max(a[1], b[1])),
-            "less": self._less,
-            "less_equal": lambda a, b: self._not(self._less(b, a)),
-            "sampled": self._sampled,
-        }
-        guarded = {op: self._guarded(function) for op, function in table.items()}
-        own: dict[str, Callable[..., Ball]] = {"select": self._selected, "pi": lambda: self._rounded(+mp.pi, 0)}
-        by_arb = partial(in_balls, mp)
-        return Arithmetic(f"balls of {self.digits} digits", self.number, guarded | own, lambda x: self.none, by_arb)
 
-    @property
-    def one(self) -> Ball:
-        return (self.mp.mpf(1), self.mp.mpf(0))
+def _unit(slack: int) -> Ball:
+    """A number that changes the last bits of 1 alone."""
+    return arb(arf((1, slack - ctx.prec)))
 
-    def number(self, c: Number | float) -> Ball:
-        """An exact number; a double, as of an outline that is drawn, is one."""
-        if isinstance(c, float):
-            return (self.mp.mpf(c), self.mp.mpf(0))
-        above = self.mp.mpf(c.numerator)
-        if c.denominator == 1 and above == c.numerator:
-            return (above, self.mp.mpf(0))
-        return self._rounded(above / c.denominator, 0)
 
-    def _rounded(self, x: Any, r: Any) -> Ball:
-        return (x, r + self.unit * abs(x))
+def _guarded(function: Callable[..., Ball]) -> Callable[..., Ball]:
+    """Makes an operation propagate arguments that have no value, or an unbounded error, without being called."""
 
-    def _guarded(self, function: Callable[..., Ball]) -> Callable[..., Ball]:
-        """Makes an operation propagate arguments that have no value, or an unbounded error, without being called."""
+    def of(*arguments: Ball) -> Ball:
+        if all(x.is_finite() for x in arguments):
+            value = function(*arguments)
+            return value if value.is_finite() or value.is_nan() else OPEN
+        return NONE if any(x.is_nan() for x in arguments) else OPEN
 
-        def of(*arguments: Ball) -> Ball:
-            if any(x != x for x, _ in arguments):
-                return self.none
-            return self.open if any(r == self.mp.inf for _, r in arguments) else function(*arguments)
+    return of
 
-        return of
 
-    # -- operations --------------------------------------------------------------------------------
+# -- functions with a domain -----------------------------------------------------------------------
 
-    def _mul(self, a: Ball, b: Ball) -> Ball:
-        (x, r), (y, s) = a, b
-        return self._rounded(x * y, abs(x) * s + abs(y) * r + r * s) if r or s else self._rounded(x * y, 0)
 
-    def _div(self, a: Ball, b: Ball) -> Ball:
-        (x, r), (y, s) = a, b
-        if abs(y) <= s:
-            return self.none if not y and not s else self.open
-        quotient = x / y
-        return self._rounded(quotient, (r + abs(quotient) * s) / (abs(y) - s))
+def _ball_quotient(a: Ball, b: Ball) -> Ball:
+    if b.contains(0):
+        return NONE if b.is_zero() else OPEN
+    return a / b
 
-    def _sqrt(self, a: Ball) -> Ball:
-        x, r = a
-        if x > r:
-            root = self.mp.sqrt(x)
-            return self._rounded(root, r / root)
-        return (self.mp.mpf(0), self.mp.sqrt(abs(x) + r)) if x + r >= 0 else self.none
 
-    def _log(self, a: Ball) -> Ball:
-        x, r = a
-        if x > r:
-            return self._rounded(self.mp.log(x), r / (x - r))
-        return self.open if x + r > 0 else self.none
+def _ball_root(a: Ball) -> Ball:
+    if a >= 0:
+        return a.sqrt()
+    return NONE if a < 0 else arb(0, a.abs_upper().sqrt().upper())
 
-    def _on(self, function: Callable[[Any], Any], a: Ball, low: Any = None, high: Any = None) -> Ball:
-        """A function that rises, or falls, from `low` to `high`: its ends say how far it reaches."""
-        x, r = a
-        if low is not None and (x + r < low or x - r > high):
-            return self.none
-        inside = [y if low is None else min(max(y, low), high) for y in (x, x - r, x + r)]
-        middle, *ends = (function(y) for y in inside)
-        return self._rounded(middle, max(abs(end - middle) for end in ends))
 
-    def _pow(self, a: Ball, b: Ball) -> Ball:
-        (x, r), (n, s) = a, b
-        if not s and self.mp.isint(n):
-            size = self.mp.power(abs(x) + r, abs(n) - 1) * abs(n) * r if n else self.mp.mpf(0)
-            power = self._rounded(self.mp.power(x, abs(n)), size)
-            return power if n >= 0 else self._div(self.one, power)
-        if x > r:
-            return self._on(self.mp.exp, self._mul(b, self._log(a)))
-        if x + r < 0:
-            return self.none
-        reach = self.mp.power(abs(x) + r, n - s) if n > s else self.mp.inf  # at the edge 0^n = 0
-        return self.none if reach == self.mp.inf and not r else (self.mp.mpf(0), reach)
+def _ball_logarithm(a: Ball) -> Ball:
+    if a > 0:
+        return a.log()
+    return OPEN if a.upper() > 0 else NONE
 
-    def _atan2(self, a: Ball, b: Ball) -> Ball:
-        (y, r), (x, s) = a, b
-        if x <= s and abs(y) <= r and (r or s or not x):
-            return self.open if r or s else self.zero
-        least = self.mp.hypot(max(abs(y) - r, 0), max(abs(x) - s, 0))
-        return self._rounded(self.mp.atan2(y, x), (r + s) / least if r or s else 0)
 
-    def _sampled(self, t: Ball, k: Ball) -> Ball:
-        """Samples at t: as far apart as they are at the ends of its ball; twice, for what lies in between."""
-        sampled, (x, r) = sampled_of(k[0]), t
-        values = [sampled.at(y, lambda c: self.number(c)[0], +self.mp.pi) for y in (x, x - r, x + r)]
-        return self._rounded(
-            values[0], 2 * max(abs(y - values[0]) for y in values[1:]) + 9 * self.unit * abs(values[0])
-        )
+def _between(function: Callable[[Ball], Ball], a: Ball) -> Ball:
+    """A function that rises from -1 to 1."""
+    if a > 1 or a < -1:
+        return NONE
+    if -1 <= a <= 1:
+        return function(a)
+    return function(a.lower().max(-UNIT)).union(function(a.upper().min(UNIT)))
 
-    # -- decisions ---------------------------------------------------------------------------------
 
-    def _less(self, a: Ball, b: Ball) -> Ball:
-        """1 or 0; (1/2, 1/2) where both may be."""
-        (x, r), (y, s) = a, b
-        if abs(x - y) > r + s or (not r and not s):
-            return self.one if x < y else self.zero
-        return self.zero if self.last else (self.mp.mpf(0.5), self.mp.mpf(0.5))
+def _ball_power(a: Ball, b: Ball) -> Ball:
+    if b.is_exact() and b.is_integer():
+        power = a ** abs(b)
+        return power if b >= 0 else _ball_quotient(UNIT, power)
+    if a > 0:
+        return a**b
+    if a < 0 or (a.is_zero() and not b > 0):
+        return NONE
+    return arb(0, (a.abs_upper() ** b).abs_upper()) if b > 0 else OPEN  # at the edge 0^n = 0
 
-    def _not(self, a: Ball) -> Ball:
-        return (1 - a[0], a[1])
 
-    def _minus_if_negative(self, a: Ball) -> Ball:
-        return self._selected(self._less(a, self.zero), (-self.one[0], self.one[1]), self.zero)
+def _angle(a: Ball, b: Ball) -> Ball:
+    if a.contains(0) and b.contains(0):
+        return ZERO if a.is_zero() and b.is_zero() else OPEN
+    return arb.atan2(a, b)
 
-    def _selected(self, condition: Ball, if_true: Ball, if_false: Ball) -> Ball:
-        """One of the two; both in one ball where the condition is open."""
-        if condition[0] != condition[0]:
-            return self.none
-        if not condition[1]:
-            return if_true if condition[0] else if_false
-        (x, r), (y, s) = if_true, if_false
-        return (x, max(r, abs(x - y) + s)) if x == x and y == y else self.open
+
+def _angle_at_last(a: Ball, b: Ball) -> Ball:
+    """The same; what may lie on either side of the half line to -x lies on it."""
+    on = a.contains(0) and b < 0
+    return arb(arb.pi(), (a / b).abs_upper()) if on and not a.is_zero() else _angle(a, b)
+
+
+def _sampled(t: Ball, k: Ball) -> Ball:
+    """Samples at t: as far apart as they are at the ends of its ball; twice, for what lies in between."""
+    sampled = sampled_of(float(k))
+
+    def at(y: Ball) -> Ball:
+        value: LongReal = sampled.at(LongReal(y), lambda c: LongReal(ball_of(c).mid()), LongReal(arb.pi().mid()))
+        return value.ball
+
+    value = at(t.mid())
+    away = max((abs(at(y.mid()) - value) for y in (t.lower(), t.upper())), key=float)
+    return arb(value, 2 * away + abs(value) * _unit(2 * SLACK))
+
+
+# -- decisions -------------------------------------------------------------------------------------
+
+
+def _less(a: Ball, b: Ball) -> Ball:
+    """1 or 0; both where both may be."""
+    if a < b:
+        return UNIT
+    return ZERO if a >= b else EITHER
+
+
+def _less_at_last(a: Ball, b: Ball) -> Ball:
+    return UNIT if a < b else ZERO
+
+
+def _selected(condition: Ball, if_true: Ball, if_false: Ball) -> Ball:
+    """One of the two; both in one ball where the condition is open."""
+    if condition.is_nan():
+        return NONE
+    if condition.is_exact():
+        return if_false if condition.is_zero() else if_true
+    if if_true.is_nan() or if_false.is_nan():
+        return OPEN
+    return if_true.union(if_false)
 
 
 # -------- intervals -------------------------------------------------------------------------------------------

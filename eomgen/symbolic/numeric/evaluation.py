@@ -6,7 +6,6 @@ import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, cached_property, lru_cache, partial
-from functools import partial as partial_of
 from itertools import chain, count
 from typing import Any
 
@@ -29,7 +28,6 @@ from eomgen.symbolic.expression import (
     sampled_of,
     symbols_of,
 )
-from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS
 
 WAYS_KEPT = 16  # of evaluations that may come again
 NUMBERS_KEPT = 4096  # exact numbers cached with 50 digits
@@ -52,14 +50,14 @@ class Arithmetic:
 
     Args:
         name: for messages, "prime field".
-        number: turns an exact number into one of this kind.
+        number: turns an exact number into one of this kind; in digits and balls a double too, as the number that it is.
         functions: the operation of each op, "pi" as a function of nothing.
         failed: the value of a node outside its domain; may raise NoValue instead.
         quickly: (values that are given, steps, places of the outputs) -> these, by a quicker way; None: not by that.
     """
 
     name: str
-    number: Callable[[Number], Any]
+    number: Callable[[Any], Any]
     functions: Mapping[str, Callable[..., Any]]
     failed: Callable[[Node], Any]
     quickly: Callable[[Sequence[Any], Sequence[_Step], Sequence[int]], list[Any] | None] | None = None
@@ -303,79 +301,22 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     Args:
         partial: outside its domain a function is nan, as in doubles, and so is what is made of that.
     """
-    from mpmath.ctx_mp import MPContext
-    from mpmath.libmp import to_pickable
+    from eomgen.symbolic.numeric.digits import FUNCTIONS, NAN, by_balls, real
 
-    from eomgen.symbolic.numeric.sure_digits import by_balls
-
-    mp = MPContext()
-    mp.dps = 50
-    # The class is this context's own, which pickle does not find by its name.
-    mp.mpf.__reduce__ = lambda x: (_read_again, (partial, to_pickable(x._mpf_)))
-
-    def real(function: Callable[..., Any]) -> Callable[..., Any]:
-        def guarded(*arguments: Any) -> Any:
-            beyond = any(mp.mag(a) > LARGEST_OF_50_DIGITS for a in arguments if a)
-            value = mp.nan if beyond else function(*arguments)
-            if isinstance(value, mp.mpc) or not mp.isfinite(value):
-                if partial:
-                    return mp.nan
+    def finite(function: Callable[..., Any]) -> Callable[..., Any]:
+        def of(*arguments: Any) -> Any:
+            value = function(*arguments)
+            if value != value:
                 raise NoValue("no finite real value")
             return value
 
-        return guarded
+        return of
 
-    names = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()
-    functions = {op: real(getattr(mp, op)) for op in names}
-
-    @lru_cache(maxsize=NUMBERS_KEPT)
-    def number(c: Number) -> Any:
-        return mp.mpf(c.numerator) / c.denominator
-
-    def power(a: Any, b: Any) -> Any:
-        """a ^ b; of an exponent with no digit behind its point the power has no sure digit."""
-        return mp.nan if abs(a) != 1 and a and b and mp.mag(b) > mp.prec else mp.power(a, b)
-
-    own: dict[str, Callable[..., Any]] = {"pow": real(power), "pi": lambda: +mp.pi}
-    own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
-    failed = (lambda x: mp.nan) if partial else _no_value
-    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed, partial_of(by_balls, mp))
-
-
-def of_50_digits(value: float) -> Any:
-    """A float as a number of 50 digits."""
-    return fifty_digits().number(1) * value
-
-
-def _read_again(partial: bool, kept: Any) -> Any:
-    """A number with 50 digits out of a pickle."""
-    from mpmath.libmp import from_pickable
-
-    return fifty_digits(partial).number(1).context.make_mpf(from_pickable(kept))
-
-
-def digits_at(state: Mapping[Node, Any]) -> Callable[[Sequence[Scalar]], list[Any]]:
-    """scalars -> their values at the state, with 50 digits."""
-    return lambda scalars: evaluate(scalars, state, fifty_digits())
-
-
-def solved_quickly(rows: Sequence[Sequence[Any]]) -> list[Any] | None:
-    """x of as many rows [A | b] as unknowns, with 50 digits; None where they are few, or A is nearly singular."""
-    from eomgen.symbolic.numeric.sure_digits import solved_by_balls
-
-    return solved_by_balls(fifty_digits().number(1).context, rows)
-
-
-def sums_of_products(rows: Sequence[Sequence[Any]], columns: Sequence[Sequence[Any]]) -> list[list[tuple[Any, Any]]]:
-    """(row column, |row| |column|) with 50 digits, for each row, in a list for each column."""
-    from eomgen.symbolic.numeric.sure_digits import sums_by_balls
-
-    def both(row: Sequence[Any], column: Sequence[Any]) -> tuple[Any, Any]:
-        terms = [a * b for a, b in zip(row, column, strict=True) if a]
-        return sum(terms), sum(map(abs, terms))
-
-    found = sums_by_balls(fifty_digits().number(1).context, rows, columns) if rows and columns else []
-    return [[both(row, column) for row in rows] for column in columns] if found is None else found
+    number = lru_cache(maxsize=NUMBERS_KEPT)(real)
+    functions = FUNCTIONS if partial else {op: finite(function) for op, function in FUNCTIONS.items()}
+    sampled = {"sampled": lambda t, k: sampled_of(k).at(t, number, FUNCTIONS["pi"]())}
+    failed = (lambda x: NAN) if partial else _no_value
+    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | sampled, failed, by_balls)
 
 
 # -------- batch evaluation ------------------------------------------------------------------------------------

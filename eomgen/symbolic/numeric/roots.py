@@ -19,7 +19,7 @@ from eomgen.frozen import dataclass
 from eomgen.resources import check_patience
 from eomgen.symbolic.expression import Node, Scalar, State, jacobian
 from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.numeric.arithmetic import balls
+from eomgen.symbolic.numeric.arithmetic import is_rounding
 from eomgen.symbolic.numeric.dense import balanced
 from eomgen.symbolic.numeric.evaluation import Layers, NoValue, evaluate, fifty_digits
 
@@ -283,7 +283,7 @@ class Descent:
 
     def _state(self, x: np.ndarray) -> dict[Node, Any]:
         """Values of all symbols at x, with 50 digits."""
-        return dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
+        return dict(self.values) | {node: fifty_digits().number(float(v)) for node, v in self._pairs(x)}
 
     def _measured_at(self, x: np.ndarray) -> Descent:
         """The same with its rows measured by their slopes at x: what is left is then a length.
@@ -319,8 +319,7 @@ class Descent:
 
     def _is_rounding(self, state: State) -> bool:
         """True if each equation is 0 to within the rounding of its terms at 50 digits."""
-        exact = {node: (x, 0) for node, x in state.items()}
-        return all(abs(x) <= reach for x, reach in evaluate(self.equations, exact, balls(50)))
+        return is_rounding(self.equations, state)
 
     def _length(self, step: np.ndarray) -> Any:
         return max(abs(d) / float(c) for d, c in zip(step, self._columns, strict=True))

@@ -37,6 +37,7 @@ REFINED_AT_50 = 1e-16  # of accelerations: their last correction, after which th
 COEFFICIENT_AT_50 = 1e-36  # of a coefficient of a polynomial, made free of units
 MET_AT_50 = 1e-40  # of scaled equations: what is left is the rounding of their evaluation
 SQUARED_AT_50 = 1e-60  # of an entry of the diagonal of M: a sum of squares that cancel
+VANISHED = 1e-100  # [SI] of a number of 480 digits: what is smaller is 0; a root of a root of nothing is 1e-120 wide
 SQUARED_SINE = 1e-24  # of a mass: the square of a sine that is 0 but for rounding; a shift that changes nothing else
 
 # Ranks: singular values of rows brought to length 1 (or balanced), below which a row follows from the others.
