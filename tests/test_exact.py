@@ -161,3 +161,14 @@ def test_a_state_at_which_rounding_decides_says_nothing(graph):
     same = (1 / x + y) * (1 / x + y) - 1 / (x * x) - 2 * y / x
     assert equal_at_real_states([(same, y * y)], given=rows).equal
     assert not equal_at_real_states([(same, y)], given=rows).equal
+
+
+def test_a_difference_that_is_rounding_of_large_numbers_is_none():
+    """L^2 - x^2 - 1, L = sqrt(x^2 + 1), at x = 1e200/3: of 50 digits noise of 1e350, of 480 digits 0; -0.001 is not."""
+    graph = Graph()
+    x = graph.symbol("x")
+    L = graph.sqrt(x * x + 1)
+    state = {x: fifty_digits().number(Fraction(10**200, 3))}
+    for form in (L * (L + x) - x * L - x * x - 1, (L - x) * (L + x) - 1):
+        assert equal_at_real_states([(form, 0)], states=0, given=[[state]]).equal
+        assert not equal_at_real_states([(form, Fraction(1, 1000))], states=0, given=[[state]]).equal

@@ -14,7 +14,7 @@ from flint import arb, arf, ctx
 
 from eomgen.symbolic.expression import Node, Number, Scalar, sampled_of
 from eomgen.symbolic.numeric import tolerances
-from eomgen.symbolic.numeric.digits import ZERO, LongReal, ball_of
+from eomgen.symbolic.numeric.digits import BITS, ZERO, LongReal, ball_of, precision
 from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, evaluate, nearest
 
 # -------- balls -----------------------------------------------------------------------------------------------
@@ -63,16 +63,23 @@ def balls(*, last: bool = False) -> Arithmetic:
 
 
 def in_balls(
-    scalars: Sequence[Scalar], state: Mapping[Node, Any], radii: Mapping[Node, float], *, last: bool = False
+    scalars: Sequence[Scalar],
+    state: Mapping[Node, Any],
+    radii: Mapping[Node, float] | None = None,
+    *,
+    last: bool = False,
+    bits: int = BITS,
 ) -> list[Ball]:
     """Values at a state of numbers of 50 digits, in balls.
 
     Args:
         radii: how far from the true ones values may be.
         last: as of `balls`.
+        bits: with which they are worked.
     """
-    known = {x: ball_of(v, radii.get(x, 0)) for x, v in state.items()}
-    return evaluate(scalars, known, balls(last=last))
+    with precision(bits):
+        known = {x: ball_of(v, (radii or {}).get(x, 0)) for x, v in state.items()}
+        return evaluate(scalars, known, balls(last=last))
 
 
 def is_rounding(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> bool:
