@@ -19,8 +19,7 @@ from eomgen.proof.check import Check, Tally
 from eomgen.proof.declared_loads import declared_pushes
 from eomgen.proof.in_numbers import SECOND_STEP, InNumbers, way_through, with_inputs
 from eomgen.symbolic.expression import Node
-from eomgen.symbolic.numeric import of_50_digits as precise
-from eomgen.symbolic.numeric import tolerances
+from eomgen.symbolic.numeric import fifty_digits, tolerances
 
 HOW = "wrenches about the ground's origin from the numbers that leave; loads as declared, accelerations by differences"
 INERTIA = "inertia"
@@ -60,7 +59,7 @@ def cuts_reported(
         equations: of motion; None where nothing moves.
         numbers: t, q, u, the parameters and the unknowns of loads.
     """
-    known = with_inputs(system, {x: precise(float(v)) for x, v in numbers.items()})
+    known = with_inputs(system, {x: fifty_digits().number(float(v)) for x, v in numbers.items()})
     proof = _Cut(system, known, equations, tuple(pushes))
     return iter((*proof.equilibrium(), *proof.opposites(), *proof.loads(), *proof.inertia()))
 
