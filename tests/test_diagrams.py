@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eomgen
@@ -116,3 +117,64 @@ def test_a_way_from_truss_to_truss_names_both_nodes():
     found = eomgen.statics(eomgen.loads(text), influence="reaction_n(T2)")
     assert found.certify().ok
     assert "T.n1-U.n1" in [span.name for span in found.influence.spans]
+
+
+def laid_out(found) -> Figure:
+    """The figure of a result, drawn."""
+    figure = Figure(figsize=found.picture.size)
+    FigureCanvasAgg(figure)
+    found.picture.fill(figure)
+    figure.canvas.draw()
+    return figure
+
+
+def named(panel) -> set[str]:
+    """Names beside places that found room."""
+    return {text for artist in panel.artists if isinstance(artist, NamesArtist) for text, _ in artist.areas}
+
+
+GERBER = BEAM.replace(
+    "[constraints]",
+    "[bodies.more]\npoints = { E = [6, 0], G = [9, 0] }\n[constraints]\n"
+    'E = { kind = "pin", points = ["beam.tip", "more.E"] }\n'
+    'G = { kind = "support", point = "more.G", normal = [0, 1] }',
+)
+
+
+@pytest.mark.parametrize("text, ends", [(BEAM, [(0, 6)]), (GERBER, [(0, 6), (6, 9)])])
+def test_the_diagrams_of_beams_in_a_row_stand_below_them(text, ends):
+    """Each panel of N, V, M begins and ends where its beam does on the page, and all of one kind have one scale."""
+    figure = laid_out(eomgen.statics(eomgen.loads(text)))
+    main, *panels = figure.axes
+    for number, (start, end) in enumerate(ends):
+        for panel in panels[3 * number : 3 * number + 3]:
+            left, right = (main.transData.transform((x, 0))[0] for x in (start, end))
+            box = panel.get_window_extent()
+            assert (box.x0, box.x1) == pytest.approx((left, right), abs=0.5)
+    assert len({panel.get_ylim() for panel in panels[2::3]}) == 1
+
+
+def test_letters_alone_have_their_diagrams_with_formulas_and_the_stated_ratio():
+    """M(l/2) = q l^2/8 of a beam on two supports, drawn with l = q = 1; each reaction is named, a zero one too."""
+    text = """
+eomgen = 1
+space = "plane"
+[parameters]
+l = { unit = "m", positive = true }
+q = { unit = "N/m", positive = true }
+[bodies.beam]
+points = { A = [0, 0], B = ["l", 0] }
+[constraints]
+A = { kind = "pin", points = ["beam.A"] }
+B = { kind = "support", point = "beam.B", normal = [0, 1] }
+[forces]
+load = { kind = "distributed", body = "beam", between = ["A", "B"], intensity = [0, "-q"] }
+"""
+    figure = laid_out(eomgen.statics(eomgen.loads(text)))
+    main, N, V, M = figure.axes
+    assert "drawn with l, q = 1" in [each.get_text() for each in figure.texts]
+    assert {"$A_{x}$ = 0"} <= named(main) and len([text for text in named(main) if text.startswith("$A_{y}$ = $")]) == 1
+    assert len(named(M)) == 1 and "8" in named(M).pop()
+    places = np.column_stack(M.lines[1].get_data())
+    assert places[:, 1].max() == pytest.approx(1 / 8, rel=1e-2)
+    assert len(named(V)) == 2 and not named(N)

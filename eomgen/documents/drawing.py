@@ -53,10 +53,12 @@ class Sketch:
     Args:
         system: the system.
         values: of t, the coordinates and the parameters.
+        dimensions: lengths are drawn.
     """
 
     system: System
     values: Mapping[Node, float]
+    dimensions: bool = False
 
     def numbers(self, scalars: Iterable[Scalar]) -> list[float]:
         """Values of scalars in this configuration."""
@@ -75,8 +77,10 @@ class Sketch:
     def drawing(self) -> Drawing:
         """Its scene there, loads and sizes left out."""
         scene = scene_of_system(self.system)
-        scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role not in LOADS))
-        return plane_drawing(SceneNumbers(scene, np.array([self.numbers(scene.values)], dtype=float)))
+        left = LOADS[:-1] if self.dimensions else LOADS
+        scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role not in left))
+        numbers = SceneNumbers(scene, np.array([self.numbers(scene.values)], dtype=float))
+        return plane_drawing(numbers, dimensions=self.dimensions)
 
     def lines(self, link: BodyLink) -> list[np.ndarray]:
         """Lines of the drawing of a body."""
