@@ -9,10 +9,12 @@ import threading
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from fractions import Fraction
 from hashlib import sha256
 from pathlib import Path
 
 import pytest
+from slow_run import usual
 
 import eomgen
 from eomgen.errors import UsageError
@@ -20,6 +22,7 @@ from eomgen.living.parts import Work, WrittenModel, parts_made
 from eomgen.living.server import LiveServer
 from eomgen.living.session import Watcher
 from eomgen.living.state import NAMES, LiveState
+from eomgen.model import model_at
 
 MODELS = Path(__file__).parent.parent / "models"
 PENDULUM = """eomgen = 1
@@ -145,6 +148,34 @@ def test_what_is_out_of_date_is_ended_and_not_kept():
     assert list(begun) == []
     work.begin()
     assert len([each for each in found(PENDULUM, work) if "part" in each]) == len(NAMES)
+
+
+def with_other_values(model: eomgen.Model) -> eomgen.Model:
+    """The model with every number of a parameter a hundredth larger, where it is one still."""
+    values = model.exact_parameters()
+    numbers = [name for name, part in model.parameters.items() if part.value is not None and part.formula is None]
+    for names in (numbers, numbers[:1]):
+        try:
+            return model_at(model, {name: values[name] * Fraction(101, 100) for name in names})
+        except eomgen.EomgenError:
+            continue
+    return model
+
+
+MODELS_WITH_VALUES = usual([path for path in sorted(MODELS.glob("*.toml"))], 12, 5)
+
+
+@pytest.mark.slow
+@pytest.mark.by_model
+@pytest.mark.parametrize("path", MODELS_WITH_VALUES, ids=lambda path: path.stem)
+def test_kept_equations_are_those_of_the_other_values(path):
+    """Where the keys of two models are the same, so is every formula that is shown of their equations."""
+    model = eomgen.load(path)
+    other = with_other_values(model)
+    one, two = WrittenModel(model), WrittenModel(other)
+    if not model.coordinates or one.key("equations") != two.key("equations"):
+        pytest.skip("nothing is kept from one to the other")
+    assert one.made("equations")() == two.made("equations")()
 
 
 # -- state -----------------------------------------------------------------------------------------
@@ -418,6 +449,18 @@ def test_what_is_posted_wrongly_is_refused(file):
             except ConnectionError:  # it is answered, and the rest of what is sent is not read
                 status = 413
             assert status == wanted, what
+    assert file.read_text() == PENDULUM
+
+
+def test_what_may_be_typed_is_offered_and_nothing_written(file):
+    """Kinds of joints inside the quotes of a kind; of a text that is no model nothing; what is no place is refused."""
+    text = PENDULUM + '[bodies.new]\njoint = { kind = "'
+    with served(file, edits=True) as server:
+        status, _, content = asked(server, "/offers?token=TOKEN", "POST", {"text": text, "offset": len(text)})
+        assert status == 200 and {"revolute", "prismatic"} <= {each["label"] for each in json.loads(content)["offers"]}
+        for posted, wanted in (({"text": "x = 1", "offset": 99}, 200), ({"text": text, "offset": "1"}, 400)):
+            status, _, content = asked(server, "/offers?token=TOKEN", "POST", posted)
+            assert status == wanted and not json.loads(content).get("offers")
     assert file.read_text() == PENDULUM
 
 

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 from hashlib import sha256
 from pathlib import Path
 
+import axe_core_python
 import pytest
 from driven_browser import Tab, driven_tab
 from tools import needs
@@ -293,6 +294,38 @@ def test_what_is_typed_is_saved_on_save_and_shown(seen):
     tab.until("document.querySelector('.cm-lint-marker-error')")
     assert tab.value("document.querySelector('#figure svg') !== null")
     assert tab.console == []
+
+
+@needs("chromium")
+def test_names_are_offered_while_one_types(seen):
+    """In the mass of a rod the parameters that begin so; the one that is chosen stands there."""
+    tab = seen.tab
+    tab.value(
+        "(() => { const doc = editor.text(), at = doc.indexOf('mass = \"m1\"') + 8;"
+        " editor.view.dispatch({ selection: { anchor: at } }); editor.view.focus(); })()"
+    )
+    tab.write("m")
+    tab.until("document.querySelector('.cm-tooltip-autocomplete')")
+    labels = tab.value("[...document.querySelectorAll('.cm-completionLabel')].map(each => each.textContent)")
+    assert {"m1", "m2"} <= set(labels)
+    tab.press("Escape")
+    tab.value("editor.set(TEXT_OF_THE_FILE)".replace("TEXT_OF_THE_FILE", json.dumps(TEXT)))
+    tab.until("(document.querySelector('#save').disabled = true)")
+
+
+@needs("chromium")
+def test_the_page_can_be_used_by_all(seen):
+    """axe finds nothing against WCAG A and AA, with a problem shown and without."""
+    axe = (Path(axe_core_python.__file__).parent / "axe.min.js").read_text("utf-8")
+    for text in (TEXT, TEXT.replace('mass = "m1"', 'mass = "nothing"')):
+        if text != TEXT:
+            seen.saved(text)
+        seen.tab.value(axe)
+        found = seen.tab.value(
+            "axe.run(document, { runOnly: ['wcag2a', 'wcag2aa', 'wcag21a', 'wcag21aa'], iframes: false })"
+            ".then(done => done.violations.map(each => [each.id, each.nodes.map(node => node.html.slice(0, 160))]))"
+        )
+        assert found == []
 
 
 @needs("chromium")

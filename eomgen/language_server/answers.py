@@ -98,6 +98,13 @@ def offers_at(written: WrittenText, offset: int) -> list[Offer]:
     return list(dict.fromkeys(found))[:MOST]
 
 
+def offers_in_text(text: str, offset: int) -> list[dict[str, str]]:
+    """Everything that may be typed at a place of a text, as JSON has it; of other TOML nothing."""
+    written = WrittenText(text)
+    found = offers_at(written, min(max(offset, 0), len(text))) if written.is_model else []
+    return [{name: getattr(each, name) for name in Offer.__dataclass_fields__} for each in found]
+
+
 def _headers(written: WrittenText, cursor: Cursor) -> Iterator[Offer]:
     """Tables, and those inside them; of a table of named things the names that are there."""
     for key, (cls, slot) in written.slots_at(cursor.path).items():

@@ -41,6 +41,8 @@ PATIENCE = 30.0  # s for one part
 MOST_KEPT = 64  # parts
 OF_THE_TEXT = ("figure", "degrees_of_freedom", "equations")
 """Parts that every model has: where one cannot be made, something is wrong with the text."""
+OF_VALUES = ("data", "freedom", "coordinates")
+"""Steps of a derivation that show values, and change with them."""
 STILL = "nothing moves: the model has no coordinates"
 
 Finding = dict[str, Any]
@@ -210,7 +212,7 @@ class WrittenModel:
         ]
         return {
             "html": document_html(document, lambda step: step.key in result),
-            "derivation": document_html(document, lambda step: step.key not in {*result, "data", "freedom"}),
+            "derivation": document_html(document, lambda step: step.key not in {*result, *OF_VALUES}),
             "text": lines,
             "latex": equations_latex(document),
         }

@@ -28,8 +28,11 @@ from eomgen.living.state import LiveState
 from eomgen.page import in_a_row, page_style
 
 ADDRESS = "127.0.0.1"
+KINDS = {"text": str, "sha256": str, "offset": int}
 LARGEST = 1_000_000  # bytes of a model
 BREATH = 10.0  # s between two signs of life of a stream
+OWN_SITES = ("none", "same-origin")
+"""Who asks, as a browser says: a person who typed the address, or the page itself."""
 POLICY = (
     "default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; style-src-attr 'unsafe-inline'; "
     "connect-src 'self'; img-src data:; font-src data:; frame-src 'self'; base-uri 'none'; form-action 'none'; "
@@ -104,7 +107,7 @@ class _Handler(BaseHTTPRequestHandler):
         )
 
     def do_POST(self) -> None:
-        self._answered({"/model": self._write})
+        self._answered({"/model": self._write, "/offers": self._offers})
 
     def log_message(self, format: str, *args: Any) -> None:
         """Writes no line for each request."""
@@ -134,10 +137,8 @@ class _Handler(BaseHTTPRequestHandler):
         known = hmac.compare_digest(asked.get("token", "").encode(), self.server.token.encode())
         if self.headers.get("Host") not in hosts:
             raise _Refused(HTTPStatus.FORBIDDEN, what="this is another host")
-        if (origin is not None and origin not in [f"http://{host}" for host in hosts]) or site not in (
-            "none",
-            "same-origin",
-        ):
+        own = [f"http://{host}" for host in hosts]
+        if (origin is not None and origin not in own) or site not in OWN_SITES:
             raise _Refused(HTTPStatus.FORBIDDEN, what="another page asks")
         if not known:
             raise _Refused(
@@ -195,7 +196,7 @@ class _Handler(BaseHTTPRequestHandler):
     def _write(self, asked: dict[str, str]) -> None:
         if not self.server.edits:
             raise _Refused(HTTPStatus.FORBIDDEN, what="the file is not written: eomgen live --edit writes it")
-        given = self._given()
+        given = self._given("text", "sha256")
         with self.server.writing:
             now = sha256(self._content()).hexdigest()
             if given["sha256"] != now:
@@ -206,8 +207,15 @@ class _Handler(BaseHTTPRequestHandler):
                 raise _Refused(HTTPStatus.INTERNAL_SERVER_ERROR, what=str(error)) from error
         self._json({"sha256": sha256(given["text"].encode()).hexdigest()})
 
-    def _given(self) -> dict[str, str]:
-        """The posted text, and the digest of what it was made of.
+    def _offers(self, asked: dict[str, str]) -> None:
+        """Offers of what may be typed at a place of a text: nothing is written."""
+        from eomgen.language_server import offers_in_text  # loads what this program needs for nothing else
+
+        given = self._given("text", "offset")
+        self._json({"offers": offers_in_text(given["text"], given["offset"])})
+
+    def _given(self, *keys: str) -> dict[str, Any]:
+        """The posted text, and what else is named, an int or a text.
 
         Raises:
             _Refused: it is too long, or something else.
@@ -217,15 +225,16 @@ class _Handler(BaseHTTPRequestHandler):
             raise _Refused(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, what="a model has at most 1 MB")
         if self.headers.get_content_type() != "application/json":
             raise _Refused(HTTPStatus.UNSUPPORTED_MEDIA_TYPE, what='post JSON: {"text": ..., "sha256": ...}')
+        body = self.rfile.read(int(length))
         try:
-            given = json.loads(self.rfile.read(int(length)))
-            whole = isinstance(given["text"], str) and isinstance(given["sha256"], str)
+            given = {key: json.loads(body)[key] for key in keys}
+            whole = all(isinstance(each, KINDS[key]) for key, each in given.items())
             whole = whole and len(given["text"].encode()) <= LARGEST
         except (ValueError, KeyError, TypeError, RecursionError):
             whole = False
         if not whole:
-            raise _Refused(HTTPStatus.BAD_REQUEST, what='post {"text": ..., "sha256": of what was read}')
-        return {"text": given["text"], "sha256": given["sha256"]}
+            raise _Refused(HTTPStatus.BAD_REQUEST, what=f"post JSON with {', '.join(keys)}")
+        return given
 
     def _content(self) -> bytes:
         """The file as it is now; b"" where it is gone."""

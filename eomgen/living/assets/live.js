@@ -180,7 +180,12 @@ async function writing() {
   place("writing").hidden = false;
   document.body.classList.add("edits");
   const make = window.eomgenEditor ?? plainEditor;
-  editor = make(place("editor"), looked, save, document.querySelector("script[nonce]").nonce);
+  const offers = async (text, offset) => {
+    const body = JSON.stringify({ text, offset });
+    const answer = await fetch(at("/offers"), { method: "POST", headers: { "Content-Type": "application/json" }, body });
+    return answer.ok ? (await answer.json()).offers : [];
+  };
+  editor = make(place("editor"), looked, save, document.querySelector("script[nonce]").nonce, offers);
   read = await taken();
   editor.set(read.text);
   looked();

@@ -29,17 +29,20 @@ const colours = HighlightStyle.define([
     { tag: [tags.bracket, tags.meta], color: "var(--c3)" },
 ]);
 
-/** Words of the text that begin as the one before the cursor does: names are declared in it. */
-function namesOfTheText(context) {
-    const word = context.matchBefore(/[A-Za-z_]\w*/);
-    if (!word || (word.from === word.to && !context.explicit)) return null;
-    const text = context.state.doc.toString(), found = new Set(text.match(/\b[A-Za-z_]\w+\b/g) ?? []);
-    found.delete(word.text);
-    return { from: word.from, options: [...found].map(label => ({ label })), validFor: /^\w*$/ };
-}
+const TYPES = { table: "namespace", kind: "class", field: "property", name: "variable", function: "function", word: "constant" };
+
+/** What `offers(text, offset)` gives for the place before the cursor; the offset counts characters. */
+const completed = offers => async context => {
+    const word = context.matchBefore(/[A-Za-z_][\w.]*'*/), before = context.matchBefore(/["[.=]\s?/);
+    if (!word && !before && !context.explicit) return null;
+    const text = context.state.doc.toString(), offset = Array.from(text.slice(0, context.pos)).length;
+    const found = await offers(text, offset);
+    const options = found.map(each => ({ label: each.label, type: TYPES[each.kind], detail: each.detail, info: each.about || undefined, apply: each.insert || each.label }));
+    return options.length ? { from: word ? word.from : context.pos, options, validFor: /^[\w.]*'*$/ } : null;
+};
 
 /** An editor below `parent`: what `live.js` needs of it. */
-window.eomgenEditor = (parent, changed, save, nonce) => {
+window.eomgenEditor = (parent, changed, save, nonce, offers) => {
     const quiet = { now: false };
     const view = new EditorView({
         parent,
@@ -47,12 +50,12 @@ window.eomgenEditor = (parent, changed, save, nonce) => {
             extensions: [
                 EditorView.cspNonce.of(nonce), lineNumbers(), lintGutter(), history(), drawSelection(), bracketMatching(), closeBrackets(),
                 highlightActiveLine(), highlightSelectionMatches(), StreamLanguage.define(toml), syntaxHighlighting(colours), look,
-                autocompletion({ override: [namesOfTheText] }),
+                autocompletion({ override: [completed(offers)] }),
                 keymap.of([
                     { key: "Mod-s", preventDefault: true, run: () => { save(); return true; } },
                     ...closeBracketsKeymap, ...defaultKeymap, ...searchKeymap, ...historyKeymap, ...completionKeymap, ...lintKeymap,
                 ]),
-                EditorView.contentAttributes.of({ "aria-label": "The model" }),
+                EditorView.contentAttributes.of({ "aria-label": "The model", tabindex: "0" }),
                 EditorView.updateListener.of(update => { if (update.docChanged && !quiet.now) changed(); }),
             ],
         }),
