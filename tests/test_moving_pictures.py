@@ -401,3 +401,27 @@ def test_what_lies_on_the_ground_is_drawn_in_every_phase():
         for x in scalars_of(mark.form):
             column = numbers.value(x)
             assert np.isfinite(column).all() and (column == column[0]).all()
+
+
+@pytest.mark.parametrize(
+    ("name", "start"),
+    [("cart_pole", {"x'": 20.0}), ("rolling_disc", {}), ("cart_pole", {})],
+    ids=["plane", "space", "near"],
+)
+def test_a_picture_goes_with_what_goes_far(name, start):
+    """Of 80 m the machine is no dot: the drawing moves back by the way of the bodies' middle; near, nothing does."""
+    run = eomgen.simulate(eomgen.load(MODELS / f"{name}.toml"), time=4 if start else 10, samples=201, start=start)
+    movie = movie_of(run, np.linspace(0, run.t[-1], 9))
+    if name == "cart_pole" and not start:
+        assert movie.shown is movie.drawing
+        return
+    sizes = movie.shown.sizes
+    assert 0.5 * sizes.at_first < sizes.extent < 6 * sizes.at_first < movie.drawing.sizes.extent
+    for one, other in zip(movie.drawing.strokes, movie.shown.strokes, strict=True):
+        if one.role == "body":
+            back = (one.path - other.path).reshape(9, -1, len(sizes.low))
+            assert np.abs(back - movie.gone[:, None]).max() < 1e-9
+            inside = other.path.reshape(-1, len(sizes.low))
+            assert ((inside > sizes.low - 1e-9) & (inside < sizes.high + 1e-9)).all()
+    assert np.abs(movie.gone).max() > 6
+    assert moving_picture._tallness(movie) > 0.3

@@ -17,6 +17,7 @@ from tools import needs
 
 import eomgen
 from eomgen.cli import main
+from eomgen.page.animation import Showing, player
 from eomgen.page.playing import play
 from eomgen.scene.frames_of_phases import phase_frames
 
@@ -275,3 +276,22 @@ def test_each_phase_is_drawn_by_its_own_coordinates(name):
     places = np.column_stack([frames[:, v[0]] if isinstance(v, list) else np.full(len(frames), v) for v in pose[:2]])
     steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
     assert np.isfinite(steps).all() and steps.max() < 0.2
+
+
+def test_a_page_in_the_plane_goes_with_what_goes_far():
+    """A cart at 20 m/s for 4 s: the machine fills the picture all the time, its middle stays in the middle."""
+    run = eomgen.simulate(MODELS / "cart_pole.toml", time=4, start={"x'": 20.0})
+    script = """
+        const svg = document.querySelector("svg.stage"), stage = svg.getBoundingClientRect();
+        return [0, 2, 4].map(t => {
+            eomgen.seek(t);
+            const boxes = [...svg.querySelectorAll("g.mark.body")].map(g => g.getBoundingClientRect());
+            const left = Math.min(...boxes.map(b => b.left)), right = Math.max(...boxes.map(b => b.right));
+            const tall = Math.max(...boxes.map(b => b.bottom)) - Math.min(...boxes.map(b => b.top));
+            return [(left - stage.left)/stage.width, (right - stage.left)/stage.width, tall/stage.height];
+        });
+    """
+    seen = visited(player(run, Showing()), script)
+    assert seen.console == ()
+    for left, right, tall in seen.found:
+        assert 0 < left < right < 1 and tall > 0.2

@@ -267,7 +267,8 @@ def _tinted(color: str) -> str:
 
 def limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
     """The corners of the picture: all that is drawn, but for tracks, which go on."""
-    clouds = [s.path.reshape(-1, s.path.shape[-1]) for s in drawing.strokes if s.role != "track"]
+    shown = [s for s in drawing.strokes if s.role != "track" and not drawing.followed]
+    clouds = [s.path.reshape(-1, s.path.shape[-1]) for s in shown]
     cloud = np.vstack([*clouds, drawing.sizes.low[None, :], drawing.sizes.high[None, :]])
     cloud = cloud[np.isfinite(cloud).all(axis=1)]
     margin = MARGIN * (drawing.sizes.unit or 0.03)

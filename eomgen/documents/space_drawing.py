@@ -7,6 +7,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import field
 from functools import cache, cached_property
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -185,8 +186,9 @@ def _sorted_corners(groups: list[np.ndarray], order: np.ndarray) -> Any:
 def page_limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
     """The corners of the page: all that is drawn over all frames, but for lines that go on."""
     view, unit = sight(drawing.sizes.up), drawing.sizes.unit
+    box = np.array(list(product(*zip(drawing.sizes.low, drawing.sizes.high, strict=True))))
     paths = [s.path for s in drawing.strokes if s.role != "track" or s.faces]
-    found = corners_of((path @ view.T[:, :2] for path in (*paths, drawing.sizes.low, drawing.sizes.high)), 2)
+    found = corners_of((path @ view.T[:, :2] for path in ([box] if drawing.followed else [*paths, box[[0, -1]]])), 2)
     low, high = found or (np.zeros(2), np.ones(2))
     low, high = low - MARGIN * unit, high + MARGIN * unit
     size, middle = high - low, 0.5 * (low + high)
@@ -287,7 +289,8 @@ class SpacePicture:
         self.drawing, self.seen = drawing, SpaceView(drawing, colors or {})
         panel.set_aspect("equal")
         panel.axis("off")
-        self.pieces: Any = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
+        look = {"capstyle": "round", "joinstyle": "round", "clip_on": drawing.followed}
+        self.pieces: Any = PolyCollection([], closed=False, **look)
         panel.add_collection(self.pieces, autolim=False)
         low, high = page_limits(drawing)
         panel.set_xlim(low[0], high[0])

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property
 from numbers import Real
 from pathlib import Path
 from typing import Any
@@ -26,6 +27,7 @@ from eomgen.documents import (
     SpacePicture,
     artist_of,
     limits,
+    page_shape,
     sight,
 )
 from eomgen.errors import RunFailed, ToolMissing, UsageError
@@ -39,6 +41,7 @@ from eomgen.scene import (
     Scene,
     SceneFrame,
     SceneNumbers,
+    Stroke,
     VirtualDisplacement,
     corners_of,
     frames_along,
@@ -66,7 +69,7 @@ class Stage:
 
     def __init__(self, panel: Any, movie: Movie) -> None:
         self.panel, self.movie = panel, movie
-        self.space = None if movie.plane else SpacePicture(panel, movie.drawing)
+        self.space = None if movie.plane else SpacePicture(panel, movie.shown)
         self.moving: list[tuple[Any, np.ndarray, bool]] = []
         if self.space is None:
             self._plane_artists()
@@ -81,10 +84,10 @@ class Stage:
         """Makes the artists: still strokes under all moving ones are part of the ground, the rest is drawn anew."""
         self.panel.set_aspect("equal")
         self.panel.axis("off")
-        low, high = limits(self.movie.drawing)
+        low, high = limits(self.movie.shown)
         self.panel.set_xlim(low[0], high[0])
         self.panel.set_ylim(low[1], high[1])
-        strokes = [stroke for stroke in self.movie.drawing.strokes if stroke.path.size]
+        strokes = [stroke for stroke in self.movie.shown.strokes if stroke.path.size]
         for k, stroke in enumerate(strokes):
             artist = artist_of(self.panel, stroke, 0, {}, 1 + k / len(strokes))
             still = np.array_equal(stroke.path, np.broadcast_to(stroke.path[:1], stroke.path.shape), equal_nan=True)
@@ -92,6 +95,7 @@ class Stage:
                 self.moving.append((artist, stroke.path, stroke.filled))
 
     def _page(self, path: np.ndarray) -> np.ndarray:
+        """A way of the ground, on the page as it is where the motion begins."""
         return path if self.space is None else path @ self.space.view.T[:, :2]
 
     @property
@@ -110,7 +114,8 @@ class Stage:
             else:
                 artist.set_data(path[frame, :, 0], path[frame, :, 1])
         for artist, path in self.trails:
-            artist.set_data(*path[: FINE * frame + 1].T)
+            gone = self._page(self.movie.gone[frame])
+            artist.set_data(*(path[: FINE * frame + 1] - gone).T)
 
 
 def images(movies: Sequence[Movie], progress: Progress | None = None) -> Iterator[Any]:
@@ -150,8 +155,10 @@ def images(movies: Sequence[Movie], progress: Progress | None = None) -> Iterato
 
 def _tallness(movie: Movie) -> float:
     """Height over width of the drawing."""
+    if movie.shown.followed:
+        return min(1.4, max(0.35, page_shape(movie.shown)))
     if movie.plane:
-        low, high = limits(movie.drawing)
+        low, high = limits(movie.shown)
     else:
         across = sight(movie.drawing.sizes.up).T[:, :2]
         found = corners_of((s.path[::SPARSE] @ across for s in movie.drawing.strokes if s.role != "track"), 2)
@@ -274,6 +281,7 @@ def on_stderr(done: int, count: int) -> None:
 MOST_FRAMES = 5000
 FPS = (1, 1000)  # the fewest and most frames in a second
 FINE = 8  # places of a trail in a frame
+FAR = 6.0  # times its size: what goes farther is followed
 PERIOD = 2.0  # of a mode as it is shown, and how long it is [s]
 
 
@@ -288,6 +296,7 @@ class Movie:
         title: the text above it.
         timed: the times of frames are shown.
         scene: the scene of the drawing.
+        way: of the bodies on the whole, n x d [m], where they go far: the picture goes with them.
     """
 
     drawing: Drawing
@@ -297,6 +306,18 @@ class Movie:
     title: str = ""
     timed: bool = True
     scene: Scene | None = None
+    way: np.ndarray | None = None
+
+    @cached_property
+    def gone(self) -> np.ndarray:
+        """How far the picture has gone with the bodies by each frame, n x d [m]."""
+        still = np.zeros((len(self.times), len(self.drawing.sizes.low)))
+        return still if self.way is None else self.way - self.way[:1]
+
+    @cached_property
+    def shown(self) -> Drawing:
+        """The drawing as one sees it who goes with the bodies, where they go far."""
+        return self.drawing if self.way is None else _gone_with(self.drawing, self.way[0], self.gone)
 
     @property
     def stands_still(self) -> bool:
@@ -378,7 +399,45 @@ def _trails(
 def _movie(numbers: SceneNumbers, times: np.ndarray, trails: Mapping[str, np.ndarray], title: str = "") -> Movie:
     plane = numbers.scene.plane
     drawing = (plane_drawing if plane else space_drawing)(numbers)
-    return Movie(drawing, times, plane, trails, title, scene=numbers.scene)
+    return Movie(drawing, times, plane, trails, title, scene=numbers.scene, way=_far_way(numbers, drawing))
+
+
+def _far_way(numbers: SceneNumbers, drawing: Drawing) -> np.ndarray | None:
+    """The way of the middle of all bodies, n x d [m], where they go farther than FAR times their size; else None.
+
+    Their size is that of the picture where the motion begins, or how far apart they ever are.
+    """
+    free = [
+        p for frame, (_, p) in zip(numbers.scene.frames, numbers.poses, strict=True) if frame.name and frame.parent < 1
+    ]
+    places = np.stack(free, axis=1) if free else np.full((1, 1, 1), np.nan)
+    if not np.isfinite(places).all():
+        return None
+    size = max(drawing.sizes.at_first, float(np.max(np.ptp(places, axis=1))))
+    return places.mean(axis=1) if drawing.sizes.extent > FAR * size else None
+
+
+def _gone_with(drawing: Drawing, start: np.ndarray, gone: np.ndarray) -> Drawing:
+    """A drawing from which the way of the bodies is taken; its corners are those of what stays near them."""
+    size = drawing.sizes.at_first
+    strokes = [
+        replace(s, path=s.path - gone.reshape(len(gone), *(1,) * (s.path.ndim - 2), -1)) for s in drawing.strokes
+    ]
+    clouds = [s.path.reshape(-1, len(start)) for s in strokes if s.role != "track"]
+    clouds = [c[(np.abs(c - start) < 0.5 * FAR * size).all(axis=1)] for c in clouds]
+    low, high = corners_of(clouds, len(start)) or (start - 0.5 * size, start + 0.5 * size)
+    sizes = replace(drawing.sizes, low=low, high=high)
+    near = tuple(_floor_nearby(s, 0.5 * (low + high), size) if s.role == "track" and s.faces else s for s in strokes)
+    return Drawing(near, drawing.letters, sizes, followed=True)
+
+
+def _floor_nearby(stroke: Stroke, middle: np.ndarray, size: float) -> Stroke:
+    """A plane on which something goes far: a square of twice its size, below the middle of the picture."""
+    first, second, third = (stroke.path[:, 0, k] for k in range(3))
+    ways = [x / np.linalg.norm(x, axis=1, keepdims=True) for x in (second - first, third - second)]
+    below = first + sum(np.sum((middle - first) * x, axis=1, keepdims=True) * x for x in ways)
+    corners = [below + 0.8 * size * (a * ways[0] + b * ways[1]) for a, b in ((1, 1), (-1, 1), (-1, -1), (1, -1))]
+    return replace(stroke, path=np.stack(corners, axis=1)[:, None])
 
 
 def mode_movies(modes: Modes, count: int, frames: int) -> list[Movie]:

@@ -159,6 +159,7 @@ class PictureSizes:
         scales: (role, unit of quantity) -> metres for a unit of an arrow.
         dimensions: dimension lines and angles are drawn.
         up: against the weight where the motion begins, else z.
+        at_first: the larger side of what is solid in the first frame [m].
     """
 
     unit: float
@@ -167,6 +168,7 @@ class PictureSizes:
     scales: dict[tuple[str, str], float] = field(default_factory=dict)
     dimensions: bool = False
     up: np.ndarray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
+    at_first: float = 1.0
 
     @property
     def extent(self) -> float:
@@ -181,11 +183,16 @@ DrawerTable = Mapping[type[Form], Drawer]
 
 @dataclass(frozen=True)
 class Drawing:
-    """Everything of a picture, in the order in which it is drawn."""
+    """Everything of a picture, in the order in which it is drawn.
+
+    Args:
+        followed: the picture goes with the bodies: its corners are those of `sizes`, whatever lies beyond them.
+    """
 
     strokes: tuple[Stroke, ...]
     letters: tuple[Letter, ...]
     sizes: PictureSizes
+    followed: bool = False
 
 
 def drawn_with(
@@ -208,7 +215,7 @@ def drawn_with(
         for stroke in table[type(m.form)](m.form, m, numbers, flat)[0]
     ]
     low, high, extent = _box(numbers, [stroke for strokes in solid for stroke in strokes], guides)
-    sizes = PictureSizes(symbol * extent, low, high, _scales(numbers, extent), dimensions, _up(numbers))
+    sizes = PictureSizes(symbol * extent, low, high, _scales(numbers, extent), dimensions, _up(numbers), extent)
     strokes: list[Stroke] = []
     letters: list[Letter] = []
     for mark in marks:

@@ -4,6 +4,7 @@ const SVG = "http://www.w3.org/2000/svg";
 const SIZE = 1000;  // of the larger side of what moves, in units of the picture
 const UNIT = 0.028;  // a symbol's unit, of the same
 const LONGEST_ARROW = 0.24;  // the arrow that 98 % of a run's are shorter than, of the same
+const FAR = 6;  // times its size: what goes farther is followed
 const ARROWS = ["force", "reaction", "velocity"];
 const AT_REST = ["dimension", "angle", "axes"];  // what only the picture at rest has
 
@@ -59,28 +60,21 @@ export class PlaneView {
 
     /** How large the picture is, for frames of a run, and how long its arrows are. */
     fit(frames) {
-        const { scene } = this, low = [Infinity, Infinity], high = [-Infinity, -Infinity], sizes = {};
-        for (const frame of frames) {
-            const value = v => numberIn(frame, v);
-            for (const mark of scene.marks) {
-                if (ARROWS.includes(mark.role)) {
-                    if (mark.kind !== "arrow") continue;
-                    const size = Math.hypot(...mark.vector.map(value));
-                    if (size === size) (sizes[mark.role + mark.unit] ??= []).push(size);
-                    continue;
-                }
-                for (const point of extremes(mark, value)) {
-                    const at = inGround(scene, frame, mark.frame, point);
-                    for (let i = 0; i < 2; i++) if (Number.isFinite(at[i])) {
-                        low[i] = Math.min(low[i], at[i]);
-                        high[i] = Math.max(high[i], at[i]);
-                    }
-                }
-            }
+        const { scene } = this, sizes = {};
+        for (const frame of frames) for (const mark of scene.marks) {
+            if (mark.kind !== "arrow" || !ARROWS.includes(mark.role)) continue;
+            const size = Math.hypot(...mark.vector.map(v => numberIn(frame, v)));
+            if (size === size) (sizes[mark.role + mark.unit] ??= []).push(size);
         }
-        const extent = Math.max(high[0] - low[0], high[1] - low[1], 1e-9);
-        const size = Number.isFinite(extent) ? extent : 1;
+        let [low, high] = this._corners(frames);
+        const side = ([a, b]) => Math.max(b[0] - a[0], b[1] - a[1]);
+        const whole = Math.max(side([low, high]), 1e-9), first = side(this._corners(frames.slice(0, 1)));
+        const solid = Math.max(first, ...frames.map(frame => this._spread(frame)));
+        this.away = solid > 0 && whole > FAR*solid ? this._middle(frames[0]) : null;
+        if (this.away) [low, high] = this._corners(frames, frame => this._middle(frame).map((v, i) => v - this.away[i]), FAR*solid/2);
+        const extent = this.away ? Math.max(side([low, high]), first) : whole, size = Number.isFinite(extent) ? extent : 1;
         this.k = SIZE/size;
+        this.reach = 1.6*SIZE*Math.max(1, Number.isFinite(whole) ? whole/size : 1);
         this.unit = UNIT*SIZE;
         for (const [key, values] of Object.entries(sizes)) {
             const most = values.sort((a, b) => a - b)[Math.floor(0.98*(values.length - 1))];
@@ -88,11 +82,52 @@ export class PlaneView {
         }
         const pad = 0.09*SIZE, wide = Math.max(this.k*(high[0] - low[0]), 0.5*SIZE), tall = Math.max(this.k*(high[1] - low[1]), 0.4*SIZE);
         const middle = [this.k*(low[0] + high[0])/2, -this.k*(low[1] + high[1])/2];
-        const box = [middle[0] - wide/2 - pad, middle[1] - tall/2 - pad, wide + 2*pad, tall + 2*pad];
-        this.svg.setAttribute("viewBox", box.map(v => v.toFixed(1)).join(" "));
-        this.box = box;
+        this.box = [middle[0] - wide/2 - pad, middle[1] - tall/2 - pad, wide + 2*pad, tall + 2*pad];
+        this._looked(frames[0]);
         this.resized();
         for (const layer of this.layers) layer.drawn = false;
+    }
+
+    /** The corners of all that is drawn in some frames; of what has gone `gone(frame)` and stays within a reach, of that. */
+    _corners(frames, gone = () => [0, 0], reach = Infinity) {
+        const low = [Infinity, Infinity], high = [-Infinity, -Infinity];
+        for (const frame of frames) {
+            const off = gone(frame), value = v => numberIn(frame, v);
+            for (const mark of this.scene.marks) if (!ARROWS.includes(mark.role)) for (const point of extremes(mark, value)) {
+                const at = inGround(this.scene, frame, mark.frame, point).map((v, i) => v - off[i]);
+                if (reach < Infinity && at.some((v, i) => Math.abs(v - this.away[i]) > reach)) continue;
+                for (let i = 0; i < 2; i++) if (Number.isFinite(at[i])) {
+                    low[i] = Math.min(low[i], at[i]);
+                    high[i] = Math.max(high[i], at[i]);
+                }
+            }
+        }
+        return [low, high];
+    }
+
+    /** Where the bodies are, each its own place. */
+    _places(frame) {
+        return this.scene.frames.filter(({ parent }, k) => k && parent < 1).map(({ pose }) => spotIn(frame, pose.slice(0, 2)));
+    }
+
+    /** Where the bodies are on the whole. */
+    _middle(frame) {
+        const places = this._places(frame);
+        return [0, 1].map(i => places.reduce((sum, at) => sum + at[i], 0)/(places.length || 1));
+    }
+
+    /** How far apart the bodies are. */
+    _spread(frame) {
+        const places = this._places(frame);
+        return places.length ? Math.max(...[0, 1].map(i => Math.max(...places.map(at => at[i])) - Math.min(...places.map(at => at[i])))) : 0;
+    }
+
+    /** Puts the picture where it is looked at: one goes with what goes far. */
+    _looked(frame) {
+        const off = this.away && frame ? this._middle(frame).map((v, i) => v - this.away[i]) : [0, 0];
+        if (!off.every(Number.isFinite)) return;
+        const box = [this.box[0] + this.k*off[0], this.box[1] - this.k*off[1], ...this.box.slice(2)];
+        this.svg.setAttribute("viewBox", box.map(v => v.toFixed(1)).join(" "));
     }
 
     /** Text keeps its size on the screen. */
@@ -106,6 +141,7 @@ export class PlaneView {
     }
 
     update(frame) {
+        if (this.away) this._looked(frame);
         const where = this._placed(frame);
         for (const layer of this.layers) {
             if (layer.frame) layer.holder.setAttribute("transform", where[layer.frame]);
@@ -216,7 +252,7 @@ export class PlaneView {
 
     _track(mark, value, at) {
         const [x, y] = at(mark.at, value), [dx, dy] = [value(mark.along[0]), -value(mark.along[1])], n = Math.hypot(dx, dy);
-        const long = 1.6*SIZE/n, a = [x - long*dx, y - long*dy], b = [x + long*dx, y + long*dy];
+        const long = this.reach/n, a = [x - long*dx, y - long*dy], b = [x + long*dx, y + long*dy];
         if (!mark.normal) return outline([a, b]);
         const [nx, ny] = [value(mark.normal[0]), -value(mark.normal[1])], m = Math.hypot(nx, ny), deep = 0.6*this.unit/m;
         const below = ([px, py]) => [px - deep*nx, py - deep*ny];
