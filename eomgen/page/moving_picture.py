@@ -310,7 +310,7 @@ class Movie:
 
     @cached_property
     def gone(self) -> np.ndarray:
-        """How far the picture has gone with the bodies by each frame, n x d [m]."""
+        """Way by which the picture has gone with the bodies by each frame, n x d [m]."""
         still = np.zeros((len(self.times), len(self.drawing.sizes.low)))
         return still if self.way is None else self.way - self.way[:1]
 
