@@ -84,7 +84,7 @@ class Work:
             self._kept.pop(next(iter(self._kept)))
         return found
 
-    def limited(self, seconds: float, make: Callable[[], Any]) -> Any:
+    def limited(self, seconds: float | None, make: Callable[[], Any]) -> Any:
         """make(), given up after so many seconds, or when it is stopped.
 
         Raises:
@@ -102,13 +102,13 @@ class Work:
                     self._end = None
 
 
-def parts_made(data: bytes, name: str, title: str, work: Work, seconds: float = PATIENCE) -> Iterator[Finding]:
+def parts_made(data: bytes, name: str, title: str, work: Work, seconds: float | None = PATIENCE) -> Iterator[Finding]:
     """Problems and parts of a model's text, in the order in which they are found; fewer where the work is stopped.
 
     Args:
         name: of the file, in problems.
         title: of a model that gives itself none.
-        seconds: the time for one part.
+        seconds: the time for one part; None: no limit.
     """
     try:
         model = loads(data, name, title)
@@ -314,7 +314,6 @@ def _listen(source: IO[str], requests: queue.Queue[dict[str, Any]], work: Work) 
 
 def _make(request: dict[str, Any], work: Work, out: IO[str]) -> None:
     revision, data = request["revision"], b64decode(request["data"])
-    seconds = request.get("seconds") or PATIENCE
-    for finding in parts_made(data, request["name"], request["title"], work, seconds):
+    for finding in parts_made(data, request["name"], request["title"], work, request["seconds"]):
         out.write(json.dumps({"revision": revision, **finding}) + "\n")
     out.write(json.dumps({"revision": revision, "done": True}) + "\n")

@@ -26,7 +26,7 @@ def serve(
     port: int = 0,
     edits: bool = False,
     opens: bool = True,
-    seconds: float | None = None,
+    seconds: float | None = 30.0,
     say: Callable[[str], object] = print,
 ) -> None:
     """Serves the page of a model's file until it is interrupted.
@@ -35,7 +35,7 @@ def serve(
         port: 0: any that is free.
         edits: the page may write the file.
         opens: the page is opened in a browser, where there is one.
-        seconds: the time for one part; None: the usual one.
+        seconds: the time for one part; None: no limit.
         say: takes the address.
     Raises:
         UsageError: the port is taken.
