@@ -425,3 +425,41 @@ def test_a_picture_goes_with_what_goes_far(name, start):
             assert ((inside > sizes.low - 1e-9) & (inside < sizes.high + 1e-9)).all()
     assert np.abs(movie.gone).max() > 6
     assert moving_picture._tallness(movie) > 0.3
+
+
+def test_weights_springs_and_reactions_are_arrows_of_one_scale():
+    """At rest m g = k (l - l_0), m g = R: the arrows at the hanging mass are as long, those at the rod, of half its
+    mass, half as long; the spring that is slack has none."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    [points]
+    A = [1, 2]
+    B = [2, 0.5]
+    [coordinates]
+    y = { start = 1 }
+    phi = { start = "-pi/2" }
+    [bodies.mass]
+    mass = 4
+    joint = { kind = "prismatic", at = [1, 0], axis = [0, 1], displacement = "y" }
+    [bodies.rod]
+    shape = { kind = "rod", mass = 2, length = 1 }
+    joint = { kind = "revolute", at = [3, 1.5], angle = "phi" }
+    [forces]
+    weight = { kind = "gravity", acceleration = [0, -10] }
+    hung = { kind = "spring", points = ["A", "mass.origin"], stiffness = 100, length = 0.6 }
+    slack = { kind = "spring", points = ["B", "rod.end"], stiffness = 100, length = 1 }
+    """
+    run = eomgen.simulate(eomgen.loads(text), time=1, samples=3)
+    movie = movie_of(run, run.t, forces=True)
+    arrows = [s for s in movie.drawing.strokes if s.role in ("force", "reaction") and s.filled]
+    tips = {(s.of, k): s.path[0, 0] for k, s in enumerate(arrows) if np.isfinite(s.path[0]).all()}
+    assert sorted(of for of, _ in tips) == ["hung", "rod", "weight(mass)", "weight(rod)"]
+    at = {"hung": (1, 1), "weight(mass)": (1, 1), "weight(rod)": (3, 1), "rod": (3, 1.5)}
+    away = {of: tip - at[of] for (of, _), tip in tips.items()}
+    long = np.linalg.norm(away["hung"])
+    assert away["hung"] == pytest.approx([0, long], abs=1e-9) and long > 0.1
+    assert away["weight(mass)"] == pytest.approx([0, -long])
+    assert away["weight(rod)"] == pytest.approx([0, -long / 2])
+    (shaft,) = (s.path[0, 0] for s in movie.drawing.strokes if (s.role, s.of, s.filled) == ("reaction", "rod", False))
+    assert shaft == pytest.approx([3, 1.5 - long / 2])

@@ -289,7 +289,7 @@ class SpacePicture:
         self.drawing, self.seen = drawing, SpaceView(drawing, colors or {})
         panel.set_aspect("equal")
         panel.axis("off")
-        look = {"capstyle": "round", "joinstyle": "round", "clip_on": drawing.followed}
+        look: dict[str, Any] = {"capstyle": "round", "joinstyle": "round", "clip_on": drawing.followed}
         self.pieces: Any = PolyCollection([], closed=False, **look)
         panel.add_collection(self.pieces, autolim=False)
         low, high = page_limits(drawing)

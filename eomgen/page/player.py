@@ -33,7 +33,7 @@ from eomgen.proof import (
     pictures_reported,
     states_shown,
 )
-from eomgen.scene import Scene, VirtualDisplacement, joined, phase_frames, reaction_marks, resultants, scene_of_system
+from eomgen.scene import Scene, VirtualDisplacement, force_marks, joined, phase_frames, resultants, scene_of_system
 from eomgen.simulation import PhaseModel, Trajectory
 from eomgen.study import Study
 from eomgen.symbolic.numeric import NoValue, evaluate, fifty_digits, tolerances
@@ -126,7 +126,7 @@ class PlayedRun:
         scene = scene_of_system(self.study.system, self.study.derived)
         values = single_reactions(self.study)
         found = resultants(self.study.system, values)
-        arrows = reaction_marks((resultant, resultant.of(values)) for resultant in found)
+        arrows = force_marks(self.study.system, ((resultant, resultant.of(values)) for resultant in found))
         return replace(scene, marks=(*scene.marks, *arrows))
 
     @property

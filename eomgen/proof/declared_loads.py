@@ -92,6 +92,17 @@ def declared_pushes(system: System, state: State, force: str) -> Pushes:
     return _Declared(system, state).pushes(system.scope.model.forces[force].acts)
 
 
+def placed_pushes(system: System, state: State, acts: Iterable[Act]) -> Iterator[Placed]:
+    """The forces of acts that have a place.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    declared = _Declared(system, state)
+    for act in acts:
+        yield from declared.placed(act)
+
+
 def working_otherwise(equations: EquationsOfMotion, state: State) -> str:
     """Message if the work of Q along a random direction is not that of the declared loads; "".
 
@@ -170,7 +181,7 @@ class _Declared(InNumbers):
                 if body is not None:
                     yield from self._of_couple(body, Vector((0, 0, sign * pull)))
         else:
-            for _, place, force in self._placed(act):
+            for _, place, force in self.placed(act):
                 yield from zip(place, force, strict=True)
 
     def _of_couple(self, body: str, couple: Sequence[Any]) -> Iterator[Term]:
@@ -202,11 +213,12 @@ class _Declared(InNumbers):
                 for body, sign in zip(act.bodies, (1, -1), strict=True):
                     add_push(found, body, Vector((0, 0, sign * pull)), Vector.ZERO)
             elif not isinstance(act, (PushOnCoordinate, GivenEnergy)):
-                for body, place, force in self._placed(act):
+                for body, place, force in self.placed(act):
                     add_push(found, body, self.vector(place).cross(force), force)
         return found
 
-    def _placed(self, act: Act) -> Iterator[Placed]:
+    def placed(self, act: Act) -> Iterator[Placed]:
+        """The forces of an act that has a place."""
         if isinstance(act, PushAt):
             place = self.scene.place(act.point)
             axes = None if act.axes == "ground" else act.axes

@@ -11,6 +11,7 @@ The drawing is read as it is: places on the ground, from the strokes of a pictur
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property, partial
@@ -20,9 +21,10 @@ import numpy as np
 
 from eomgen.frozen import dataclass
 from eomgen.mechanics.kinematics import BodyLink, SystemScene
-from eomgen.model import PointForce, PushAt, Shape, TouchingRound, pose_of
+from eomgen.model import Element, PointForce, PushAt, PushOfMass, Shape, TouchingRound, pose_of
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
+from eomgen.proof.declared_loads import placed_pushes
 from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.reported_run import state_of_row
 from eomgen.simulation import Trajectory
@@ -33,6 +35,8 @@ NAME = "drawn parts are where the model says"
 HOW = "poses and places in 50 digits, shapes by places inside them"
 LARGE_SYMBOL = 0.5  # of all that is drawn; a symbol is a tenth of it
 GRID = np.linspace(0.0, 1.0, 9)  # places inside a shape, along each of its parameters
+WEIGHT = re.compile(r"weight\((.+)\)")
+PLACED = (PushAt, Element)  # acts of a force that has a place
 Corners = tuple[np.ndarray, np.ndarray]
 
 
@@ -366,14 +370,14 @@ class _Shown(InNumbers):
         scales: list[tuple[str, float]] = []
         largest = 0.0
         for arrow in self.picture.arrows:
-            known = self._force(arrow.of) if arrow.role == role == "force" else self._reaction(arrow.of)
+            known = self._force(arrow) if arrow.role == role == "force" else self._reaction(arrow.of)
             if arrow.role != role or known is None:
                 continue
             at, force = known
             along, size = arrow.tip - arrow.begin, float(np.linalg.norm(force))
             largest = max(largest, size)
             length = float(np.linalg.norm(along))
-            if at is not None and min(np.linalg.norm(arrow.tip - at), np.linalg.norm(arrow.begin - at)) > self.near:
+            if at is not None and self._away(arrow, at) > self.near:
                 return f"that of {arrow.of} is not where it acts"
             if (
                 np.linalg.norm(along * size - force * length)
@@ -389,18 +393,26 @@ class _Shown(InNumbers):
         off = next((of for of, scale in scales if scale and abs(scale - common) > tolerances.SAME_ARROW * common), "")
         return f"that of {off} is of another scale" if off else ""
 
-    def _force(self, name: str) -> tuple[np.ndarray | None, np.ndarray] | None:
-        """(place, force) of a force at one point; None of others."""
-        force = self.system.scope.model.forces.get(name)
-        acts = () if force is None else tuple(force.acts)
-        act = acts[0] if len(acts) == 1 else None
-        if not isinstance(act, PushAt) or self.system.symbols.unknowns:
+    def _force(self, arrow: ReportedArrow) -> tuple[np.ndarray | None, np.ndarray] | None:
+        """(place, force) of a force at a point, the weight of a body, or a spring at that of its ends where the arrow
+        is; None of others."""
+        if self.system.symbols.unknowns:
             return None
-        place = self.scene.place(act.point)
-        own = self.vector(self.scene.vector(act.force))
-        pushed = self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
-        at = self.placed(self.scene.position(place))
-        return at, np.array(pushed[: self.d], dtype=float)
+        force, weighed = self.system.scope.model.forces.get(arrow.of), WEIGHT.fullmatch(arrow.of)
+        declared = self.system.scope.model.forces.values() if weighed else [] if force is None else [force]
+        kinds = (PushOfMass,) if weighed else PLACED
+        acts = [act for each in declared for act in each.acts if isinstance(act, kinds)]
+        pushes = [
+            (self.placed(place), np.array([float(x) for x in push[: self.d]]))
+            for body, place, push in placed_pushes(self.system, self.state, acts)
+            if not weighed or body == weighed[1]
+        ]
+        if weighed and pushes:
+            return pushes[0][0], np.sum([push for _, push in pushes], axis=0)
+        return min(pushes, key=lambda one: self._away(arrow, one[0]), default=None)
+
+    def _away(self, arrow: ReportedArrow, at: np.ndarray) -> float:
+        return float(min(np.linalg.norm(arrow.tip - at), np.linalg.norm(arrow.begin - at)))
 
     def _reaction(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
         """(place, resultant) of the reactions of a joint or constraint; None where some have no single value."""

@@ -1,7 +1,7 @@
 """Door of the room: what other rooms may import from `eomgen.scene`."""
 
-# The resultant force of every joint and constraint, on the body that it holds
-from eomgen.scene.connections import reaction_marks as reaction_marks
+# Weights, forces of springs and dampers, and the resultant force of every joint and constraint
+from eomgen.scene.connections import force_marks as force_marks
 
 # Resultants of the joints and constraints all of whose forces are among the names
 from eomgen.scene.connections import resultants as resultants

@@ -55,6 +55,7 @@ from eomgen.symbolic.expression import (
     Vector,
     function,
     is_zero,
+    over,
     substituted,
     symbols_of,
 )
@@ -450,6 +451,32 @@ def applied_marks(system: System) -> Iterator[Mark]:
     yield from _drives(system)
 
 
+def _given(system: System) -> Iterator[Mark]:
+    """Weights at the mass centres, and what springs and dampers do to the bodies at their ends."""
+    motion, model = system.motion, system.scope.model
+    for weight in system.loads.weights:
+        yield Mark(_from(motion.position(weight.place), weight.force), 0, "force", f"weight({weight.place[0]})")
+    for applied in system.loads.applied:
+        if model.forces[applied.name].element is None:
+            continue
+        for load in applied.loads:
+            if isinstance(load, PointForce) and load.place[0] is not None:
+                yield Mark(_from(motion.position(load.place), load.force), 0, "force", applied.name)
+    for effort in system.loads.efforts:
+        link = motion.link(effort.body)
+        w, v = link.S[effort.variable]
+        declared = None if link.joint is None else link.joint.efforts()[effort.variable]
+        drive = 0 if declared is None or declared.drive is None else system.scope.value(declared.drive)
+        size = effort.effort - drive
+        if all(map(is_zero, w)) and not is_zero(size):
+            along = link.pose.R @ (over(size, v @ v) * v)
+            yield Mark(_from(link.pose.point(link.point), along), 0, "force", f"spring({effort.body})")
+
+
+def _from(at: Vector, force: Vector) -> ArrowForm:
+    return ArrowForm(at, force, "N", outward=True)
+
+
 def _known(system: System, v: Vector) -> Vector:
     """A load in which an unknown number, to be found, is drawn as 1."""
     return Vector(substituted(v, dict.fromkeys(system.symbols.unknowns.values(), 1)))
@@ -539,8 +566,10 @@ def _contact(motion: Motion, components: Sequence[Component]) -> Resultant | Non
     return Resultant(owner, pose.point(places.pop()), units) if len(places) == 1 else None
 
 
-def reaction_marks(forces: Iterable[tuple[Resultant, Vector]]) -> Iterator[Mark]:
-    """The resultant force of every joint and constraint, on the body that it holds."""
+def force_marks(system: System, forces: Iterable[tuple[Resultant, Vector]]) -> Iterator[Mark]:
+    """Weights, forces of springs and dampers, and the resultant force of every joint and constraint, on the body that
+    it holds."""
+    yield from _given(system)
     for resultant, force in forces:
         yield Mark(ArrowForm(resultant.at, force, "N"), 0, "reaction", resultant.owner)
 

@@ -19,7 +19,7 @@ from eomgen.codegen import compiled, program_of
 from eomgen.mechanics.dynamics import System
 from eomgen.model import Form
 from eomgen.proof import ReportedArrow, ReportedPicture
-from eomgen.scene.connections import Resultant, reaction_marks, resultants
+from eomgen.scene.connections import Resultant, force_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
 from eomgen.scene.strokes import Drawing, SceneNumbers, Stroke
@@ -70,7 +70,7 @@ def _phase_numbers(
             given |= dict(zip(named, force, strict=True))
             padded: list[Scalar] = [*named, 0]
             arrows.append((resultant, Vector(padded[:3])))
-        scene = replace(scene, marks=(*scene.marks, *reaction_marks(arrows)))
+        scene = replace(scene, marks=(*scene.marks, *force_marks(system, arrows)))
     else:
         scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role != "force"))
     x = _states(system, columns, times)

@@ -34,6 +34,8 @@ SIDES_OF_NAMES = (
     (-0.6, -0.6, -0.7),
 )  # the first, the second, ...
 QUANTILE = 0.98  # of all arrows of a kind are no longer than that
+FORCES = ("force", "reaction")
+"""Roles of forces, drawn to one scale."""
 SOLID = frozenset(("body", "inertia", "member", "string", "spring", "damper", "joint", "support", "center"))
 """Roles that make up the extent of a picture."""
 
@@ -296,14 +298,18 @@ def corners_of(clouds: Iterable[np.ndarray], d: int) -> tuple[np.ndarray, np.nda
 
 
 def _scales(numbers: SceneNumbers, extent: float) -> dict[tuple[str, str], float]:
-    """Scales of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW."""
+    """Scales of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW.
+
+    What is applied and what joints do have one scale.
+    """
     sizes: dict[tuple[str, str], list[np.ndarray]] = {}
     for mark in numbers.scene.marks_of_kind("arrow"):
         form: Any = mark.form
         sizes.setdefault((mark.role, form.unit), []).append(np.linalg.norm(numbers.vector(form.vector), axis=1))
     found = {}
-    for key, each in sizes.items():
-        known = np.concatenate(each)
+    for key in sizes:
+        alike = [(role, key[1]) for role in (FORCES if key[0] in FORCES else key[:1])]
+        known = np.concatenate([size for one in alike for size in sizes.get(one, [])])
         known = known[np.isfinite(known)]
         largest = float(np.quantile(known, QUANTILE)) if len(known) else 0.0
         found[key] = ARROW * extent / largest if largest > 0 else 0.0

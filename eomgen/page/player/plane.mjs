@@ -8,6 +8,9 @@ const FAR = 6;  // times its size: what goes farther is followed
 const ARROWS = ["force", "reaction", "velocity"];
 const AT_REST = ["dimension", "angle", "axes"];  // what only the picture at rest has
 
+/** What arrows of one scale share: what is applied and what joints do have the same. */
+export const scaleOf = mark => (mark.role === "reaction" ? "force" : mark.role) + mark.unit;
+
 export function element(name, attributes = {}, parent = null) {
     const made = document.createElementNS(SVG, name);
     for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
@@ -64,7 +67,7 @@ export class PlaneView {
         for (const frame of frames) for (const mark of scene.marks) {
             if (mark.kind !== "arrow" || !ARROWS.includes(mark.role)) continue;
             const size = Math.hypot(...mark.vector.map(v => numberIn(frame, v)));
-            if (size === size) (sizes[mark.role + mark.unit] ??= []).push(size);
+            if (size === size) (sizes[scaleOf(mark)] ??= []).push(size);
         }
         let [low, high] = this._corners(frames);
         const side = ([a, b]) => Math.max(b[0] - a[0], b[1] - a[1]);
@@ -227,7 +230,7 @@ export class PlaneView {
             case "arrow": {
                 const words = mark.text ? text() : null;
                 return (frame, value) => {
-                    const tip = at(mark.at, value), scale = this.k*(this.scales[mark.role + mark.unit] ?? 0);
+                    const tip = at(mark.at, value), scale = this.k*(this.scales[scaleOf(mark)] ?? 0);
                     const v = [scale*value(mark.vector[0]), -scale*value(mark.vector[1])], size = Math.hypot(...v);
                     const [from, to] = mark.outward ? [tip, [tip[0] + v[0], tip[1] + v[1]]] : [[tip[0] - v[0], tip[1] - v[1]], tip];
                     const hidden = !(size > 0.15*this.unit);

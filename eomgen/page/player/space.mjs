@@ -1,5 +1,7 @@
 // Scene, frame -> a picture in space, by three.js; z up. A drag turns it, the wheel or + and - bring it nearer.
 
+import { scaleOf } from "./plane.mjs";
+
 const UNIT = 0.028;  // a symbol's unit, of the extent of what moves
 const FLATTEST = 0.12;  // the shortest half-axis of an ellipsoid that one sees, of its longest
 const FAR = 6;  // times its size at the start: what goes farther is followed
@@ -57,7 +59,7 @@ export class SpaceView {
                 if (ARROWS.includes(part.mark.role)) {
                     if (part.mark.kind !== "arrow") continue;
                     const size = Math.hypot(...part.mark.vector.map(v => typeof v === "number" ? v : frame[v[0]]));
-                    if (size === size) (sizes[part.mark.role + part.mark.unit] ??= []).push(size);
+                    if (size === size) (sizes[scaleOf(part.mark)] ??= []).push(size);
                 } else if (part.holder.visible && part.mark.kind !== "track") {
                     const own = new this.three.Box3().setFromObject(part.holder);
                     if (Number.isFinite(own.min.x + own.max.x)) box.union(own);
@@ -272,7 +274,7 @@ export class SpaceView {
             case "symbol": return this._symbol(mark, value, unit);
             case "point": return at(mesh(new three.SphereGeometry(0.35*unit, 20, 12)), spot(mark.at));
             case "arrow": {
-                const scale = this.scales[mark.role + mark.unit] ?? 0, v = spot(mark.vector).multiplyScalar(scale), tip = spot(mark.at);
+                const scale = this.scales[scaleOf(mark)] ?? 0, v = spot(mark.vector).multiplyScalar(scale), tip = spot(mark.at);
                 return v.length() < 0.15*unit ? null : this._arrow(mark.outward ? tip : tip.clone().sub(v), v, unit, role);
             }
             case "couple": {
