@@ -185,7 +185,7 @@ class Mistakes:
 
     # -- terms of the derivatives --------------------------------------------------------------------
 
-    @cached_property
+    @property
     def _kinetic(self) -> tuple[Contribution, ...]:
         return tuple(part for part in self.whole if not is_zero(part.T))
 

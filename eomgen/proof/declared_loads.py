@@ -607,7 +607,7 @@ class _Strung(InNumbers):
 
     # -- as it is declared -----------------------------------------------------------------------------------
 
-    @cached_property
+    @property
     def _scene(self) -> SystemScene:
         return SystemScene(self.motion, f"constraints.{self.name}")
 

@@ -448,7 +448,7 @@ class Nearby:
         flat = self.at([*(x for row in J for x in row), *bias], state)
         return [flat[n * i : n * i + n] for i in range(len(J))], flat[n * len(J) :]
 
-    @cached_property
+    @property
     def _dependent_u(self) -> tuple[Node, ...]:
         return tuple(x for x in self.equations.symbols.u if x not in self.u)
 

@@ -66,7 +66,7 @@ class Leg:
     def rates(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         return self.code.many(t, x, self.p)
 
-    @cached_property
+    @property
     def integrated(self) -> np.ndarray:
         """Mask of the intervals between neighbouring states that the integrator went through."""
         found = np.diff(self.t) > 0
@@ -357,11 +357,11 @@ class Energies:
         """dH/dt, n [W]."""
         return self._power.many(t, x, self.p)[:, 0] if not is_zero(self.power) else np.zeros(len(t))
 
-    @cached_property
+    @property
     def _energies(self) -> RightHandSide:
         return self._compiled((self.equations.T, self.equations.V, energy_function(self.equations)))
 
-    @cached_property
+    @property
     def _power(self) -> RightHandSide:
         return self._compiled((self.power,))
 

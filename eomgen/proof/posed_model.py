@@ -501,7 +501,7 @@ class _Contact(InNumbers):
                 wrong += f - Vector((n[1], -n[0], 0))
         return any(abs(x) > tolerances.COMPUTED for x in wrong)
 
-    @cached_property
+    @property
     def _scene(self) -> SystemScene:
         return SystemScene(self.motion, f"constraints.{self.name}")
 

@@ -198,7 +198,7 @@ class _Proof:
     def _still(self) -> dict[Node, Any]:
         return {u: self.numbers[u] for u in self.first.system.symbols.u}
 
-    @cached_property
+    @property
     def slopes(self) -> np.ndarray:
         """d a/dq of the coordinates whose variations are free, all speeds x these."""
         columns = []

@@ -77,7 +77,7 @@ class States:
     def _supply(self, states: Iterator[TrialState]) -> Supply:
         return Supply(place for place in states if self._is_near(place.state) and self._satisfied(place.state))
 
-    @cached_property
+    @property
     def _identities(self) -> tuple[Scalar, ...]:
         """Gaps that vanish identically, but not for all values of the coordinates: |1 + s| + |1 - s| - 2."""
         rows = (row for row in self.system.constraints.rows if row.identical and row.gap is not None)

@@ -310,7 +310,7 @@ class _Asking:
 
     model: Model
 
-    @cached_property
+    @property
     def phase(self) -> Study:
         return study_of(self.model)
 

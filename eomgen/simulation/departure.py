@@ -59,7 +59,7 @@ class RestDeparture:
     def t0(self) -> float:
         return float(self.start.get(self.equations.symbols.t, 0.0))
 
-    @cached_property
+    @property
     def _x0(self) -> np.ndarray:
         return np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
 

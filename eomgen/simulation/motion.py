@@ -346,8 +346,8 @@ class FirstTime:
         """
         if not depends_on(self.condition, (*self.equations.symbols.q, *self.equations.symbols.u)):
             return self._at_time(), "integration in time"
-        if self._departure.is_needed:
-            return self._departure.first(self.condition), "energy theorem"
+        if (departure := self._departure()).is_needed:
+            return departure.first(self.condition), "energy theorem"
         run = self._met()
         self._refuse_undetermined(run)
         return self._state(run), "integration in time"
@@ -367,7 +367,6 @@ class FirstTime:
         begun = {node.name: float(self.start[node]) for node in (*symbols.q, *symbols.u)}
         return PhaseStart(self.t0, self._phase.with_rates(self.t0, begun), Configuration())
 
-    @cached_property
     def _departure(self) -> RestDeparture:
         equations = (self.equations, self.accelerations)
         return RestDeparture(*equations, self.exact, self.start, self.values, self._phase, dict(self._here.values))

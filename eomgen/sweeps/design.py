@@ -335,7 +335,7 @@ class SweepPlan:
         names = self.runs.names
         return (*FIXED, *names, *(f"{ask} (asked)" if ask in names else ask for ask in self.requested))
 
-    @cached_property
+    @property
     def hash(self) -> str:
         """Hash of everything on which the numbers depend; a plan of another hash is another sweep."""
         reported = {name: x for name, x in self.as_dict().items() if name not in ("hash", "versions")}

@@ -333,18 +333,22 @@ class SweepKernel:
         return simulator(model, rtol=how.rtol, atol=how.atol, method=how.method)
 
     @cached_property
-    def _outputs(self) -> dict[str, Output]:
-        return {
-            text: requested_of(self.plan.model, text) for text in self.plan.requested if text not in self.plan.slopes
-        }
+    def _outputs(self) -> dict[bool, dict[str, Output]]:
+        """{False: outputs that need the motion, True: those that are solved without it}, by the text of the request."""
+        texts = (text for text in self.plan.requested if text not in self.plan.slopes)
+        found: dict[bool, dict[str, Output]] = {False: {}, True: {}}
+        for text in texts:
+            output = requested_of(self.plan.model, text)
+            found[is_without_motion(output)][text] = output
+        return found
 
-    @cached_property
+    @property
     def _in_motion(self) -> dict[str, Output]:
-        return {text: output for text, output in self._outputs.items() if not is_without_motion(output)}
+        return self._outputs[False]
 
-    @cached_property
+    @property
     def _solved(self) -> dict[str, Output]:
-        return {text: output for text, output in self._outputs.items() if is_without_motion(output)}
+        return self._outputs[True]
 
 
 def is_without_motion(output: Output) -> bool:

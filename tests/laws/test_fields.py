@@ -208,8 +208,8 @@ def test_two_ways_to_the_motion_of_a_point_agree(model):
 def exact_field(seed: int) -> VelocityField:
     """A plane field with exact entries."""
     rng = Random(seed)
-    p, v, a = ((rng.randint(-9, 9), rng.randint(-9, 9), 0) for _ in range(3))
-    return VelocityField(p, v, a, (0, 0, rng.randint(1, 9)), (0, 0, rng.randint(-9, 9)))
+    p, v, a = (Vector((rng.randint(-9, 9), rng.randint(-9, 9), 0)) for _ in range(3))
+    return VelocityField(p, v, a, Vector((0, 0, rng.randint(1, 9))), Vector((0, 0, rng.randint(-9, 9))))
 
 
 @each("seed", range(5))
@@ -236,14 +236,14 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
     rng = Random(seed)
 
     def vector() -> Vector:
-        return (rng.randint(-9, 9), rng.randint(-9, 9), 0 if seed % 2 else rng.randint(-9, 9))
+        return Vector((rng.randint(-9, 9), rng.randint(-9, 9), 0 if seed % 2 else rng.randint(-9, 9)))
 
     field = exact_field(seed) if seed % 2 else VelocityField(*(vector() for _ in range(5)))
     start, end = vector(), vector()
     least = float(evaluate((field.least_speed(start, end, lambda x: x),), {}, fifty_digits())[0])
     speeds = []
     for k in range(2001):
-        place = tuple(a + k / 2000 * (b - a) for a, b in zip(start, end, strict=True))
+        place = start + k / 2000 * (end - start)
         v = field.velocity(place)
         speeds.append(float(v @ v) ** 0.5)
     assert least <= min(speeds) + 1e-12
@@ -252,8 +252,8 @@ def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
 
 def test_a_bar_that_does_not_turn_has_one_speed():
     """omega = 0 divides nothing: |v| of all its points."""
-    assert VelocityField(v=(3, 4, 0)).least_speed((0, 0, 0), (1, 0, 0), lambda x: x) == 5
-    assert VelocityField(v=(3, 4, 12)).least_speed((0, 0, 0), (1, 0, 2), lambda x: x) == 13
+    assert VelocityField(v=Vector((3, 4, 0))).least_speed(Vector.ZERO, Vector((1, 0, 0)), lambda x: x) == 5
+    assert VelocityField(v=Vector((3, 4, 12))).least_speed(Vector.ZERO, Vector((1, 0, 2)), lambda x: x) == 13
 
 
 def test_a_ladder_is_slowest_at_the_foot_of_the_perpendicular():
@@ -302,9 +302,9 @@ a_n = { value = "normal_acceleration(bar.A)", at = "t = 1" }
 def test_curvature_of_an_ellipse():
     """x = a cos t, y = b sin t: rho = b^2/a at the end of the long axis."""
     with pytest.raises(DerivationError, match="at rest"):
-        curvature_radius((0, 0, 0), (1, 0, 0))
+        curvature_radius(Vector.ZERO, Vector((1, 0, 0)))
     a, b = 3, 2
-    assert curvature_radius((0, b, 0), (-a, 0, 0)) == pytest.approx(b**2 / a)
+    assert curvature_radius(Vector((0, b, 0)), Vector((-a, 0, 0))) == pytest.approx(b**2 / a)
 
 
 # -- kinds of motion -------------------------------------------------------------------------------

@@ -307,7 +307,7 @@ class Quantities:
             return self.reactions.multiplier(constraint)
         return DrivingForces(self.system).multiplier(constraint)
 
-    @cached_property
+    @property
     def _acts_at_no_place(self) -> bool:
         """True if the bodies cannot be balanced one by one, as a load acts at no place."""
         try:

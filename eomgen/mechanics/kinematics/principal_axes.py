@@ -136,7 +136,7 @@ class _Tensor:
         rational = self._cubic(I)
         return (self._trigonometric(I), True) if rational is None else (rational, False)
 
-    @cached_property
+    @property
     def _spread(self) -> Scalar:
         """D, the difference of the two moments in the plane of the one pair that is linked."""
         ((i, j),) = self.linked
@@ -146,7 +146,7 @@ class _Tensor:
     def _halves(self, total: Scalar, spread: Scalar) -> tuple[Scalar, Scalar]:
         return self.short(HALF * (total - spread)), self.short(HALF * (total + spread))
 
-    @cached_property
+    @property
     def _is_long(self) -> bool:
         return sum(text_size(x) for row in self.tensor for x in row) > LONGEST
 
@@ -411,11 +411,11 @@ class InertiaSum:
         """x in readable form; what was read once is not read again."""
         return cache(partial(short_form, positive=self.motion.scope.positive))
 
-    @cached_property
+    @property
     def m(self) -> Scalar:
         return self.short(sum(row.sign * row.mass.m for row in self.rows))
 
-    @cached_property
+    @property
     def com(self) -> Vector:
         """The mass centre (without mass, the origin)."""
         if is_zero(self.m):

@@ -59,18 +59,18 @@ class ReferenceMotion:
         """True if the state is one of a steady motion."""
         return self.about == STEADY
 
-    @cached_property
+    @property
     def is_exact(self) -> bool:
         """True if all coordinates and speeds are known in closed form."""
         symbols = self.system.symbols
         return all(x in self.exact for x in (*symbols.q, *symbols.u))
 
-    @cached_property
+    @property
     def at_rest(self) -> bool:
         """True if all speeds are exactly 0."""
         return all(is_zero(self.exact.get(u, u)) for u in self.system.symbols.u)
 
-    @cached_property
+    @property
     def valued(self) -> bool:
         """True if all parameters have values."""
         return not self.system.symbols.parameters.keys() - self.system.scope.model.exact_parameters().keys()

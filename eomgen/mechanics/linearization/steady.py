@@ -158,7 +158,7 @@ class Here:
         assert isinstance(field, Numbers)
         return field.state
 
-    @cached_property
+    @property
     def equations(self) -> LinearEquations:
         return self.reducing.equations
 

@@ -115,7 +115,7 @@ class _StartNumbers:
             self._known[key] = equations_of_motion(system_of(self.model, modes))
         return self._known[key]
 
-    @cached_property
+    @property
     def missing(self) -> tuple[str, ...]:
         known = self.model.exact_parameters()
         return tuple(name for name in self.model.parameters if name not in known)
