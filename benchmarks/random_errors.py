@@ -54,7 +54,7 @@ APART = (
     "templates",
 )
 LEFT_OUT = (
-    *("proof/", "frozen.py", "files.py", "disk_cache.py", "errors.py", "version.py", "cli_errors.py"),
+    *("proof/", "frozen.py", "files.py", "disk_cache.py", "errors.py", "version.py", "cli_common.py"),
     "__init__.py",
 )
 MOST = 3  # runs of one error

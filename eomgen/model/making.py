@@ -1,16 +1,287 @@
 """Declared parts -> a finished Model: fields read, checks made, places on the ground resolved."""
 
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
 from itertools import islice
 from typing import Any, TypeVar
 
-from eomgen.errors import ModelError, Problem
-from eomgen.model.catalog import Catalog
-from eomgen.model.checks.everything import ALL
-from eomgen.model.diagnostics import Diagnostic
-from eomgen.model.fields import Table, WrittenEquation
+from eomgen.errors import ExpressionError, ModelError, Problem
+from eomgen.model.catalog import Catalog, diagnostics_of_one, owner_of
+from eomgen.model.checks.bodies import bodies, numbers
+from eomgen.model.checks.names import equations, formulas, missing_point, names, references, speeds
+from eomgen.model.diagnostics import Diagnostic, nearest, whereabouts
+from eomgen.model.dimensions import dimensions
+from eomgen.model.fields import Leaf, NameRule, Table, WrittenEquation
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import AXES, SIDES
 from eomgen.model.part import Part, read_part
+from eomgen.model.positions import DocumentPath
 from eomgen.model.typed import Typing, typing_of
+from eomgen.symbolic.expression import NAMES, Call, Expression, Reference, parse, rate_of_call
+
+# -------- all checks -------------------------------------------------------------------------------------------
+# Outputs, constraints and forces: fields that go together, and all checks in their order.
+#
+# All checks, in the order in which they are reported for one place.
+
+# -------- outputs ---------------------------------------------------------------------------------------------
+# Outputs: the functions of the motion that they call, and the arguments of each.
+
+
+def outputs(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Diagnostics of unknown functions, of a wrong number of arguments, of arguments that were never declared."""
+    for leaf, expression in catalog.expressions:
+        for call in _calls_in(expression):
+            yield from _call(catalog, leaf, call)
+
+
+def _calls_in(expression: Expression) -> Iterator[Call]:
+    for call in expression.calls:
+        yield call
+        for argument in call.args:
+            if isinstance(argument, Expression):
+                yield from _calls_in(argument)
+
+
+def _call(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Diagnostic]:
+    function = FUNCTIONS.get(call.name)
+    if function is None:
+        there = [name for name in FUNCTIONS if catalog.model.space != "plane" or name[-1] != "z" or name == "omega_z"]
+        fix = rate_of_call(str(call)) or nearest(call.name, [*there, *NAMES])
+        yield Diagnostic(leaf.path, f"unknown function '{call.name}'", fix, call.column, len(call.name))
+        return
+    functions = getattr(leaf.rule, "functions", None)
+    if functions is not None and (call.name not in functions or len(call.args) > 2):
+        what, fix = f"'{call}' cannot stand in {whereabouts(leaf.path)}", f"only {', '.join(functions)} can stand here"
+        few = "name one body, whose axes are meant too"
+        yield Diagnostic(leaf.path, what, few if call.name in functions else fix, call.column, len(call.name))
+        return
+    kinds = function.kinds + (function.more,) * (len(call.args) - len(function.kinds) if function.more else 0)
+    if not function.least <= len(call.args) <= len(kinds):
+        most = len(function.kinds)
+        count = str(most) if most == function.least else f"{function.least} to {most}"
+        count = f"at least {function.least}" if function.more else count
+        what = f"{call.name} takes {count} argument{'' if count in ('1', 'at least 1') else 's'}, not {len(call.args)}"
+        yield Diagnostic(leaf.path, what, f"{call.name}{function.arguments}", call.column, len(call.name))
+        return
+    yield from function.diagnostics(catalog, leaf, call)
+    for argument, kind in zip(call.args, kinds, strict=False):
+        wrong = _argument(catalog, argument, kind)
+        if wrong is not None:
+            what, fix, column, length = wrong
+            yield Diagnostic(leaf.path, f"{what} (in {call})", fix, column, length)
+
+
+def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int, int] | None:
+    """The error of an argument: message, fix, column, length; None if it is right."""
+    if kind == "any":
+        return None
+    if isinstance(argument, Expression):
+        if kind in ("number", "formula"):
+            return None
+        start = min((c for c in argument.columns if c >= 0), default=0)
+        return f"a {kind} is needed, not '{argument.text}'", "", start, len(argument.text)
+    if kind == "side":
+        return None if argument.name in SIDES else _unknown(argument, kind, SIDES)
+    if kind in ("number", "formula"):
+        if "." in argument.name:
+            return _unknown(argument, "name", catalog.allowed[""])
+        try:
+            return _names_in(catalog, parse(argument.name), argument.column)  # L-c reads like a member
+        except ExpressionError as error:
+            return error.what, error.fix, argument.column + error.column, error.length
+    if kind.endswith("axis"):
+        if argument.name in AXES:
+            return None
+        if kind == "axis":
+            return _unknown(argument, kind, AXES)
+    if kind.startswith("point"):
+        wrong = missing_point(catalog, argument.name)
+        return None if wrong is None else (wrong[0], wrong[1], argument.column + wrong[2], wrong[3])
+    if kind == "reaction":
+        return _reaction(catalog, argument)
+    known = _known(catalog, kind)
+    return None if argument.name in known else _unknown(argument, kind, known)
+
+
+def _names_in(catalog: Catalog, expression: Expression, column: int) -> tuple[str, str, int, int] | None:
+    """The first name of a number's expression that nothing declares; the expression stands at the column."""
+    symbols = catalog.allowed[""]
+    unknown = [(name, column + k) for name, k in expression.occurrences if name not in symbols]
+    return _unknown(Reference(*unknown[0]), "name", symbols) if unknown else None
+
+
+def _known(catalog: Catalog, kind: str) -> list[str]:
+    between = {"force between points": "points", "force between bodies": "bodies"}.get(kind)
+    if between is not None:
+        forces = catalog.table("forces").items()
+        return [name for name, part in forces if part and part.element and getattr(part.element, between)]
+    tables = {
+        "body": ("bodies",),
+        "body or force": ("bodies", "forces"),
+        "coordinate": ("coordinates",),
+        "coordinate or speed": ("coordinates", "speeds"),
+        "constraint": ("constraints",),
+        "constraint or truss": ("constraints", "trusses"),
+    }[kind]
+    names = [name for table in tables for name in catalog.table(table)]
+    return [*names, "ground"] if kind == "body" else names
+
+
+def _unknown(argument: Reference, kind: str, known: Any) -> tuple[str, str, int, int]:
+    return f"unknown {kind} '{argument.name}'", nearest(argument.name, known), argument.column, len(argument.name)
+
+
+def _reaction(catalog: Catalog, argument: Reference) -> tuple[str, str, int, int] | None:
+    """The error of a reaction's argument: a constraint, a constraint's side (`B.II`), or a body, for its joint."""
+    owner, dot, side = argument.name.partition(".")
+    constraints, bodies = catalog.table("constraints"), catalog.table("bodies")
+    if owner in constraints:
+        if dot and side not in bodies and side != "ground" and side not in catalog.nodes:
+            return f"unknown body '{side}'", nearest(side, bodies), argument.column + len(owner) + 1, len(side)
+        return None
+    if owner in bodies:
+        return _joint_reaction(catalog, argument, owner, side)
+    jointed = [name for name, part in bodies.items() if part is not None and part.joint is not None]
+    return _unknown(Reference(owner, argument.column), "constraint or joint", [*constraints, *jointed])
+
+
+def _moves_as_given(catalog: Catalog, body: str, joint: Any) -> bool:
+    """True if the position of a body depends on time or a driven coordinate: its joint then has a reaction."""
+    clocks = {"t", *(name for name, part in catalog.table("coordinates").items() if part is not None and part.driven)}
+    clocks |= {constraint.drives() for constraint in catalog.table("constraints").values() if constraint is not None}
+    seats = {("bodies", body, "joint"), ("points", joint.at, "at"), ("points", joint.at)}
+    mine = (expression for leaf, expression in catalog.expressions if {leaf.path[:2], leaf.path[:3]} & seats)
+    return any(name in clocks for expression in mine for name, _ in expression.occurrences)
+
+
+def _joint_reaction(catalog: Catalog, argument: Reference, body: str, side: str) -> tuple[str, str, int, int] | None:
+    part = catalog.table("bodies")[body]
+    if part is None or ("bodies", body, "joint") in catalog.broken:
+        return None
+    if part.joint is None or not (part.joint.carries_reaction or _moves_as_given(catalog, body, part.joint)):
+        held = "has no joint" if part.joint is None else "is placed, which is geometry"
+        fix = "name the constraint that holds it"
+        return f"body '{body}' {held}: it has no reaction of its own", fix, argument.column, len(body)
+    pieces = [piece.name for piece in getattr(part.joint, "pieces", None) or ()]
+    if side and side not in pieces and side not in catalog.table("bodies"):
+        column = argument.column + len(body) + 1
+        return f"the joint of body '{body}' has no '{side}'", nearest(side, filter(None, pieces)), column, len(side)
+    return None
+
+
+# -------- constraints ------------------------------------------------------------------------------------------------
+# Constraints, forces and coordinates: what goes together, what excludes what, and that nothing is idle.
+
+
+_WORD = re.compile(r"[^\W\d]\w*")
+
+
+def constraints(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Diagnostics of fields of constraints and forces that exclude one another, or of which one is missing."""
+    for table in ("constraints", "forces"):
+        for name, part in catalog.table(table).items():
+            if part is None:
+                continue
+            path: DocumentPath = (table, name)
+            if part.one_of:
+                yield from diagnostics_of_one(catalog, path, part, part.one_of)
+            yield from part.diagnostics(path, catalog)
+            if table == "constraints":
+                yield from _on_itself(catalog, path, part)
+            friction = getattr(part, "friction", None)
+            if friction is not None:
+                yield from diagnostics_of_one(catalog, (*path, "friction"), friction, ("coulomb", "viscous"))
+
+
+def _on_itself(catalog: Catalog, path: DocumentPath, part: Any) -> Iterator[Diagnostic]:
+    """Diagnostics of a constraint that joins a body to itself, or the ground to the ground."""
+    name = path[1]
+    bodies = getattr(part, "bodies", None)
+    if bodies and bodies[0] == bodies[1]:
+        yield Diagnostic((*path, "bodies", 1), f"'{name}' gears body '{bodies[0]}' with itself", "name two bodies")
+    points = getattr(part, "points", None) or ()
+    point = getattr(part, "point", None)
+    if any(name not in catalog.point_names() for name in (point, *points) if name is not None):
+        return
+    if point is not None and "." not in point and not part.holds_ground:
+        yield Diagnostic((*path, "point"), f"'{name}' holds '{point}', a point of the ground", "name a point of a body")
+    owners = {owner_of(point) for point in points}
+    if len(owners) == 1 and (len(points) > 1 or "" in owners):
+        whose = f"body '{owner}'" if (owner := owners.pop()) else "the ground"
+        yield Diagnostic((*path, "points"), f"'{name}' joins {whose} to itself", "name points of different bodies")
+
+
+def coordinates(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Diagnostics of coordinates driven twice, or driven and dependent; of starts that a given motion fixes."""
+    for name, part in catalog.table("coordinates").items():
+        if part is None:
+            continue
+        path: DocumentPath = ("coordinates", name)
+        laws = [law for law in ("motion", "rate", "acceleration") if getattr(part, law) is not None]
+        if len(laws) > 1:
+            what = f"coordinate '{name}' is driven twice: {', '.join(laws)}"
+            yield Diagnostic((*path, laws[1]), what, "keep one", key=True)
+        if laws and part.dependent:
+            what = f"coordinate '{name}' is driven and dependent"
+            yield Diagnostic((*path, "dependent"), what, "it is one or the other", key=True)
+        fixed = {"motion": ("start", "speed", "near"), "rate": ("speed", "near"), "acceleration": ("near",)}
+        for key in fixed[laws[0]] if laws else ():
+            if getattr(part, key) is not None:
+                what = f"'{key}' of coordinate '{name}' is given by its '{laws[0]}' already"
+                yield Diagnostic((*path, key), what, "leave it out", key=True)
+
+
+def idle(catalog: Catalog) -> Iterator[Diagnostic]:
+    """Diagnostics of a coordinate, a speed or an input that nothing uses."""
+    used = _used(catalog)
+    for table, kind in (("coordinates", "coordinate"), ("inputs", "input")):
+        for name in catalog.table(table):
+            if name not in used:
+                yield Diagnostic(
+                    (table, name), f"{kind} '{name}' is used by nothing", "use it, or leave it out", key=True
+                )
+    for name, part in catalog.table("speeds").items():
+        broken = ("speeds", name, "rate") in catalog.broken
+        if part is not None and part.rate is None and name not in used and not broken:
+            what = f"speed '{name}' has no 'rate' and no joint names it in 'omega'"
+            yield Diagnostic(("speeds", name), what, "give its 'rate', an expression in the rates", key=True)
+
+
+def _used(catalog: Catalog) -> set[str]:
+    """The names that something uses: an entry of their own table is no use; what could not be read is one."""
+    used: set[str] = set()
+    for leaf, expression in catalog.expressions:
+        if leaf.path[0] not in ("parameters", "coordinates", "speeds", "inputs"):
+            used.update(name.rstrip("'") for name in expression.names)
+            used.update(a.name for call in expression.calls for a in call.args if not hasattr(a, "code"))
+    used.update(leaf.value for leaf in catalog.leaves if isinstance(leaf.rule, NameRule))
+    for name, part in catalog.table("speeds").items():
+        if name in used and part is not None and part.rate is not None:
+            used.update(x.rstrip("'") for x in part.rate.names)
+    for diagnostic in catalog.found:
+        used.update(_WORD.findall(str(diagnostic.raw)))
+    return used
+
+
+# -------- everything ------------------------------------------------------------------------------------------
+
+
+ALL = (
+    names,
+    references,
+    formulas,
+    dimensions,
+    equations,
+    outputs,
+    numbers,
+    bodies,
+    constraints,
+    coordinates,
+    speeds,
+    idle,
+)
+
 
 MOST_DIAGNOSTICS = 200  # of one model: more say nothing new
 

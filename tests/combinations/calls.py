@@ -23,7 +23,7 @@ from compare import filled, quiet
 from refusals import lacking
 
 import eomgen
-import eomgen.cli_errors
+import eomgen.cli_common
 from eomgen.cli import main
 from eomgen.judge.case import Case
 from eomgen.judge.derivations import judged_derivation
@@ -176,17 +176,17 @@ def by_command(text: str, words: list[str], folder: Path) -> Outcome:
 @contextmanager
 def reported_problems() -> Iterator[list[Any]]:
     """What the command line tells as wrong within it."""
-    own, found = eomgen.cli_errors._reported, []  # type: ignore[var-annotated]
+    own, found = eomgen.cli_common._reported, []  # type: ignore[var-annotated]
 
     def reported(code: int, problems: Any, *rest: Any) -> int:
         found.extend(problems)
         return own(code, problems, *rest)
 
-    eomgen.cli_errors._reported = reported  # type: ignore[assignment]
+    eomgen.cli_common._reported = reported  # type: ignore[assignment]
     try:
         yield found
     finally:
-        eomgen.cli_errors._reported = own
+        eomgen.cli_common._reported = own
 
 
 def _fault(words: list[str], result: Any) -> tuple[str, str]:
@@ -214,7 +214,7 @@ def _refusal(result: Any) -> str:
 
 def _refused(call: str, no: eomgen.EomgenError, text: str, seconds: float) -> Outcome:
     """A refusal in Python: as the command line's."""
-    left = lacking(eomgen.cli_errors.problems_of(no), text)
+    left = lacking(eomgen.cli_common.problems_of(no), text)
     first = str(no).splitlines()[0][:200]
     return Outcome(call, 1, "refusal" if left else "", f"{left}: {first}" if left else "", seconds, first)
 

@@ -37,7 +37,7 @@ from refusals import lacking  # noqa: E402
 from shared import one_model  # noqa: E402
 
 import eomgen  # noqa: E402
-from eomgen.cli_errors import problems_of  # noqa: E402
+from eomgen.cli_common import problems_of  # noqa: E402
 
 LANGUAGES = ((), ("c",), ("javascript",))
 

@@ -34,7 +34,7 @@ from refusals import lacking
 
 import eomgen
 from eomgen.cli import main
-from eomgen.cli_errors import problems_of
+from eomgen.cli_common import problems_of
 from eomgen.model import constraints, forces, joints, shapes
 
 pytestmark = pytest.mark.slow

@@ -17,7 +17,7 @@ from forked import forked, needs_fork
 from slow_run import usual
 
 from eomgen import pipeline
-from eomgen.cli_errors import IN_ASCII, in_ascii
+from eomgen.cli_common import IN_ASCII, in_ascii
 from eomgen.disk_cache import _own_folder
 from eomgen.errors import visible
 from eomgen.simulation import integrator

@@ -18,7 +18,8 @@ from eomgen.mechanics.kinematics import principal_axes as rows
 from eomgen.mechanics.kinematics import symbols as composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.proof.masses import FILLED
-from eomgen.results.mass_properties import result, steps
+from eomgen.results.mass_properties import result
+from eomgen.results.mass_properties import result as steps
 from eomgen.results.mass_properties.result import inertia as verb
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"

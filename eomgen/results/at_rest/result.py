@@ -2,19 +2,65 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from eomgen.documents import Document, Picture, Quantity, Result
-from eomgen.errors import UsageError
+import numpy as np
+
+from eomgen.documents import (
+    Cell,
+    Document,
+    Entry,
+    Formula,
+    Law,
+    Name,
+    Picture,
+    Piece,
+    Quantity,
+    Reader,
+    Result,
+    Sketch,
+    Statement,
+    Step,
+    count,
+    data_step,
+    document_of,
+    draw_model,
+    listed_symbols,
+    narrow_grid,
+    open_at_rest,
+    page,
+    prose,
+    said,
+)
+from eomgen.errors import RunFailed, UsageError
 from eomgen.frozen import dataclass
 from eomgen.mechanics.dynamics import System
-from eomgen.mechanics.free_bodies import RigidBlock, VelocityPlan
+from eomgen.mechanics.equilibrium import (
+    Curve,
+    Equilibria,
+    Equilibrium,
+    ReactionsOrWhy,
+    RestingReaction,
+    Stability,
+    StaticEquations,
+    reactions_or_why,
+)
+from eomgen.mechanics.free_bodies import Reactions, RigidBlock, VelocityPlan
 from eomgen.mechanics.start import shown_numbers
 from eomgen.mechanics.statics import InfluenceLine, RestCondition, StaticReaction, StaticReactions, WorkEquation
-from eomgen.model import Model, ModelOrPath, Values, model_at
-from eomgen.proof import Certificate, Check, DrawnPanel, ReportedWork, certify_structure, diagrams_drawn
+from eomgen.model import Model, ModelOrPath, Unit, Values, model_at
+from eomgen.proof import (
+    Certificate,
+    Check,
+    DrawnPanel,
+    ReportedWork,
+    certify_equilibria,
+    certify_structure,
+    diagrams_drawn,
+)
 from eomgen.resources import doing
 from eomgen.results.at_rest.section_steps import (
     Sections,
@@ -27,14 +73,11 @@ from eomgen.results.at_rest.section_steps import (
 )
 from eomgen.results.at_rest.steps import contacts_step, reported_work, statics_derivation, sum_name
 from eomgen.study import study_at_rest
-from eomgen.symbolic.expression import Scalar
+from eomgen.symbolic.expression import Node, Scalar
 from eomgen.symbolic.numeric import tolerances
 from eomgen.symbolic.print import to_text
 
 MOST_REPORTED = 8  # reactions whose virtual work is read again
-
-if TYPE_CHECKING:
-    from eomgen.results.at_rest.equilibrium import Resting
 
 
 @dataclass(frozen=True)
@@ -254,7 +297,7 @@ def statics(
     model = model_at(model, parameters, start)
     study = study_at_rest(model)
     if study.system.has_degrees_of_freedom:
-        from eomgen.results.at_rest.equilibrium import Resting
+        from eomgen.results.at_rest.result import Resting
 
         _refuse_for_resting(reaction=reaction, influence=influence)
         return Resting(model, study.equilibria)
@@ -276,3 +319,378 @@ def _refuse_for_resting(**requested: str | None) -> None:
                 f"--{name} is of structures that stand, and this system is free to move",
                 fix="without it the equilibria are given",
             )
+
+
+# -------- equilibria -------------------------------------------------------------------------------------------
+# Model -> Resting: the equilibria of a system with degrees of freedom, as a document and as data.
+
+# -------- equilibrium result ----------------------------------------------------------------------------------
+# Model -> Resting: where a system with degrees of freedom is at rest, as a user gets it: step by step, and for
+# machines.
+
+
+METHOD = "equilibrium"
+
+
+@dataclass(frozen=True)
+class Resting(Result):
+    """The equilibria of a system with degrees of freedom.
+
+    Args:
+        model: the system.
+        found: every place, the nearest to the start first.
+    """
+
+    model: Model
+    found: Equilibria
+
+    def __repr__(self) -> str:
+        return f"<statics of {self.model.name!r}: {len(self.places)} equilibria>"
+
+    @property
+    def places(self) -> tuple[Equilibrium, ...]:
+        return self.found.found
+
+    @cached_property
+    def reactions(self) -> ReactionsOrWhy | None:
+        """Reactions at the first equilibrium; None without any equilibrium."""
+        return reactions_or_why(self.places[0]) if self.places else None
+
+    def certify(self) -> Certificate:
+        """Check the places by the balance of forces, and by the equations of motion: nothing is accelerated there."""
+        return certify_equilibria(self.places)
+
+    @cached_property
+    def derivation(self) -> Document:
+        """The way to them, step by step."""
+        model = self.model
+        steps = (data_step(self.found.statics.system), *equilibrium_steps(self.found, self.reactions))
+        return document_of(model, METHOD, steps)
+
+    def entries(self) -> dict[str, Any]:
+        """Entries of the JSON document."""
+        return {
+            "name": self.model.name,
+            "equilibria": [_place(place) for place in self.places],
+            **(_reaction_entries(self.places[0], self.reactions) if self.reactions else {}),
+            "complete": self.found.complete,
+            "where": self.found.where,
+            "indifferent": [q.name for q in self.found.indifferent],
+            "chosen": [q.name for q in self.found.chosen],
+            "held": list(self.found.statics.held),
+        }
+
+    @property
+    def picture(self) -> Picture:
+        """The system in each equilibrium.
+
+        Raises:
+            RunFailed: there is none; the system is in space; parameters have no values.
+        """
+        return resting_picture(self.places)
+
+
+def _place(place: Equilibrium) -> dict[str, Any]:
+    return {
+        "coordinates": {q.name: _of(place, q) for q in place.statics.system.symbols.q},
+        "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
+        "stability": _stability_entry(place.stability),
+        "pulling": list(place.pulling),
+        "passed": list(place.passed),
+        "family": None if place.curve is None else _family(place, place.curve),
+    }
+
+
+def _family(place: Equilibrium, curve: Curve) -> dict[str, Any]:
+    """The places of the curve that were met along it, by coordinate [SI]."""
+    columns = {q.name: curve.points[:, k].tolist() for k, q in enumerate(place.statics.q)}
+    return {"closed": curve.closed, "places": columns}
+
+
+def _reaction_entries(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:
+    """JSON entries of the reactions at the first equilibrium."""
+    _, reactions, why = those
+    numbers = shown_numbers([each.value for each in reactions], place.statics.system.scope.known_exactly)
+    return {
+        "reactions": {
+            each.named.name: Quantity(
+                to_text(each.value) if place.is_exact and each.value is not None else None,
+                number,
+                each.named.unit,
+                "balance of the bodies at rest",
+                None if each.value is not None else "statically indeterminate",
+            )
+            for each, number in zip(reactions, numbers, strict=True)
+        },
+        "message": why or None,
+    }
+
+
+def _of(place: Equilibrium, node: Node) -> Quantity:
+    exact = to_text(place.exact[node]) if node in place.exact else None
+    return Quantity(exact, place.numbers.get(node), unit=None)
+
+
+def _stability_entry(stability: Stability) -> dict[str, Any]:
+    return {
+        "kind": stability.kind,
+        "why": stability.why,
+        "along": [q.name for q in stability.along],
+        "K": [[_entry(x) for x in row] for row in stability.K],
+        "minors": [to_text(x) for x in stability.minors],
+    }
+
+
+def _entry(x: Scalar | float) -> str | float:
+    return x if isinstance(x, float) else to_text(x)
+
+
+MOST = 6  # places that are drawn
+SIDE = 3.4  # of one panel [inches]
+
+
+def resting_picture(places: Sequence[Equilibrium]) -> Picture:
+    """The first equilibria of a plane system.
+
+    Raises:
+        RunFailed: there is none; the system is not plane; parameters have no values.
+    """
+    places = places[:MOST]
+    if not places:
+        raise RunFailed("there is no equilibrium to be drawn", fix="give a start near one")
+    model = places[0].statics.system.scope.model
+    if model.space != "plane":
+        raise RunFailed("pictures of equilibria are drawn of plane systems", fix="take them by value: .places")
+    if not all(place.numbers for place in places):
+        raise RunFailed("a picture needs values of all parameters", fix="give them values in [parameters]")
+    columns = math.ceil(math.sqrt(len(places)))
+    rows = math.ceil(len(places) / columns)
+
+    def fill(figure: Any) -> None:
+        for k, place in enumerate(places, start=1):
+            panel = figure.add_subplot(rows, columns, k)
+            draw_model(panel, _sketch(place), names=k == 1)
+            panel.set_title(f"{k}: {place.stability.kind}", fontsize=10)
+
+    return Picture((SIDE * columns, SIDE * rows), fill, model.name)
+
+
+def _sketch(place: Equilibrium) -> Sketch:
+    symbols = place.statics.system.symbols
+    plain = Sketch(place.statics.system, place.statics.system.scope.known_parameters)
+    inputs = {node: plain.numbers((place.statics.given[node],))[0] for node in symbols.inputs.values()}
+    still = dict.fromkeys((symbols.t, *symbols.u), 0.0)
+    return Sketch(place.statics.system, {**plain.values, **inputs, **still, **place.numbers})
+
+
+# -------- equilibrium steps -----------------------------------------------------------------------------------
+# Equilibria -> the steps that lead to them: the balance at rest, the places, their stability, the reactions there.
+
+
+REST = Law("Q_k = 0", "Q_{k} = 0")
+REST_WITH_CONSTRAINTS = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
+STIFFNESS = Law(
+    "K = -Z^T*d(Q + J^T*lam)/dq*Z",
+    r"K = -Z^{\mathsf{T}} \frac{\partial (Q + J^{\mathsf{T}} \lambda)}{\partial q} Z",
+)
+SECOND = Law("K = d2V/dq2", r"K = \frac{\partial^{2} V}{\partial q^{2}}")
+ALONG = Law("J*Z = 0", r"J Z = 0")
+MOST_SHOWN = 4  # coordinates of a K that is printed
+
+
+def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tuple[Step, ...]:
+    """The balance at rest, every place, its stability, and the reactions at the nearest one."""
+    scope = found.statics.system.scope
+    reader = Reader(positive=scope.positive)
+    steps: tuple[Step, ...] = (rest_balance_step(found.statics, reader), _places(found))
+    if reactions:
+        steps = (*steps, _stability_step(found), *_reaction_steps(found.found[0], reactions))
+    return reader.with_names(steps, scope)
+
+
+def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
+    """Step with the equations by which the virtual work vanishes for every displacement."""
+    empty = _nowhere(reader, statics)
+    if not statics.q:
+        return Step("balance", "Balance at rest", empty or (prose("No force changes with the place."),))
+    law = REST_WITH_CONSTRAINTS if statics.lam else REST
+    words = "At rest the virtual work of all forces vanishes for every displacement"
+    words += ", those of the constraints included: " if statics.lam else ": "
+    held = open_at_rest(statics.system)
+    if statics.held:
+        held += [prose(f"Driven coordinates are held at their start: {', '.join(statics.held)}.")]
+    forces = _all_forces(reader, statics)
+    own = len(statics.phi) - statics.norms
+    constraints = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
+    constraints += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
+    between = [prose("The constraints hold the coordinates by")] if constraints else []
+    rates = [Formula((reader.shown(x), 0)) for x in statics.sigma]
+    still = [prose("The constraints of velocities leave, where no speed is,")] if rates else []
+    lines = (*held, prose(words, law, "."), *forces, *between, *constraints, *still, *rates, *empty)
+    return Step("balance", "Balance at rest", lines)
+
+
+def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+    """The forces that the values of the parameters make vanish wherever the system is."""
+    if not statics.nowhere:
+        return ()
+    pairs = [(Name("Q", by=q), force) for q, force in statics.nowhere]
+    return (
+        prose("The values of the parameters make vanish, wherever the system is:"),
+        *page(reader, pairs, then=(0,)),
+    )
+
+
+def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+    """The equation along every coordinate; with constraints the multipliers stand in it next to Q."""
+    if not statics.lam:
+        pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
+        others = tuple(Formula((reader.shown(x), 0)) for x in statics.beside)
+        return (*page(reader, pairs, then=(0,)), *others)
+    return tuple(Formula((reader.shown(x), 0)) for x in (*statics.forces, *statics.beside))
+
+
+# -- the places ------------------------------------------------------------------------------------
+
+
+def _places(found: Equilibria) -> Step:
+    statements: list[Statement] = []
+    if found.indifferent:
+        symbols = found.indifferent
+        stay = "it stays where it starts" if len(symbols) == 1 else "they stay where they start"
+        statements.append(prose("No force holds ", *listed_symbols(symbols), f": {stay}."))
+    if found.chosen:
+        stay = "its start: it stays" if len(found.chosen) == 1 else "their start: they stay"
+        any_ = "The velocity constraints let it rest at any "
+        statements.append(prose(any_, *listed_symbols(found.chosen), f" near {stay} there."))
+    if not found.found:
+        statements.append(prose(_how_many(found)))
+        return Step("places", "Equilibria", tuple(statements))
+    units = _declared_units(found.statics.system.scope.model)
+    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place, units)]
+    grid = narrow_grid(("place", "coordinate", "exact", "value", "unit", "stability"), rows)
+    curves = [_curve(k, place, place.curve) for k, place in enumerate(found.found, start=1) if place.curve is not None]
+    passed = [_passed(k, name) for k, place in enumerate(found.found, start=1) for name in place.passed]
+    return Step("places", "Equilibria", (*statements, prose(_how_many(found)), grid, *passed, *curves))
+
+
+def _passed(number: int, name: str) -> Statement:
+    return prose(f"But place {number} lies behind '{name}', which lets nothing pass: it does not hold.")
+
+
+def _declared_units(model: Model) -> dict[str, Unit]:
+    """Units of the coordinates that have one in the file."""
+    return {name: q.unit for name, q in model.coordinates.items() if q.unit is not None}
+
+
+def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
+    """Statement on a curve of equilibria: the coordinate that moves along it, those that follow, those that stay."""
+    model, names = place.statics.system.scope.model, [q.name for q in place.statics.q]
+    points = curve.points[:, : len(names)]
+    moved = np.max(points, axis=0) - np.min(points, axis=0)
+    first = int(np.flatnonzero(moved >= np.max(moved) / 2)[0])
+    low, high = (model.in_own_unit(names[first], float(end(points[:, first])), 4) for end in (np.min, np.max))
+    reported = [
+        f"{names[first]} may be anything" if curve.closed else f"{names[first]} was followed from {low} to {high}"
+    ]
+    for k, name in enumerate(names):
+        if k == first:
+            continue
+        if moved[k] <= tolerances.SAME_PLACE:
+            reported.append(f"{name} = {model.in_own_unit(name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
+            continue
+        offsets = {sign: points[:, k] - sign * points[:, first] for sign in (1, -1)}
+        sign = next((s for s, x in offsets.items() if np.ptp(x) <= tolerances.SAME_PLACE), 0)
+        away = model.in_own_unit(name, float(abs(offsets[sign or 1][0])), 9)
+        plus = "+" if float(offsets[sign or 1][0]) >= 0 else "-"
+        other = f"{'-' if sign < 0 else ''}{names[first]} {plus} {away}"
+        reported.append(f"{name} = {other}" if sign else f"{name} follows it")
+    return prose(f"Place {number} is one of a curve of equilibria, a family: {', '.join(reported)}.")
+
+
+def _how_many(found: Equilibria) -> str:
+    where = f" ({found.where})" if found.where else ""
+    if found.complete:
+        return (
+            f"There is {_places_in_words(len(found.found))}{where}."
+            if len(found.found) == 1
+            else (f"There are {_places_in_words(len(found.found))}{where}.")
+        )
+    many = _places_in_words(len(found.found))
+    return f"Found: {many}{where}. That there are no others is not proved."
+
+
+def _places_in_words(n: int) -> str:
+    return "none" if n == 0 else count(n, "equilibrium", "equilibria")
+
+
+def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tuple[Cell, ...]]:
+    """A coordinate a row, in the unit that the file declares."""
+    rows: list[tuple[Cell, ...]] = []
+    for k, q in enumerate(place.statics.system.symbols.q):
+        exact: Cell = place.exact.get(q, "")
+        unit = units.get(q.name)
+        number_there = place.numbers.get(q)
+        if number_there is not None and unit is not None:
+            number_there = float(unit.from_si(number_there, math.pi))
+        value = "" if number_there is None else f"{number_there:.9g}"
+        shown = "" if unit is None or not value else unit.text
+        rows.append((str(number) if k == 0 else "", q, exact, value, shown, place.stability.kind if k == 0 else ""))
+    return rows
+
+
+# -- stability -------------------------------------------------------------------------------------
+
+
+def _stability_step(found: Equilibria) -> Step:
+    constraints = bool(found.statics.lam)
+    law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if constraints else (SECOND,)
+    statements: list[Statement] = [prose("The second variation of the potential energy decides: ", *law, ".")]
+    for number, place in enumerate(found.found, start=1):
+        statements += _verdict(number, place.stability)
+    return Step("stability", "Stability", tuple(statements))
+
+
+def _verdict(number: int, stability: Stability) -> list[Statement]:
+    words: list[Statement] = [prose(f"Place {number}: {stability.kind}; {stability.why}.")]
+    if not stability.K or len(stability.along) > MOST_SHOWN:
+        return words
+    symmetric = stability.kind != "no potential energy"
+    entries: list[Statement] = []
+    for i, row in enumerate(stability.along):
+        for j, column in enumerate(stability.along):
+            if j >= i or not symmetric:
+                value = stability.K[i][j]
+                shown: Scalar | Law = Law(f"{value:.7g}", f"{value:.7g}") if isinstance(value, float) else value
+                entries.append(Formula((Entry("K", row, column), shown)))
+    minors = [Formula((_leading(n), x)) for n, x in enumerate(stability.minors, start=1) if n > 1]
+    return [*words, *entries, *minors]
+
+
+def _leading(n: int) -> Law:
+    return Law(f"det K_{n}", rf"\det K_{{{n}}}")
+
+
+# -- the reactions ---------------------------------------------------------------------------------
+
+
+def _reaction_steps(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ...]:
+    reactions, found, why = those
+    title = "Reactions at place 1"
+    if reactions is None:
+        return (Step("reactions", title, (prose(f"The reactions do not follow: {why}."),)),)
+    if not found:
+        return ()
+    numbers = shown_numbers([each.value for each in found], place.statics.system.scope.known_exactly)
+    rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
+    grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
+    pulls = [prose(f"But '{name}' would have to pull there: it does not hold.") for name in place.pulling]
+    return (Step("reactions", title, (prose("By the balance of every body:"), grid, *pulls)),)
+
+
+def _reaction_row(
+    place: Equilibrium, reactions: Reactions, each: RestingReaction, number: float | None
+) -> tuple[Cell, ...]:
+    named = each.named
+    exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
+    return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit
